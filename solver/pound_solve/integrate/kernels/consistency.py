@@ -22,7 +22,7 @@ from pound_solve.integrate.kernels.corotational import (
 )
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import along, multiply
-from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Step
+from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Simulation
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
@@ -53,8 +53,9 @@ def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: 
     return lost and touches_massless(linear, laws, i)
 
 
-def slowest_decay(linear: LinearSystem, laws: Laws, step: Step) -> float:
+def slowest_decay(sim: Simulation) -> float:
     """Longest ratio of dashpot to stiffness of a massless unknown, by their diagonals [T]."""
+    linear, laws, step = sim.linear, sim.laws, sim.step
     stiffness, damping, slowest = step.product, step.right_side, 0.0
     for i in range(len(stiffness)):
         stiffness[i], damping[i] = 0.0, 0.0
@@ -73,7 +74,7 @@ def slowest_decay(linear: LinearSystem, laws: Laws, step: Step) -> float:
     return slowest
 
 
-def factorise_massless(linear: LinearSystem, laws: Laws, step: Step, quantities: Array) -> float:
+def factorise_massless(sim: Simulation, quantities: Array) -> float:
     """Factorise ``K + C / e`` over the massless unknowns, with the members at some quantities.
 
     Returns
@@ -82,7 +83,8 @@ def factorise_massless(linear: LinearSystem, laws: Laws, step: Step, quantities:
         1 / e: large enough to leave alone what dashpots hold, not so large that the springs are lost beside
         them.
     """
-    slowest = slowest_decay(linear, laws, step)
+    linear, laws, step = sim.linear, sim.laws, sim.step
+    slowest = slowest_decay(sim)
     rate = max(1.0 / linear.instant, 1.0 / (DELAY * slowest) if slowest > 0.0 else 0.0)
     for q in range(len(step.matrix)):
         i, j = linear.pattern.ai[q], linear.column[q]
@@ -145,7 +147,7 @@ def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array
                 out[laws.rows.columns[q]] += laws.rows.values[q] * force
 
 
-def correct_massless_rates(linear: LinearSystem, laws: Laws, step: Step, stale: bool, h: float) -> None:
+def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
     """Correct velocities of massless unknowns that no dashpot holds, at the end of a step of length `h`.
 
     They follow from the rates of the forces, which stay in balance.  The method takes about twice their
@@ -156,8 +158,9 @@ def correct_massless_rates(linear: LinearSystem, laws: Laws, step: Step, stale: 
     stale : bool
         Whether the factor of the massless unknowns must be made anew.
     """
+    linear, laws, step = sim.linear, sim.laws, sim.step
     if stale:
-        factorise_massless(linear, laws, step, laws.members.trial.quantities)
+        factorise_massless(sim, laws.members.trial.quantities)
     now, trial, change = step.now, step.trial, step.product
     force_rates(linear, laws, trial.velocity, laws.trial.rate, trial.input_rates, change)
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
@@ -169,10 +172,11 @@ def correct_massless_rates(linear: LinearSystem, laws: Laws, step: Step, stale: 
         laws.trial.rate[i] += along(laws.rows, i, change)
 
 
-def jump_massless_rates(linear: LinearSystem, laws: Laws, step: Step) -> None:
+def jump_massless_rates(sim: Simulation) -> None:
     """Give massless unknowns the velocities that the present branches ask for (see the module's head)."""
+    linear, laws, step = sim.linear, sim.laws, sim.step
     now, change, force, size = step.now, step.trial.acceleration, step.right_side, step.product
-    rate = factorise_massless(linear, laws, step, laws.members.now.quantities)
+    rate = factorise_massless(sim, laws.members.now.quantities)
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
         force[i] = now.load[i] - force[i] - now.damping_force[i]
@@ -208,12 +212,13 @@ def jump_massless_rates(linear: LinearSystem, laws: Laws, step: Step) -> None:
         laws.now.rate[i] += along(laws.rows, i, change)
 
 
-def make_consistent(linear: LinearSystem, laws: Laws, step: Step) -> None:
+def make_consistent(sim: Simulation) -> None:
     """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
+    linear, laws, step = sim.linear, sim.laws, sim.step
     now, residual = step.now, step.residual
     form_members(laws, step)
     if linear.implicit and not linear.all_mass:
-        jump_massless_rates(linear, laws, step)
+        jump_massless_rates(sim)
     multiply(linear.stiffness, now.displacement, step.right_side)
     for i in range(len(residual)):
         residual[i] = now.load[i] - step.right_side[i] - now.damping_force[i]

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.corotational import add_tangent
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
+from pound_solve.integrate.kernels.state import Simulation
 from pound_solve.numerics.ldl import factor
 
 
 def factorise_effective_mass(
-    linear: LinearSystem, laws: Laws, step: Step, on_mass: float, on_damping: float, on_stiffness: float,
-    at: int,
-) -> int:  # fmt: skip
+    sim: Simulation, on_mass: float, on_damping: float, on_stiffness: float, at: int
+) -> int:
     """Factorise the sum of M, C and K times factors, laws and corotational members included, into row `at`
     of the factors; return -1 or the unknown whose pivot vanishes.
     """
+    linear, laws, step = sim.linear, sim.laws, sim.step
     a = linear.on_pattern
     for q in range(len(step.matrix)):
         step.matrix[q] = on_mass * a[0, q] + on_damping * a[1, q] + on_stiffness * a[2, q]

@@ -13,7 +13,16 @@ from pound_solve.check import Check
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.kernels import allocation, corotational
 from pound_solve.integrate.kernels import laws as law_kernels
-from pound_solve.integrate.kernels.state import CHATTER, CROWD, DONE, FULL, PIVOT, RUNAWAY, Scheme
+from pound_solve.integrate.kernels.state import (
+    CHATTER,
+    CROWD,
+    DONE,
+    FULL,
+    PIVOT,
+    RUNAWAY,
+    Scheme,
+    Simulation,
+)
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     Course,
@@ -81,6 +90,8 @@ class KernelEngine(ABC):
         which, acting = seen if self.shows_steps else np.zeros((2, 0), np.int64)
         self.buffers = allocation.buffers(system.size, len(self.springs), which, acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
+        works = self.accumulator.works
+        self.sim = Simulation(self.linear, self.laws, self.step, self.buffers, works, self.state)
         for i in range(len(self.springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
         law_kernels.linearise_laws(self.laws, self.rules)
@@ -136,10 +147,9 @@ class KernelEngine(ABC):
     def advance(self, kernel: Function, *given: Any) -> None:
         """Let a kernel advance to the end, and take in what it keeps."""
         ready = provider().ready(kernel)
-        own = self.linear, self.laws, self.step, self.buffers, self.rules
         while True:
             with np.errstate(all="ignore"):  # a runaway is reported in words
-                why = ready(*own, *given, self.accumulator.works, self.state)
+                why = ready(self.sim, self.rules, *given)
             self.fetch()
             if why == DONE:
                 return

@@ -41,7 +41,7 @@ class KernelPresent:
         laws.now.deformation[law], laws.now.rate[law] = d, v
         law_kernels.transition(laws, own.rules, law, event_index, d, v)
         self.enter(law)
-        log_transition(laws, own.buffers, own.state, law, before, self.t, 0.0)
+        log_transition(own.sim, law, before, self.t, 0.0)
         own.fetch_transitions()
         self._branches[law] = own.springs[law].branch(own.law_state(law))
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.consistency import make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
 from pound_solve.integrate.kernels.products import along
-from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
+from pound_solve.integrate.kernels.state import Laws, Run, Simulation, Step
 from pound_solve.laws.functions import Tables, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
 
@@ -30,9 +29,10 @@ def count_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: flo
         laws.peak_force[law], laws.peak_time[law] = value, t
 
 
-def tracked(linear: LinearSystem, laws: Laws, step: Step, i: int) -> tuple[float, float]:
+def tracked(sim: Simulation, i: int) -> tuple[float, float]:
     """Value and slope of tracked quantity `i` at the start of the coming step (see `tracker.Extremes`)."""
-    now, outputs, n_laws = step.now, len(linear.monitored_constants), len(laws.rule)
+    linear, laws = sim.linear, sim.laws
+    now, outputs, n_laws = sim.step.now, len(linear.monitored_constants), len(laws.rule)
     if i < outputs:
         value = along(linear.monitored, i, now.displacement) + linear.monitored_constants[i]
         slope = along(linear.monitored, i, now.velocity)
@@ -55,13 +55,14 @@ def tracked(linear: LinearSystem, laws: Laws, step: Step, i: int) -> tuple[float
     return value, slope
 
 
-def track(linear: LinearSystem, laws: Laws, step: Step, t: float, since: float) -> None:
+def track(sim: Simulation, t: float, since: float) -> None:
     """Count the motion at the start of the coming step into the peaks, and stationary points on the same
     branches since the last count, `since` ago.
     """
-    extremes, forces = step.extremes, len(linear.monitored_constants) + len(laws.rule)
+    laws, step = sim.laws, sim.step
+    extremes, forces = step.extremes, len(sim.linear.monitored_constants) + len(laws.rule)
     for i in range(forces + len(laws.rule)):
-        value, slope = tracked(linear, laws, step, i)
+        value, slope = tracked(sim, i)
         count_extreme(laws, step, i - forces, i, value, t)
         if since > 0.0 and extremes.slope[i] * slope < 0.0:
             sign = 1.0 if extremes.slope[i] > 0.0 else -1.0
@@ -74,26 +75,24 @@ def track(linear: LinearSystem, laws: Laws, step: Step, t: float, since: float) 
         extremes.reached[i] = max(extremes.reached[i], abs(value))
 
 
-def log_transition(
-    laws: Laws, buffers: Buffers, run: Run, i: int, before: int, t: float, force: float
-) -> None:
+def log_transition(sim: Simulation, i: int, before: int, t: float, force: float) -> None:
     """Put a change of branch into the log; a contact begins to count its force anew."""
-    row = buffers.log[run.logged]
+    laws = sim.laws
+    row = sim.buffers.log[sim.run.logged]
     row[0], row[1], row[2], row[3] = i, before, laws.branch[i], t
     row[4], row[5], row[6] = laws.now.deformation[i], laws.now.rate[i], force
     row[7], row[8], row[9] = laws.peak_force[i], laws.peak_time[i], laws.impulse[i]
-    run.logged += 1
+    sim.run.logged += 1
     if laws.contact[i]:
         laws.peak_force[i], laws.peak_time[i], laws.impulse[i] = force, t, 0.0
 
 
-def store_sample(
-    laws: Laws, step: Step, buffers: Buffers, rules: Tables, works: Works, run: Run, t: float
-) -> None:
+def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
     """Keep the motion, the laws' forces and energies, and the works."""
-    at, now = run.kept, step.now
+    laws, buffers, works = sim.laws, sim.buffers, sim.works
+    at, now = sim.run.kept, sim.step.now
     buffers.time[at] = t
-    for i in range(len(step.residual)):
+    for i in range(len(sim.step.residual)):
         buffers.displacement[at, i] = now.displacement[i]
         buffers.velocity[at, i] = now.velocity[i]
         buffers.acceleration[at, i] = now.acceleration[i]
@@ -118,27 +117,27 @@ def store_sample(
         buffers.lost[at, i] = lost if abs(lost) > 1e-14 * laws.parameters[i, 0] * size * size else 0.0
     kept = buffers.works[at]
     kept[0], kept[1], kept[2] = works.input, works.damping, works.contact
-    run.kept += 1
+    sim.run.kept += 1
 
 
-def take_first_sample(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, works: Works, run: Run
-) -> None:
+def take_first_sample(sim: Simulation, rules: Tables) -> None:
     """Make the start consistent and keep it as the first sample."""
-    make_consistent(linear, laws, step)
-    track(linear, laws, step, run.time, 0.0)
-    store_sample(laws, step, buffers, rules, works, run, run.time)
+    run = sim.run
+    make_consistent(sim)
+    track(sim, run.time, 0.0)
+    store_sample(sim, rules, run.time)
     run.started = 1
 
 
-def store_motion(laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run, t: float) -> None:
+def store_motion(sim: Simulation, rules: Tables, t: float) -> None:
     """Keep the present motion for the envelopes.
 
     Of a step that is cut into more parts than there is room for, the others are passed over.
     """
+    laws, buffers, run = sim.laws, sim.buffers, sim.run
     if len(buffers.which) + len(buffers.acting) == 0 or run.shown == len(buffers.shown_time):
         return
-    at, now = run.shown, step.now
+    at, now = run.shown, sim.step.now
     buffers.shown_time[at] = t
     for i in range(len(buffers.which)):
         which = buffers.which[i]

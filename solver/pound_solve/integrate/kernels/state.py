@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
+from pound_solve.integrate.energy import Works
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
@@ -438,3 +439,47 @@ class Scheme(NamedTuple):
     alpha_m: float = 0.0
     alpha_f: float = 0.0
     locate: bool = True
+
+
+class Goals(NamedTuple):
+    """Times that a run integrates to one after the other, and the excitation on the way.
+
+    Attributes
+    ----------
+    times : ndarray, shape (n_goals,)
+    sampled : ndarray, shape (n_goals,)
+        Whether a sample is taken there.
+    piece : ndarray, shape (n_goals,)
+        Piece of the excitation up to there.
+    coefs : ndarray, shape (n_pieces, degree + 1, n_inputs)
+        Polynomials of the excitation.
+    begins : ndarray, shape (n_pieces,)
+        Times at which the pieces begin.
+    """
+
+    times: Array
+    sampled: Flags
+    piece: Index
+    coefs: Array
+    begins: Array
+
+
+class Simulation(NamedTuple):
+    """All that a run works on, whatever its method; kernels are handed it as one.
+
+    Attributes
+    ----------
+    linear : LinearSystem
+    laws : Laws
+    step : Step
+    buffers : Buffers
+    works : Works
+    run : Run
+    """
+
+    linear: LinearSystem
+    laws: Laws
+    step: Step
+    buffers: Buffers
+    works: Works
+    run: Run

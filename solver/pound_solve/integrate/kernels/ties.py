@@ -8,7 +8,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.consistency import lets_go, touches_massless
 from pound_solve.integrate.kernels.laws import restore_state, save_state, transition
-from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run
+from pound_solve.integrate.kernels.state import Simulation
 from pound_solve.laws.functions import Tables
 
 TIED = 1e-9  #: share of its largest terms that an event function may lack of an event at the same instant
@@ -22,10 +22,7 @@ def arrives(a: float, b: float, c: float, d: float, v: float, largest: float) ->
     return b == 0.0 and a * v > 0.0 and near
 
 
-def note_ties(
-    linear: LinearSystem, laws: Laws, buffers: Buffers, rules: Tables, run: Run, law: int, stiffness: float,
-    offset: float,
-) -> None:  # fmt: skip
+def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset: float) -> None:
     """Keep what becomes of the laws if all go on that come to their events together with `law`; nothing
     where none does.
 
@@ -33,6 +30,7 @@ def note_ties(
     laws that do, and their tangents; where its force has fallen, other laws whose forces fall: minus
     infinity, and the branch that they go to.
     """
+    linear, laws, buffers, run = sim.linear, sim.laws, sim.buffers, sim.run
     plain = not laws.contact[law] and not laws.curved[law]
     fell = lets_go(linear, laws, law, stiffness, offset, laws.now.deformation[law])
     softer = plain and laws.stiffness[law] < stiffness and touches_massless(linear, laws, law)

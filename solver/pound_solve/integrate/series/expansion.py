@@ -16,14 +16,14 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.products import along, multiply, spread
-from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
+from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Simulation
 from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_right_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold
 from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
 from pound_solve.integrate.series.springs import add_product, deformation
-from pound_solve.integrate.series.state import Lengths, Series
+from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.strings import add_strings
 from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
 from pound_solve.numerics.jit import loose
@@ -107,10 +107,9 @@ def structural_forces(
         out[i] = -on_stiffness * series.stiffness_product[i] - on_damping * series.damping_product[i]
 
 
-def next_term(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, k: int, h: float, top: int
-) -> None:
+def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> None:
     """Coefficients `k` + 2 of the unknowns from the two before (see the module's head)."""
+    linear, laws, step = sim.linear, sim.laws, sim.step
     new = series.motion[k + 2]
     n = len(new)
     springs = series.springs
@@ -151,11 +150,10 @@ def next_term(
         add_massless(laws, step, series, k + 2, h, top)
 
 
-def begin_series(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, h: float
-) -> None:
+def begin_series(sim: Simulation, series: Series, coefs: Array, begin: float, h: float) -> None:
     """First two coefficients, from the present state."""
-    c, now, top = series.motion, step.now, len(coefs)
+    laws = sim.laws
+    c, now, top = series.motion, sim.step.now, len(coefs)
     expand_inputs(series, coefs, begin, h)
     for i in range(len(now.displacement)):
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
@@ -165,7 +163,7 @@ def begin_series(
         if k == 1:
             find_drags(laws, series, 0, h, top)
         if len(series.massless.unknown):
-            add_massless(laws, step, series, k, h, top)
+            add_massless(laws, sim.step, series, k, h, top)
 
 
 def right_up_to(series: Series, terms: int, end: float) -> float:
@@ -175,10 +173,7 @@ def right_up_to(series: Series, terms: int, end: float) -> float:
     return drags_right_up_to(series.viscous, terms, end)
 
 
-def expand(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, coefs: Array,
-    begin: float, h: float,
-) -> tuple[int, float]:  # fmt: skip
+def expand(sim: Simulation, series: Series, coefs: Array, begin: float, h: float) -> tuple[int, float]:
     """Find the series of a step of length `h` from the present state on.
 
     Returns
@@ -189,13 +184,15 @@ def expand(
         Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all
         bounds.
     """
+    lengths = series.lengths
+    linear = sim.linear
     top = len(coefs)
-    begin_series(linear, laws, step, series, coefs, begin, h)
+    begin_series(sim, series, coefs, begin, h)
     lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
     most, k, own, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, CHECK
     while k + 2 <= TERMS:
         while True:
-            next_term(linear, laws, step, series, k, h, top)
+            next_term(sim, series, k, h, top)
             k += 1
             if (k + 1) % CHECK == 0:
                 break
@@ -214,7 +211,7 @@ def expand(
         lengths.carried = terms + CHECK
     if not own + last < np.inf:
         return terms, np.nan
-    expand_deformations(laws, series, terms, top)
+    expand_deformations(sim.laws, series, terms, top)
     end = GROW
     if own > 0.0:
         end = min(end, (SMALL * SMALL * most / own) ** (0.5 / terms))

@@ -10,12 +10,7 @@ from pound_solve.integrate.kernels.consistency import make_consistent
 from pound_solve.integrate.kernels.laws import drag as law_drag
 from pound_solve.integrate.kernels.laws import law_force, linearise_law, transition
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
-from pound_solve.integrate.kernels.recording import (
-    log_transition,
-    next_pause,
-    store_sample,
-    track,
-)
+from pound_solve.integrate.kernels.recording import log_transition, next_pause, store_sample, track
 from pound_solve.integrate.kernels.state import (
     CHATTER,
     DONE,
@@ -23,10 +18,12 @@ from pound_solve.integrate.kernels.state import (
     FULL,
     RUNAWAY,
     Buffers,
+    Goals,
     Laws,
     LinearSystem,
     MotionState,
     Run,
+    Simulation,
     Step,
 )
 from pound_solve.integrate.kernels.ties import note_ties
@@ -59,7 +56,7 @@ from pound_solve.integrate.series.tracking import event_of, first_event, track_l
 from pound_solve.integrate.series.viscous import TURNS, settled
 from pound_solve.integrate.series.viscous import linearise as linearise_dampers
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.numerics.types import Array
 
 SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
 SHORTER = 0.9  #: of it, at most
@@ -125,11 +122,19 @@ def work_put_in(linear: LinearSystem, series: Series, terms: int, end: float, to
 
 
 def add_works(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
-    carried: int, h: float, end: float, works: Works, rules: Tables,
-) -> None:  # fmt: skip
+    sim: Simulation,
+    series: Series,
+    coefs: Array,
+    begin: float,
+    terms: int,
+    carried: int,
+    h: float,
+    end: float,
+    rules: Tables,
+) -> None:
     """Add up the works over the step to `end`, but for those of the loads by Gauss's rule."""
-    moved, trial, damped = len(linear.support_damping) > 0, step.trial, series.damped
+    linear, laws, works = sim.linear, sim.laws, sim.works
+    moved, trial, damped = len(linear.support_damping) > 0, sim.step.trial, series.damped
     for k in range(1, terms + 1):
         for i in range(len(damped.unknown)):
             damped.motion[k, i] = series.motion[k, damped.unknown[i]]
@@ -196,10 +201,9 @@ def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, e
     count_largest(laws, series)
 
 
-def change_branch(
-    laws: Laws, buffers: Buffers, rules: Tables, series: Series, run: Run, t: float, event: LocatedEvent
-) -> None:
+def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, event: LocatedEvent) -> None:
     """Let a law leave its branch."""
+    laws, run = sim.laws, sim.run
     law = event.law
     before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
     transition(laws, rules, law, event.event_index, d, v)
@@ -207,36 +211,36 @@ def change_branch(
     # the rate of what has no mass jumps, and with it the force of its dashpot
     force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
     if before != laws.branch[law]:
-        log_transition(laws, buffers, run, law, before, t, force)
+        log_transition(sim, law, before, t, force)
     run.events += 1
     run.fault = law
     run.stale = 1
 
 
-def change_friction(laws: Laws, buffers: Buffers, rules: Tables, series: Series, run: Run) -> None:
+def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
     """Let friction follow the contacts that have touched or parted."""
     for r in range(len(series.friction.laws)):
-        event = touching(laws, rules, series.friction, r)
+        event = touching(sim.laws, rules, series.friction, r)
         if event >= 0:
             law = series.friction.laws[r]
-            change_branch(laws, buffers, rules, series, run, run.time, LocatedEvent(law, event, 0.0))
+            change_branch(sim, rules, series, sim.run.time, LocatedEvent(law, event, 0.0))
 
 
 def change_branches(
-    linear: LinearSystem, laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float,
-    end: float, event: LocatedEvent, run: Run,
-) -> None:  # fmt: skip
+    sim: Simulation, rules: Tables, series: Series, terms: int, h: float, end: float, event: LocatedEvent
+) -> None:
     """Let a law leave its branch, and others whose events are at the same instant."""
-    now, instant = run.time, INSTANT * max(run.time, h)
+    laws = sim.laws
+    now, instant = sim.run.time, INSTANT * max(sim.run.time, h)
     stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
-    change_branch(laws, buffers, rules, series, run, now, event)
-    note_ties(linear, laws, buffers, rules, run, event.law, stiffness, offset)
+    change_branch(sim, rules, series, now, event)
+    note_ties(sim, rules, event.law, stiffness, offset)
     for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
         if i != event.law and series.rigid.number[i] < 0:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
             if own.law >= 0 and own.event_index >= 0 and own.time <= event.time + instant / h:
-                change_branch(laws, buffers, rules, series, run, now, own)
-    change_friction(laws, buffers, rules, series, run)
+                change_branch(sim, rules, series, now, own)
+    change_friction(sim, rules, series)
 
 
 def count_instant(run: Run, h: float) -> None:
@@ -246,15 +250,16 @@ def count_instant(run: Run, h: float) -> None:
     run.last_event = run.time
 
 
-def renew(linear: LinearSystem, laws: Laws, rules: Tables, series: Series, run: Run) -> bool:
+def renew(sim: Simulation, rules: Tables, series: Series) -> bool:
     """Take over the branches of the laws after a change, and the tangents of smooth ones; False where they
     leave an unknown without mass loose, which `run.fault` names.
     """
+    laws, run = sim.laws, sim.run
     held = series.massless
     if run.stale:
         linearise(laws, rules, series.smooth)
         linearise_dampers(laws, rules, series.viscous)
-        add_up(linear, laws, series)
+        add_up(sim.linear, laws, series)
         renew_modes(laws, series)
         fault = factorise(laws, held) if len(held.unknown) else -1
         if fault >= 0:
@@ -264,10 +269,7 @@ def renew(linear: LinearSystem, laws: Laws, rules: Tables, series: Series, run: 
     return True
 
 
-def settle(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    coefs: Array, begin: float, run: Run,
-) -> int:  # fmt: skip
+def settle(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> int:
     """Give the unknowns without mass the rates that the present branches ask for, and closed rigid contacts
     their forces.
 
@@ -285,18 +287,19 @@ def settle(
     Murty KG (1974), Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11:
     123-130.
     """
-    held, now = series.massless, step.now
+    laws, run = sim.laws, sim.run
+    held, now = series.massless, sim.step.now
     in_series = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
     in_series += len(series.smooth.laws) + len(series.viscous.laws)
     if len(held.unknown) + in_series == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
-        change_friction(laws, buffers, rules, series, run)
-        if not renew(linear, laws, rules, series, run):
+        change_friction(sim, rules, series)
+        if not renew(sim, rules, series):
             return LOOSE
-        begin_series(linear, laws, step, series, coefs, begin, 1.0)
+        begin_series(sim, series, coefs, begin, 1.0)
         if in_series:  # forces that are series need the accelerations
-            next_term(linear, laws, step, series, 0, 1.0, len(coefs))
+            next_term(sim, series, 0, 1.0, len(coefs))
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
         if run.fault >= 0 and jumps(laws, series, len(coefs)):
             return FALL
@@ -312,7 +315,7 @@ def settle(
         if law < 0:
             press(laws, series, 2, 0.0, 1.0)
             return DONE
-        change_branch(laws, buffers, rules, series, run, run.time, LocatedEvent(law, event, 0.0))
+        change_branch(sim, rules, series, run.time, LocatedEvent(law, event, 0.0))
     return CHATTER
 
 
@@ -349,29 +352,32 @@ def shorten(lengths: Lengths, h: float, fit: float) -> None:
 
 
 def take(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths,
-    coefs: Array, begin: float, terms: int, h: float, end: float, works: Works, run: Run, rules: Tables,
-) -> None:  # fmt: skip
+    sim: Simulation,
+    series: Series,
+    coefs: Array,
+    begin: float,
+    terms: int,
+    h: float,
+    end: float,
+    rules: Tables,
+) -> None:
     """Take the step up to its place `end`: peaks, looks, works, and the motion there."""
+    laws, run = sim.laws, sim.run
     t = run.time
-    track_outputs(linear, laws, step, series, terms, h, end, t, len(coefs))
-    track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
+    track_outputs(sim, series, terms, h, end, t, len(coefs))
+    track_laws(laws, sim.step, series, terms, h, end, t, len(sim.linear.monitored_constants))
     if end > 0.0:
         keep_step(laws, series, terms, h, end, t)
-        add_works(
-            linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
-        )
-        accept(laws, step.now, series, terms, h, end)
+        add_works(sim, series, coefs, t - begin, terms, series.lengths.carried, h, end, rules)
+        accept(laws, sim.step.now, series, terms, h, end)
         if len(series.smooth.laws) + len(series.viscous.laws):
             run.stale = 1
     run.steps += 1
 
 
 def stride(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, works: Works,
-    run: Run,
-) -> int:  # fmt: skip
+    sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
+) -> int:
     """Take steps on one piece of the excitation up to a goal, or until Python must look at it.
 
     Returns
@@ -379,24 +385,26 @@ def stride(
     int
         DONE, or what is wrong.
     """
+    lengths = series.lengths
+    laws, run = sim.laws, sim.run
     while run.time < goal:
-        if must_pause(buffers, series, run, pause):
+        if must_pause(sim.buffers, series, run, pause):
             return FULL
         t = run.time
         h = step_length(lengths, t, goal)
         if h == 0.0:
             return SHORT
-        if not renew(linear, laws, rules, series, run):
+        if not renew(sim, rules, series):
             return LOOSE
         if len(series.viscous.light):
-            why = settle(linear, laws, step, buffers, rules, series, coefs, t - begin, run)
+            why = settle(sim, rules, series, coefs, t - begin)
             if why != DONE:
                 return why
         if is_implicit(series):
-            terms, fit = expand_implicit(linear, laws, step, series, lengths, coefs, t - begin, h, run)
+            terms, fit = expand_implicit(sim, series, coefs, t - begin, h)
             least, room = 1.0, 1.0
         else:
-            terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
+            terms, fit = expand(sim, series, coefs, t - begin, h)
             least, room = CUT, TERMS / terms  # terms that were not needed make room for a longer step
         if not fit >= least:  # what is known of the motion from terms far too large misleads
             shorten(lengths, h, fit)
@@ -414,7 +422,7 @@ def stride(
             shorten(lengths, h, SHRINK)
             pause -= 1
             continue
-        take(linear, laws, step, series, lengths, coefs, begin, terms, h, at, works, run, rules)
+        take(sim, series, coefs, begin, terms, h, at, rules)
         if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)
@@ -441,57 +449,53 @@ def stride(
         if series.rigid.number[event.law] >= 0:
             run.fault = event.law
             return STRIKE
-        change_branches(linear, laws, buffers, rules, series, terms, h, end, event, run)
-        why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+        change_branches(sim, rules, series, terms, h, end, event)
+        why = settle(sim, rules, series, coefs, run.time - begin)
         if why != DONE:
             return why
     return DONE
 
 
 def reach(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, works: Works, run: Run,
-) -> int:  # fmt: skip
+    sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
+) -> int:
     """Take the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
+    step, run = sim.step, sim.run
     if not has_room(series.shown):
         return FULL
-    if run.steps < pause and take_in_modes(
-        linear, laws, step, series, lengths, coefs, begin, goal, works, run
-    ):
+    if run.steps < pause and take_in_modes(sim, series, coefs, begin, goal):
         return DONE
-    from_modes(laws, series.modal, step)
+    from_modes(sim.laws, series.modal, step)
     series.modal.is_present[0] = 0
     why = stride(
-        linear, laws, step, buffers, rules, series, lengths, coefs, begin, goal, pause, works, run
+        sim, rules, series, coefs, begin, goal, pause
     )  # fmt: skip
     if why == DONE:
-        multiply(linear.mass, step.now.velocity, step.product)
+        multiply(sim.linear.mass, step.now.velocity, step.product)
         kinetic = 0.5 * dot(step.now.velocity, step.product)
-        if runs_away(kinetic, run.initial_energy, works.gross_input):
+        if runs_away(kinetic, run.initial_energy, sim.works.gross_input):
             run.initial_energy = kinetic
             return RUNAWAY
     return why
 
 
-def sample(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    coefs: Array, begin: float, works: Works, run: Run,
-) -> None:  # fmt: skip
+def sample(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> None:
     """Keep the present motion; as the first sample, count it into the peaks."""
-    now = step.now
-    why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+    run = sim.run
+    now = sim.step.now
+    why = settle(sim, rules, series, coefs, run.time - begin)
     evaluate_inputs(coefs, run.time - begin, now.inputs, now.input_rates)
-    form_load(linear, now.inputs, now.load)
-    multiply(linear.damping, now.velocity, now.damping_force)
-    make_consistent(linear, laws, step)
+    form_load(sim.linear, now.inputs, now.load)
+    multiply(sim.linear.damping, now.velocity, now.damping_force)
+    make_consistent(sim)
     if why == DONE and len(series.massless.unknown):
-        next_term(linear, laws, step, series, 0, 1.0, len(coefs))
+        next_term(sim, series, 0, 1.0, len(coefs))
     for i in series.massless.unknown:
         now.acceleration[i] = 2.0 * series.motion[2, i]
     if run.started == 0:
-        track(linear, laws, step, run.time, 0.0)
+        track(sim, run.time, 0.0)
         run.started = 1
-    store_sample(laws, step, buffers, rules, works, run, run.time)
+    store_sample(sim, rules, run.time)
 
 
 def load_times_place(linear: LinearSystem, step: Step, series: Series, coefs: Array, s: float) -> float:
@@ -504,68 +508,49 @@ def load_times_place(linear: LinearSystem, step: Step, series: Series, coefs: Ar
 
 
 def settle_after_jump(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    coefs: Array, breaks: Array, before: int, piece: int, works: Works, run: Run,
-) -> int:  # fmt: skip
+    sim: Simulation, rules: Tables, series: Series, goals: Goals, before: int, piece: int
+) -> int:
     """`settle` where another piece of the excitation begins: unknowns without mass move with loads that
     jump, whose work is that of the mean load.
     """
-    old, new = run.time - breaks[before], run.time - breaks[piece]
+    old, new = sim.run.time - goals.begins[before], sim.run.time - goals.begins[piece]
     put = 0.0
     for sign in (-1.0, 1.0):
         if sign > 0.0:
-            why = settle(linear, laws, step, buffers, rules, series, coefs[piece], new, run)
+            why = settle(sim, rules, series, goals.coefs[piece], new)
             if why != DONE:
                 return why
-        put += 0.5 * sign * load_times_place(linear, step, series, coefs[before], old)
-        put += 0.5 * sign * load_times_place(linear, step, series, coefs[piece], new)
-    works.input += put
-    works.gross_input += abs(put)
+        put += 0.5 * sign * load_times_place(sim.linear, sim.step, series, goals.coefs[before], old)
+        put += 0.5 * sign * load_times_place(sim.linear, sim.step, series, goals.coefs[piece], new)
+    sim.works.input += put
+    sim.works.gross_input += abs(put)
     return DONE
 
 
-def march(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    lengths: Lengths, coefs: Array, breaks: Array, goals: Array, outputs: Flags, pieces: Index,
-    works: Works, run: Run,
-) -> int:  # fmt: skip
+def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
     """Integrate to the last goal, or until Python must look at something (see
     `stepping.kernel.advance`).
     """
-    pause = next_pause(step, run)
-    while run.goal < len(goals):
+    run = sim.run
+    pause = next_pause(sim.step, run)
+    while run.goal < len(goals.times):
         goal = run.goal
-        begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
+        piece = goals.piece[goal]
+        begin, coefs = goals.begins[piece], goals.coefs[piece]
         if run.started == 0:
-            sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
+            sample(sim, rules, series, coefs, begin)
         # the excitation may have a kink here, or jump
-        before = pieces[max(goal - 1, 0)]
-        why = settle_after_jump(
-            linear, laws, step, buffers, rules, series, coefs, breaks, before, pieces[goal], works, run
-        )
+        before = goals.piece[max(goal - 1, 0)]
+        why = settle_after_jump(sim, rules, series, goals, before, piece)
         if why != DONE:
             return why
-        why = reach(
-            linear,
-            laws,
-            step,
-            buffers,
-            rules,
-            series,
-            lengths,
-            piece,
-            begin,
-            goals[goal],
-            pause,
-            works,
-            run,
-        )
+        why = reach(sim, rules, series, coefs, begin, goals.times[goal], pause)
         if why != DONE:
             return why
         run.goal += 1
-        if outputs[goal]:
-            from_modes(laws, series.modal, step)
-            sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
-            if run.kept == len(buffers.time):
+        if goals.sampled[goal]:
+            from_modes(sim.laws, series.modal, sim.step)
+            sample(sim, rules, series, coefs, begin)
+            if run.kept == len(sim.buffers.time):
                 return FULL
     return DONE

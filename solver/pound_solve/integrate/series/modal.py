@@ -24,10 +24,10 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.recording import count_extreme
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Run, Step
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation, Step
 from pound_solve.integrate.series.expansion import CHECK, TERMS, dot, expand_inputs
 from pound_solve.integrate.series.shown import keep_interval
-from pound_solve.integrate.series.state import Lengths, Modal, Series
+from pound_solve.integrate.series.state import Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.jit import loose
@@ -242,11 +242,10 @@ def count_ends(
         count_extreme(laws, step, -1, at, k * modal.values[end, i] + constant, when)
 
 
-def count_peaks(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, n_inputs: int, t: float
-) -> bool:
+def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> bool:
     """Count what exceeds the peaks within the interval; False if its series is not known."""
-    modal, n_laws, outputs = series.modal, len(laws.rule), len(linear.monitored_constants)
+    laws, step = sim.laws, sim.step
+    modal, n_laws, outputs = series.modal, len(laws.rule), len(sim.linear.monitored_constants)
     cells, extremes = len(modal.values) - 1, step.extremes
     h = modal.length[0] / cells
     for i in range(n_laws):
@@ -304,14 +303,12 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
                 out[i] += modal.steady[b, i, j] * x[twice + j]
 
 
-def take_in_modes(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths,
-    coefs: Array, begin: float, goal: float, works: Works, run: Run,
-) -> bool:  # fmt: skip
+def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, goal: float) -> bool:
     """Take the interval up to a goal in modes; False where that is not certain to be right.
 
     The motion stays in the modes, see `from_modes`.
     """
+    run = sim.run
     modal, n_inputs = series.modal, series.inputs.shape[1]
     if run.stale or not modal.serves[0]:
         return False
@@ -319,18 +316,18 @@ def take_in_modes(
     if abs(goal - run.time - h) > SAME * h:
         return False
     if not modal.is_present[0]:
-        to_modes(modal, step)
+        to_modes(modal, sim.step)
     expand_inputs(series, coefs, run.time - begin, h)
     start_interval(modal, series.inputs)
-    follow(linear, modal, n_inputs)
-    if not is_quiet(laws, series, n_inputs):
+    follow(sim.linear, modal, n_inputs)
+    if not is_quiet(sim.laws, series, n_inputs):
         return False
-    if not count_peaks(linear, laws, step, series, n_inputs, run.time):
+    if not count_peaks(sim, series, n_inputs, run.time):
         return False
-    add_interval_works(modal, n_inputs, works)
-    keep_interval(laws, series, run.time)
+    add_interval_works(modal, n_inputs, sim.works)
+    keep_interval(sim.laws, series, run.time)
     advance_modes(modal, n_inputs)
     run.time = goal
     run.steps += 1
-    lengths.in_modes += 1
+    series.lengths.in_modes += 1
     return True

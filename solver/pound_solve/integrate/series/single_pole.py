@@ -39,10 +39,10 @@ import numpy as np
 
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
 from pound_solve.integrate.kernels.products import along, multiply, spread
-from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, Step
+from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Simulation
 from pound_solve.integrate.series.expansion import dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
-from pound_solve.integrate.series.state import Lengths, Series, SinglePole
+from pound_solve.integrate.series.state import Series, SinglePole
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
@@ -178,10 +178,9 @@ def match_initial_velocity(series: Series, velocity: Array, h: float) -> None:
             out[i] += share * own.force[i]
 
 
-def find_terms(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, h: float, top: int
-) -> float:
+def find_terms(sim: Simulation, series: Series, h: float, top: int) -> float:
     """Find the terms of the series from the present state on; return twice the energy of that state."""
+    linear, step = sim.linear, sim.step
     own, now, present = series.single_pole, step.now, 0.0
     u, v, delta, force = own.displacement, own.velocity, own.force, series.stiffness_product
     scale = own.gamma * h
@@ -192,11 +191,11 @@ def find_terms(
         elastic_force(linear, series, u[n], force)
         if n == 0:
             kinetic = dot(v[0], delta)
-            lengths.kinetic = max(lengths.kinetic, kinetic)
+            series.lengths.kinetic = max(series.lengths.kinetic, kinetic)
             present = abs(kinetic) + abs(dot(u[0], force))
         for i in range(len(delta)):
             delta[i] -= scale * force[i]
-        add_loads(laws, series, n, h, top, delta)
+        add_loads(sim.laws, series, n, h, top, delta)
         solve(linear.pattern, step.factors[WHOLE], step.pivots[WHOLE], delta)
         for i in range(len(delta)):
             u[n + 1, i] = -scale * delta[i]
@@ -218,9 +217,8 @@ def write_in_powers(series: Series) -> None:
 
 
 def expand_implicit(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, coefs: Array,
-    begin: float, h: float, run: Run,
-) -> tuple[int, float]:  # fmt: skip
+    sim: Simulation, series: Series, coefs: Array, begin: float, h: float
+) -> tuple[int, float]:
     """Find the series of a step of length `h` from the present state on, as `expansion.expand` does.
 
     Returns
@@ -231,26 +229,28 @@ def expand_implicit(
         Multiple of the step that would be right; below 1 the step must be taken again, shorter.  NaN where
         an unknown is loose or numbers are beyond all bounds.
     """
+    lengths = series.lengths
+    run = sim.run
     own, top = series.single_pole, len(coefs)
     last = len(own.basis) - 1
     if run.factor_length != h:
         run.factor_length = -1.0
         scale = own.gamma * h
-        if factorise_effective_mass(linear, laws, step, 1.0, scale, scale * scale, WHOLE) >= 0:
+        if factorise_effective_mass(sim, 1.0, scale, scale * scale, WHOLE) >= 0:
             return last, np.nan
         run.factor_length = h
         lengths.factored += 1
     expand_inputs(series, coefs, begin, h)
     expand_loads(series, top)
-    present = find_terms(linear, laws, step, series, lengths, h, top)
+    present = find_terms(sim, series, h, top)
     write_in_powers(series)
-    match_initial_velocity(series, step.now.velocity, h)
+    match_initial_velocity(series, sim.step.now.velocity, h)
     lengths.carried = CARRIED
-    expand_deformations(laws, series, last, top)
+    expand_deformations(sim.laws, series, last, top)
     most = lengths.kinetic
     if most == 0.0:  # from rest
-        most = energy(linear, series, 1)
-    left_out = energy(linear, series, last)
+        most = energy(sim.linear, series, 1)
+    left_out = energy(sim.linear, series, last)
     if not left_out < np.inf:
         return last, np.nan
     fit = GROW

@@ -508,6 +508,7 @@ class Series(NamedTuple):
     modal : Modal
     shown : Shown
     single_pole : SinglePole
+    lengths : Lengths
     """
 
     motion: Array
@@ -530,3 +531,4 @@ class Series(NamedTuple):
     modal: Modal
     shown: Shown
     single_pole: SinglePole
+    lengths: Lengths

@@ -36,7 +36,7 @@ from pound_solve.integrate.kernels import allocation
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
-from pound_solve.integrate.kernels.state import CHATTER, FALL, RUNAWAY, Scheme
+from pound_solve.integrate.kernels.state import CHATTER, FALL, RUNAWAY, Goals, Scheme
 from pound_solve.integrate.protocol import CHATTER as CHATTERS
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
@@ -138,6 +138,8 @@ class Taylor(KernelEngine):
         modal = modal_tables.allocate(
             system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), which
         )
+        self.lengths: state.Lengths = record(state.Lengths)
+        self.lengths.next, self.lengths.shortest = length, np.inf
         self.series = state.Series(
             motion=np.zeros((terms, system.size)),
             stiffness_product=np.zeros(system.size),
@@ -155,10 +157,7 @@ class Taylor(KernelEngine):
             ),
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
-            curved=curved.allocate(
-                np.array([s.law.curved and s.role.collides for s in laws], bool),
-                terms,
-            ),
+            curved=curved.allocate(np.array([s.law.curved and s.role.collides for s in laws], bool), terms),
             friction=friction.allocate(
                 self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
             ),
@@ -169,6 +168,7 @@ class Taylor(KernelEngine):
             modal=modal,
             shown=shown.allocate(which, acting, modal, kept),
             single_pole=single_pole.allocate(system.size, system.inputs.shape[1], tolerance),
+            lengths=self.lengths,
         )
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
@@ -177,8 +177,6 @@ class Taylor(KernelEngine):
         smooth.linearise(self.laws, self.rules, self.series.smooth)
         smooth.count_creep(self.laws, self.series.smooth, length)
         self._hold()
-        self.lengths: state.Lengths = record(state.Lengths)
-        self.lengths.next, self.lengths.shortest = length, np.inf
 
     def _damped(self, terms: int) -> state.Damped:
         """The unknowns that dashpots act on, in the order of elimination."""
@@ -211,8 +209,8 @@ class Taylor(KernelEngine):
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
-        coefs = np.ascontiguousarray(ex.coefs)
-        self.advance(march.march, self.series, self.lengths, coefs, ex.breaks, ends, is_output, pieces)
+        ahead = Goals(ends, is_output, pieces, np.ascontiguousarray(ex.coefs), ex.breaks)
+        self.advance(march.march, self.series, ahead)
 
     def resume(self, why: int) -> None:
         """Let rigid contacts strike, close or part, or joints without mass move where a force falls; stop

@@ -7,7 +7,7 @@ from __future__ import annotations
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, rate_size, size
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.products import along
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
+from pound_solve.integrate.kernels.state import Laws, Simulation, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.curved import (
     APART,
@@ -135,10 +135,10 @@ def count_crest(
 
 
 def track_outputs(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t:
-    float, top: int,
-) -> None:  # fmt: skip
+    sim: Simulation, series: Series, terms: int, h: float, end: float, t: float, top: int
+) -> None:
     """Count the monitored outputs up to `end` into the peaks."""
+    linear = sim.linear
     p = series.polynomial[POLYNOMIAL]
     for i in range(len(linear.monitored_constants)):
         for k in range(terms + 1):
@@ -147,7 +147,7 @@ def track_outputs(
             for j in range(series.inputs.shape[1]):
                 p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]
         p[0] += linear.monitored_constants[i]
-        count_crest(laws, step, series, terms, h, end, t, i, -1)
+        count_crest(sim.laws, sim.step, series, terms, h, end, t, i, -1)
 
 
 def track_law(

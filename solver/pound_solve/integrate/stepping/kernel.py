@@ -6,7 +6,7 @@ Everything here works on named arrays in the order of elimination (see `kernels.
 
 from __future__ import annotations
 
-from pound_solve.integrate.energy import Works, runs_away
+from pound_solve.integrate.energy import runs_away
 from pound_solve.integrate.events.within_step import first_event
 from pound_solve.integrate.kernels.consistency import lets_go, make_consistent
 from pound_solve.integrate.kernels.laws import (
@@ -33,24 +33,24 @@ from pound_solve.integrate.kernels.state import (
     PIVOT,
     RUNAWAY,
     WHOLE,
-    Buffers,
+    Goals,
     Laws,
-    LinearSystem,
-    Run,
     Scheme,
+    Simulation,
     Step,
 )
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.locating import go_on, step_in_parts
 from pound_solve.integrate.stepping.step import REFRESH, accept, factorise, try_step, update_factor
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.numerics.types import Array, Index
 
 
-def drive_law(linear: LinearSystem, laws: Laws, rules: Tables, i: int, run: Run) -> bool:
+def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
     """Drive law `i` along a straight path from its start in the step to its end, by the branches on the
     way; False where it loses a force on it that holds a joint without mass.
     """
+    laws = sim.laws
     d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
     for _ in range(100):
         event, where = event_on_path(laws, i, d, d1, v1)
@@ -58,18 +58,16 @@ def drive_law(linear: LinearSystem, laws: Laws, rules: Tables, i: int, run: Run)
             break
         k, f0 = laws.stiffness[i], laws.offset[i]
         transition(laws, rules, i, event, where, v1)
-        if lets_go(linear, laws, i, k, f0, where):
+        if lets_go(sim.linear, laws, i, k, f0, where):
             return False
-        run.driven += 1
+        sim.run.driven += 1
         d = where
     if laws.curved[i]:
         linearise_law(laws, rules, i, d1, v1)
     return True
 
 
-def drive_laws(
-    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, run: Run
-) -> int:
+def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
     """Drive the laws that pass an event to the end of the step, and let the factor follow.
 
     Returns
@@ -78,6 +76,7 @@ def drive_laws(
         DONE where no law has changed, FULL where one has and the step must be solved again, NEWTON where
         the step must be cut at its events, or PIVOT.
     """
+    laws, run = sim.laws, sim.run
     why = DONE
     for i in range(len(laws.rule)):
         d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
@@ -89,17 +88,17 @@ def drive_laws(
         else:
             restore_state(laws, rules, i)
         run.stale = 1
-        if not drive_law(linear, laws, rules, i, run):
+        if not drive_law(sim, rules, i):
             return NEWTON
         changed = laws.stiffness[i] != k or laws.damping[i] != c
         if not changed and abs(laws.offset[i] - f0) <= STILL * abs(f0):
             continue
         why = FULL
         change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
-        if change != 0.0 and not linear.explicit:
+        if change != 0.0 and not sim.linear.explicit:
             run.updates += 1
-            if not update_factor(linear, laws, step, i, change, WHOLE):
-                bad = factorise(linear, laws, step, scheme, h, WHOLE)
+            if not update_factor(sim, i, change, WHOLE):
+                bad = factorise(sim, scheme, h, WHOLE)
                 if bad >= 0:
                     run.fault = bad
                     return PIVOT
@@ -107,34 +106,40 @@ def drive_laws(
 
 
 def step_through(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, works: Works, run: Run, length: float, tried: bool,
-) -> int:  # fmt: skip
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    piece_start: float,
+    length: float,
+    tried: bool,
+) -> int:
     """Advance by `length` without a cut at events: Newton to the forces of the laws at its end, each driven
     along a straight path from its start; `tried` says that the first trial is made.
     """
+    laws, run = sim.laws, sim.run
     for i in range(len(laws.rule)):
         laws.saved[i] = 0
     end = run.time + length - piece_start
     for _ in range(50):
-        if not tried and not try_step(linear, laws, step, scheme, rules, coefs, end, length, WHOLE, run):
+        if not tried and not try_step(sim, rules, scheme, coefs, end, length, WHOLE):
             break
         tried, run.driven = False, 0
-        why = drive_laws(linear, laws, step, rules, scheme, length, run)
+        why = drive_laws(sim, rules, scheme, length)
         if why == FULL:
             continue
         if why == PIVOT:
             return PIVOT
         if why == NEWTON:
             break
-        accept(linear, laws, step, rules, scheme, length, WHOLE, works, run)
+        accept(sim, rules, scheme, length, WHOLE)
         run.time += length
         run.events += run.driven
         for i in range(len(laws.rule)):
             if laws.saved[i] == 1 and laws.saved_state[i, 0] != laws.branch[i]:
                 force = linear_force(laws, i, laws.now.deformation[i], laws.now.rate[i])
-                log_transition(laws, buffers, run, i, int(laws.saved_state[i, 0]), run.time, force)
-        track(linear, laws, step, run.time, length)
+                log_transition(sim, i, int(laws.saved_state[i, 0]), run.time, force)
+        track(sim, run.time, length)
         return DONE
     for i in range(len(laws.rule)):
         if laws.saved[i] == 1:
@@ -155,9 +160,8 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
 
 
 def plain_steps(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, works: Works, run: Run, h: float, last: int,
-) -> bool:  # fmt: skip
+    sim: Simulation, rules: Tables, scheme: Scheme, coefs: Array, piece_start: float, h: float, last: int
+) -> bool:
     """Take steps of length `h` up to step `last` while every law stays on its branch.
 
     Returns
@@ -165,34 +169,33 @@ def plain_steps(
     bool
         Whether it stopped at a step that is tried, but not accepted, because a law leaves its branch.
     """
+    run = sim.run
     while run.step < last and run.updates <= REFRESH and run.longest_part >= h:
         end = run.time + h - piece_start
-        if not try_step(linear, laws, step, scheme, rules, coefs, end, h, WHOLE, run):
+        if not try_step(sim, rules, scheme, coefs, end, h, WHOLE):
             return False
-        if passes_event(laws, step, scheme, h):
+        if passes_event(sim.laws, sim.step, scheme, h):
             return True
-        accept(linear, laws, step, rules, scheme, h, WHOLE, works, run)
+        accept(sim, rules, scheme, h, WHOLE)
         run.time += h
-        track(linear, laws, step, run.time, h)
+        track(sim, run.time, h)
         run.step += 1
         run.steps += 1
-        store_motion(laws, step, buffers, rules, run, run.time)
+        store_motion(sim, rules, run.time)
     return False
 
 
-def begin_goal(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, coefs: Array, s: float, h: float,
-    run: Run,
-) -> None:  # fmt: skip
+def begin_goal(sim: Simulation, scheme: Scheme, coefs: Array, s: float, h: float) -> None:
     """Take over the excitation at the local time `s`, before the first step towards a goal; make the state
     consistent where a load jumps, and
     with it the acceleration.
     """
+    run = sim.run
     if run.step > 0:
         return
-    now, load = step.now, step.product
+    now, load = sim.step.now, sim.step.product
     evaluate_inputs(coefs, s, now.inputs, now.input_rates)
-    form_load(linear, now.inputs, load)
+    form_load(sim.linear, now.inputs, load)
     # accelerations of the alpha methods lag behind: after steps much shorter, as through a spike of
     # the load, that of its past would act for too long
     jumps = scheme.alpha_f + scheme.alpha_m != 0.0 and h > 2.0 * run.factor_length > 0.0
@@ -202,17 +205,18 @@ def begin_goal(
         now.load[i] = load[i]
     if jumps:
         run.jumped = run.time
-        make_consistent(linear, laws, step)
-        track(linear, laws, step, run.time, 0.0)
+        make_consistent(sim)
+        track(sim, run.time, 0.0)
 
 
-def renew_factor(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, run: Run) -> int:
+def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
     """Factorise A for steps of length `h` where the factor at hand is of another, or was updated too
     often.
     """
+    run = sim.run
     if run.factor_length == h and run.updates <= REFRESH:
         return DONE
-    bad = factorise(linear, laws, step, scheme, h, WHOLE)
+    bad = factorise(sim, scheme, h, WHOLE)
     if bad >= 0:
         run.fault = bad
         return PIVOT
@@ -220,93 +224,82 @@ def renew_factor(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h
     return DONE
 
 
-def end_goal(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, sampled: bool,
-    works: Works, run: Run,
-) -> int:  # fmt: skip
+def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
     """Take a sample at a goal; RUNAWAY where the kinetic energy is far above what was put in."""
+    step, run = sim.step, sim.run
     kinetic, velocity = 0.0, step.now.velocity
-    multiply(linear.mass, velocity, step.product)
+    multiply(sim.linear.mass, velocity, step.product)
     for i in range(len(velocity)):
         kinetic += 0.5 * velocity[i] * step.product[i]
-    if runs_away(kinetic, run.initial_energy, works.gross_input):
+    if runs_away(kinetic, run.initial_energy, sim.works.gross_input):
         run.initial_energy = kinetic
         return RUNAWAY
     run.goal += 1
     run.step = 0
     if sampled:
-        store_sample(laws, step, buffers, rules, works, run, run.time)
-        if run.kept == len(buffers.time):
+        store_sample(sim, rules, run.time)
+        if run.kept == len(sim.buffers.time):
             return FULL
     return DONE
 
 
 def advance(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, breaks: Array, goals: Array, steps: Index, lengths: Array, outputs: Flags, pieces: Index,
-    works: Works, run: Run,
-) -> int:  # fmt: skip
+    sim: Simulation, rules: Tables, scheme: Scheme, goals: Goals, steps: Index, lengths: Array
+) -> int:
     """Integrate to the last goal, or until Python must look at something.
 
     Parameters
     ----------
-    coefs : ndarray, shape (n_pieces, degree + 1, n_inputs)
-        The excitation, whose pieces begin at `breaks`.
-    goals : ndarray, shape (n_goals,)
-        Times that a step ends at, reached in `steps` steps of `lengths` each, on the excitation's `pieces`;
-        `outputs` says whether a sample is taken.
+    goals : Goals
+    steps, lengths : ndarray, shape (n_goals,)
+        Number of the steps up to each goal, and their length.
 
     Returns
     -------
     int
         DONE, FULL, or what is wrong (see `kernels.state`).
     """
-    room, pause = len(buffers.log) // 2, next_pause(step, run)
+    buffers, run = sim.buffers, sim.run
+    room, pause = len(buffers.log) // 2, next_pause(sim.step, run)
     if run.started == 0:
-        take_first_sample(linear, laws, step, buffers, rules, works, run)
-    while run.goal < len(goals):
+        take_first_sample(sim, rules)
+    while run.goal < len(goals.times):
         goal = run.goal
-        h, piece = lengths[goal], coefs[pieces[goal]]
-        begin = breaks[pieces[goal]]
-        begin_goal(linear, laws, step, scheme, piece, run.time - begin, h, run)
+        h, piece = lengths[goal], goals.piece[goal]
+        begin, coefs = goals.begins[piece], goals.coefs[piece]
+        begin_goal(sim, scheme, coefs, run.time - begin, h)
         while run.step < steps[goal]:
             crowded = len(buffers.log) - run.logged < room or run.tied > len(buffers.ties) // 2
             # steps that have room
             more = len(buffers.shown_time) // 2 - run.shown
             if crowded or more <= 0 or run.steps >= pause:
                 return FULL
-            why = renew_factor(linear, laws, step, scheme, h, run)
+            why = renew_factor(sim, scheme, h)
             if why != DONE:
                 return why
             why, tried = NEWTON, False
             if run.rest >= 0.0:
-                go_on(linear, laws, step, buffers, rules, run)
+                go_on(sim, rules)
                 length, run.rest = run.rest, -1.0
             else:
                 last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
-                tried = plain_steps(
-                    linear, laws, step, buffers, rules, scheme, piece, begin, works, run, h, last
-                )
+                tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
                 if not tried and (run.step == last < steps[goal] - 1 or run.updates > REFRESH):
                     continue
-                length = h if run.step < steps[goal] - 1 else goals[goal] - run.time
+                length = h if run.step < steps[goal] - 1 else goals.times[goal] - run.time
                 run.same_instant = 0
                 if not scheme.locate:
-                    why = step_through(
-                        linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, tried
-                    )
+                    why = step_through(sim, rules, scheme, coefs, begin, length, tried)
                     tried = False
             if why == NEWTON:  # cut at its events a step always has a solution
-                why = step_in_parts(
-                    linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, h, tried
-                )
+                why = step_in_parts(sim, rules, scheme, coefs, begin, length, h, tried)
             if why != DONE:
                 return why
             run.step += 1
             run.steps += 1
-            store_motion(laws, step, buffers, rules, run, run.time)
-        run.time = goals[goal]
-        why = end_goal(linear, laws, step, buffers, rules, outputs[goal], works, run)
+            store_motion(sim, rules, run.time)
+        run.time = goals.times[goal]
+        why = end_goal(sim, rules, goals.sampled[goal])
         if why != DONE:
             return why
     return DONE

@@ -8,20 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.protocol import LocatedEvent
-from pound_solve.integrate.events.within_step import (
-    event_value,
-    first_event,
-    time_of_event,
-    value_at_start,
-)
-from pound_solve.integrate.kernels.consistency import (
-    NEAR,
-    lets_go,
-    make_consistent,
-    touches_massless,
-)
+from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
+from pound_solve.integrate.kernels.consistency import NEAR, lets_go, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import (
     couple,
     hold_friction_limits,
@@ -39,12 +28,8 @@ from pound_solve.integrate.kernels.state import (
     PART,
     PIVOT,
     WHOLE,
-    Buffers,
-    Laws,
-    LinearSystem,
-    Run,
     Scheme,
-    Step,
+    Simulation,
 )
 from pound_solve.integrate.kernels.ties import note_ties
 from pound_solve.integrate.protocol import STILL
@@ -68,14 +53,12 @@ GO_ON, MET, NONE = range(3)
 PATIENCE = 12  #: trials by interpolation; bisection follows
 
 
-def change_branch(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    run: Run, h: float, i: int, event: int,
-) -> None:  # fmt: skip
+def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: int, event: int) -> None:
     """Let law `i` leave its branch; `h` is the nominal step, whose factor follows."""
+    linear, laws, run = sim.linear, sim.laws, sim.run
     before, k, c = laws.branch[i], laws.stiffness[i], laws.damping[i]
     if laws.normal[i] >= 0:
-        couple(laws, rules, step.now.acceleration, i)
+        couple(laws, rules, sim.step.now.acceleration, i)
     d, v, f0 = laws.now.deformation[i], laws.now.rate[i], laws.offset[i]
     transition(laws, rules, i, event, d, v)
     if laws.normal[i] < 0 and lets_go(linear, laws, i, k, f0, d):
@@ -85,91 +68,90 @@ def change_branch(
     change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
     if not linear.explicit and change != 0.0:
         run.updates += 1
-        if run.updates > REFRESH or not update_factor(linear, laws, step, i, change, WHOLE):
+        if run.updates > REFRESH or not update_factor(sim, i, change, WHOLE):
             run.updates = REFRESH + 1
     force = linear_force(laws, i, d, v)
     if laws.contact[i] and touches_massless(linear, laws, i):
         # the dashpot's is only known when the velocities are consistent
         force -= laws.damping[i] * v
     if before != laws.branch[i]:
-        log_transition(laws, buffers, run, i, before, run.time, force)
-    note_ties(linear, laws, buffers, rules, run, i, k, f0)
+        log_transition(sim, i, before, run.time, force)
+    note_ties(sim, rules, i, k, f0)
     run.events += 1
     for j in laws.coupled:
         before = laws.branch[j]
-        couple(laws, rules, step.now.acceleration, j)
+        couple(laws, rules, sim.step.now.acceleration, j)
         if before != laws.branch[j]:
-            log_transition(laws, buffers, run, j, before, run.time, laws.friction_force[j])
+            log_transition(sim, j, before, run.time, laws.friction_force[j])
             run.updates = REFRESH + 1
     hold_friction_limits(laws)
 
 
-def mark_others(
-    linear: LinearSystem, laws: Laws, step: Step, event: LocatedEvent, tried: float, h: float
-) -> None:
+def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) -> None:
     """Mark the laws that pass an event at the instant of the one located, in `laws.saved`: 1 + its number.
 
     The part in which they do was tried with length `tried`, NaN where that failed, and is not accepted yet.
     Rates of unknowns without mass and the forces of friction jump there: then one law leaves at a time.
     """
-    alone = not linear.all_mass or len(laws.coupled) > 0
+    laws = sim.laws
+    alone = not sim.linear.all_mass or len(laws.coupled) > 0
     for i in range(len(laws.rule)):
         laws.saved[i], first = 0, event.time + CLOSE * h
         for e in range(0 if alone or i == event.law else laws.n_events[i]):
-            at = time_of_event(laws, step, i, e, tried)
+            at = time_of_event(laws, sim.step, i, e, tried)
             if at <= first:
                 laws.saved[i], first = 1 + e, at
 
 
-def leaves_with(linear: LinearSystem, laws: Laws, step: Step, i: int) -> bool:
+def leaves_with(sim: Simulation, i: int) -> bool:
     """Whether a law that is marked leaves its branch whatever the others do that have left at this instant.
 
     A law that turns follows its acceleration, which changes where another one holds the same mass; their
     unknowns are marked in `step.product`.
     """
+    laws = sim.laws
     if laws.events[i, laws.saved[i] - 1, 0] != 0.0:
         return True
     for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-        if not linear.diagonal or step.product[laws.rows.columns[q]] != 0.0:
+        if not sim.linear.diagonal or sim.step.product[laws.rows.columns[q]] != 0.0:
             return False
     return True
 
 
-def change_branches(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    run: Run, h: float, event: LocatedEvent,
-) -> None:  # fmt: skip
+def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent) -> None:
     """Let a law leave its branch, and those that are marked, and make the state consistent, unless a force
     has fallen: joints must move first.
     """
+    laws, step, run = sim.laws, sim.step, sim.run
     laws.saved[event.law] = 1 + event.event_index
     for j in range(len(step.product)):
         step.product[j] = 0.0
     for k in range(-1, len(laws.rule)):
         i = event.law if k < 0 else k
-        room = len(buffers.log) - run.logged > len(laws.coupled)
-        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_with(linear, laws, step, i)):
+        room = len(sim.buffers.log) - run.logged > len(laws.coupled)
+        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_with(sim, i)):
             continue
-        change_branch(linear, laws, step, buffers, rules, scheme, run, h, i, laws.saved[i] - 1)
+        change_branch(sim, rules, scheme, h, i, laws.saved[i] - 1)
         if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
             run.longest_part = FIRST * h
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
             step.product[laws.rows.columns[q]] = 1.0
         laws.saved[i] = 0
     if run.fell < 0:
-        go_on(linear, laws, step, buffers, rules, run)
+        go_on(sim, rules)
 
 
-def go_on(linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run) -> None:
+def go_on(sim: Simulation, rules: Tables) -> None:
     """Make the state consistent after what has jumped, and keep it.
 
     Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant
     itself counts as one before.
     """
-    make_consistent(linear, laws, step)
-    track(linear, laws, step, run.time, 0.0)
+    run = sim.run
+    make_consistent(sim)
+    track(sim, run.time, 0.0)
     after = 4.0 * INSTANT * max(1.0, run.time) if run.time == run.jumped else 0.0
-    store_motion(laws, step, buffers, rules, run, run.time + after)
+    store_motion(sim, rules, run.time + after)
 
 
 class Bracket(NamedTuple):
@@ -219,9 +201,15 @@ def verdict(
 
 
 def locate(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, begin: float,
-    length: float, h: float, event: LocatedEvent, run: Run,
-) -> tuple[int, LocatedEvent]:  # fmt: skip
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    begin: float,
+    length: float,
+    h: float,
+    event: LocatedEvent,
+) -> tuple[int, LocatedEvent]:
     """Shorten a step from the local time `begin`, in which events are passed, to the first of them.
 
     Parameters
@@ -239,6 +227,7 @@ def locate(
         Law -1 where none is met after all; its time is the length that was tried last, or 0 where it is met
         at once.  Others at this instant are marked, see `mark_others`.
     """
+    laws, step = sim.laws, sim.step
     law, index, tau = event.law, event.event_index, event.time
     g = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])[0]
     b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
@@ -246,18 +235,18 @@ def locate(
     for trial in range(100):
         if tau <= CLOSE * h:
             met = LocatedEvent(law, index, 0.0)
-            mark_others(linear, laws, step, met, tried, h)
+            mark_others(sim, met, tried, h)
             return DONE, met
         last = b.high - b.low <= CLOSE * h
         if last:
             tau = b.high
         elif trial > PATIENCE or bisects:
             tau = 0.5 * (b.low + b.high)
-        bad = factorise(linear, laws, step, scheme, tau, PART)
+        bad = factorise(sim, scheme, tau, PART)
         if bad >= 0:
-            run.fault = bad
+            sim.run.fault = bad
             return PIVOT, event
-        if not try_step(linear, laws, step, scheme, rules, coefs, begin + tau, tau, PART, run):
+        if not try_step(sim, rules, scheme, coefs, begin + tau, tau, PART):
             if last:
                 return NEWTON, event
             start_again(laws, rules)  # at `high` there was a solution: look for the event nearer to it
@@ -274,30 +263,34 @@ def locate(
         ends = verdict(b, g, size, tau, found.time, passed, last, h)
         if ends != GO_ON:
             met = LocatedEvent(law if ends == MET else -1, index, tau)
-            mark_others(linear, laws, step, met, tried, h)
+            mark_others(sim, met, tried, h)
             return DONE, met
         b = narrowed(b, tau, g, passed)
         tau = next_time(b, passed, found.time, h)
     return NEWTON, event
 
 
-def factorise_part(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, length: float, halvings: int, run: Run
-) -> int:
+def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int) -> int:
     """Factorise A for a part of a step, which Newton's iterations may have halved."""
-    bad = factorise(linear, laws, step, scheme, length, PART)
+    bad = factorise(sim, scheme, length, PART)
     if bad < 0:
         return DONE
     if halvings > 0:
         return NEWTON
-    run.fault = bad
+    sim.run.fault = bad
     return PIVOT
 
 
 def step_in_parts(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, works: Works, run: Run, length: float, h: float, tried: bool,
-) -> int:  # fmt: skip
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    piece_start: float,
+    length: float,
+    h: float,
+    tried: bool,
+) -> int:
     """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
     and `tried` says that the first trial is made.
 
@@ -305,22 +298,23 @@ def step_in_parts(
     short one: forces like the fourth root of time begin there.  Where a force falls that holds a joint
     without mass, the step stops, for Python to move the joint (see `integrate.release`).
     """
+    laws, run = sim.laws, sim.run
     left, halvings, longest = length, 0, np.inf
     most, curved = 100 + 8 * len(laws.rule), laws.curved.any()
     at = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
-        if len(buffers.log) - run.logged <= len(laws.coupled):
+        if len(sim.buffers.log) - run.logged <= len(laws.coupled):
             return CROWD
         t, part = run.time, min(left, run.longest_part, longest)
         if at == PART or part < left:
             at = PART
             if curved:  # what is tried from here on moves the tangents away from the factor at hand
                 run.updates = REFRESH + 1
-            why = factorise_part(linear, laws, step, scheme, part, halvings, run)
+            why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:
                 return why
         end = t + part - piece_start
-        if not tried and not try_step(linear, laws, step, scheme, rules, coefs, end, part, at, run):
+        if not tried and not try_step(sim, rules, scheme, coefs, end, part, at):
             halvings, longest, at = halvings + 1, 0.5 * part, PART
             if halvings > MOST_HALVINGS:
                 return NEWTON
@@ -328,13 +322,13 @@ def step_in_parts(
             start_again(laws, rules)
             continue
         tried, halvings, longest = False, 0, np.inf
-        event = first_event(laws, step, part)
+        event = first_event(laws, sim.step, part)
         if event.law >= 0:
             if curved:  # likewise, at the end of a step that was tried whole
                 run.updates = REFRESH + 1
             at = PART
             begin = t - piece_start
-            why, event = locate(linear, laws, step, scheme, rules, coefs, begin, part, h, event, run)
+            why, event = locate(sim, rules, scheme, coefs, begin, part, h, event)
             if why != DONE:
                 return why
             part = event.time
@@ -343,17 +337,17 @@ def step_in_parts(
         else:
             run.longest_part *= 2.0
         if part > 0.0:
-            accept(linear, laws, step, rules, scheme, part, at, works, run)
+            accept(sim, rules, scheme, part, at)
             left -= part
             run.time = t + part
-            track(linear, laws, step, run.time, part)
+            track(sim, run.time, part)
             if at == PART:
-                store_motion(laws, step, buffers, rules, run, run.time)
+                store_motion(sim, rules, run.time)
         at = PART
         law = event.law
         if law < 0:
             continue
-        change_branches(linear, laws, step, buffers, rules, scheme, run, h, event)
+        change_branches(sim, rules, scheme, h, event)
         run.fault = law
         run.same_instant += 1
         if run.same_instant > most:

@@ -42,15 +42,8 @@ from pound_solve.integrate.kernels.laws import (
     set_normal_force,
     update_friction_limits,
 )
-from pound_solve.integrate.kernels.products import (
-    along,
-    copy,
-    evaluate_inputs,
-    form_load,
-    multiply,
-    reach,
-)
-from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, Scheme, Step
+from pound_solve.integrate.kernels.products import along, copy, evaluate_inputs, form_load, multiply, reach
+from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Scheme, Simulation, Step
 from pound_solve.integrate.kernels.work import (
     load_on_nodes,
     mean_damping_power,
@@ -69,30 +62,30 @@ SLOW = 0.05  #: part of an error that an iteration may leave before the factor i
 MOST_ITERATIONS = 50
 
 
-def factorise(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, at: int) -> int:
+def factorise(sim: Simulation, scheme: Scheme, h: float, at: int) -> int:
     """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
     on_mass = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
-    return factorise_effective_mass(linear, laws, step, on_mass, scheme.gamma * h, scheme.beta * h * h, at)
+    return factorise_effective_mass(sim, on_mass, scheme.gamma * h, scheme.beta * h * h, at)
 
 
-def update_factor(linear: LinearSystem, laws: Laws, step: Step, i: int, change: float, at: int) -> bool:
+def update_factor(sim: Simulation, i: int, change: float, at: int) -> bool:
     """Add ``change b b^T`` of law `i` to a factor; False where it must be made anew."""
-    rows = laws.rows
+    step = sim.step
+    rows = sim.laws.rows
     if change == 0.0 or rows.pointers[i] == rows.pointers[i + 1]:
         return True
     first = len(step.row)
     for q in range(rows.pointers[i], rows.pointers[i + 1]):
         step.row[rows.columns[q]] += rows.values[q]
         first = min(first, rows.columns[q])
-    return update(linear.pattern, step.factors[at], step.pivots[at], step.row, first, change)
+    return update(sim.linear.pattern, step.factors[at], step.pivots[at], step.row, first, change)
 
 
-def predict(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, coefs: Array, end: float, h: float
-) -> None:
+def predict(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: float) -> None:
     """Motion and forces at the end of a step of length `h`, at the local time `end`, but for the
     acceleration there.
     """
+    linear, laws, step = sim.linear, sim.laws, sim.step
     now, trial, right = step.now, step.trial, step.right_side
     b2, g1 = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
     n = len(right)
@@ -125,8 +118,9 @@ def predict(
     predict_members(laws, step)
 
 
-def solve(linear: LinearSystem, laws: Laws, step: Step, at: int) -> None:
+def solve(sim: Simulation, at: int) -> None:
     """Acceleration at the end of the step, with the laws and the members on their present tangents."""
+    laws, step = sim.laws, sim.step
     acceleration = step.trial.acceleration
     copy(step.right_side, acceleration)
     for i in range(len(laws.rule)):
@@ -137,13 +131,10 @@ def solve(linear: LinearSystem, laws: Laws, step: Step, at: int) -> None:
     for c in range(len(laws.members.parameters)):
         predicted_force(laws.members, c)
         subtract_force(laws.members, c, laws.members.trial.forces, acceleration)
-    solve_factored(linear.pattern, step.factors[at], step.pivots[at], acceleration)
+    solve_factored(sim.linear.pattern, step.factors[at], step.pivots[at], acceleration)
 
 
-def correct_curved(
-    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
-    run: Run,
-) -> tuple[float, int]:  # fmt: skip
+def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> tuple[float, int]:
     """Linearise the curved laws at the acceleration that was tried, and let the factor follow.
 
     Returns
@@ -152,8 +143,9 @@ def correct_curved(
         Largest distance of a law from its last tangent, over its force, and which law it is; -1.0 where the
         factor fails.
     """
+    laws = sim.laws
     bk, gk = scheme.beta * h * h, scheme.gamma * h
-    acceleration, worst, law = step.trial.acceleration, 0.0, -1
+    acceleration, worst, law = sim.step.trial.acceleration, 0.0, -1
     for i in range(len(laws.rule)):
         if not laws.curved[i]:
             continue
@@ -172,69 +164,64 @@ def correct_curved(
             worst, law = abs(force - guess) / size, i
         change = bk * (k - laws.stiffness[i]) + gk * (damp - laws.damping[i])
         laws.stiffness[i], laws.damping[i], laws.offset[i] = k, damp, force - k * d - damp * v
-        run.updates += 1
-        if linear.explicit or update_factor(linear, laws, step, i, change, at):
+        sim.run.updates += 1
+        if sim.linear.explicit or update_factor(sim, i, change, at):
             continue
-        if factorise(linear, laws, step, scheme, h, at) >= 0:
+        if factorise(sim, scheme, h, at) >= 0:
             return -1.0, -1
     return worst, law
 
 
-def redraw_members(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, at: int, run: Run
-) -> bool:
+def redraw_members(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
     """Take the members' tangents anew, with the factor; False where that fails."""
-    members = laws.members
+    members = sim.laws.members
     take_tangents(members, members.trial.quantities)
     for c in range(len(members.parameters)):
         anchor(members, c)
-    if factorise(linear, laws, step, scheme, h, at) >= 0:
+    if factorise(sim, scheme, h, at) >= 0:
         return False
     if at != WHOLE:
-        run.updates = REFRESH + 1
+        sim.run.updates = REFRESH + 1
     return True
 
 
-def iterate(
-    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
-    run: Run,
-) -> bool:  # fmt: skip
+def iterate(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> bool:
     """Solve for the acceleration at the end of the step; False where Newton does not converge, and the law
     furthest from it in `run.fault`.
     """
     last, worst, law = np.inf, 0.0, -1
-    run.fault = -1
+    sim.run.fault = -1
     for _ in range(MOST_ITERATIONS):
-        solve(linear, laws, step, at)
-        worst, law = correct_curved(linear, laws, step, rules, scheme, h, at, run)
+        solve(sim, at)
+        worst, law = correct_curved(sim, rules, scheme, h, at)
         if worst == -1.0:
             return False
-        has_members = len(laws.members.parameters) > 0
-        error = correct_members(laws, step, scheme.beta * h * h) if has_members else 0.0
+        has_members = len(sim.laws.members.parameters) > 0
+        error = correct_members(sim.laws, sim.step, scheme.beta * h * h) if has_members else 0.0
         if worst <= CONVERGED and error <= 1.0:
             return True
         if not error < np.inf:
             return False
         slow = error > 1.0 and error > SLOW * last
-        if slow and not redraw_members(linear, laws, step, scheme, h, at, run):
+        if slow and not redraw_members(sim, scheme, h, at):
             return False
         last = error
     if worst > CONVERGED:
-        run.fault = law
+        sim.run.fault = law
     return False
 
 
 def try_step(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, end: float,
-    h: float, at: int, run: Run,
-) -> bool:  # fmt: skip
+    sim: Simulation, rules: Tables, scheme: Scheme, coefs: Array, end: float, h: float, at: int
+) -> bool:
     """Try a step of length `h` that ends at the local time `end`, with the factor `at`; False where Newton
     does not converge (see `iterate`).
     """
-    predict(linear, laws, step, scheme, coefs, end, h)
-    if not iterate(linear, laws, step, rules, scheme, h, at, run):
+    linear, laws = sim.linear, sim.laws
+    predict(sim, scheme, coefs, end, h)
+    if not iterate(sim, rules, scheme, h, at):
         return False
-    trial, bk, gk = step.trial, scheme.beta * h * h, scheme.gamma * h
+    trial, bk, gk = sim.step.trial, scheme.beta * h * h, scheme.gamma * h
     for i in range(len(trial.acceleration)):
         trial.displacement[i] += bk * trial.acceleration[i]
     for i in range(len(trial.acceleration)):
@@ -249,8 +236,8 @@ def try_step(
     if len(laws.coupled) > 0:
         update_friction_limits(laws, rules, trial.acceleration)
     if linear.implicit and not linear.all_mass:
-        correct_massless_rates(linear, laws, step, linear.massless_vary or run.stale != 0, h)
-        run.stale = 0
+        correct_massless_rates(sim, linear.massless_vary or sim.run.stale != 0, h)
+        sim.run.stale = 0
     return True
 
 
@@ -260,11 +247,12 @@ def start_again(laws: Laws, rules: Tables) -> None:
     take_tangents(laws.members, laws.members.now.quantities)
 
 
-def add_external_work(linear: LinearSystem, laws: Laws, step: Step, h: float, works: Works) -> None:
+def add_external_work(sim: Simulation, h: float) -> None:
     """Add up the work of loads and moved supports over the step, and the loss in dashpots of the
     structure.
     """
-    now, trial = step.now, step.trial
+    linear, laws, works = sim.linear, sim.laws, sim.works
+    now, trial = sim.step.now, sim.step.trial
     before, work, loss = works.input, 0.0, 0.0
     loss += mean_damping_power(now, trial)
     if len(linear.support_damping) > 0:
@@ -334,21 +322,19 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
         residual[i] = one * (step.right_side[i] - scheme.alpha_f * residual[i])
 
 
-def accept(
-    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
-    works: Works, run: Run,
-) -> None:  # fmt: skip
+def accept(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> None:
     """Make the end of the step that was tried the start of the next; count it, if it is longer than the
     time in which a falling branch gives way.
 
     A then has a negative eigenvalue, which its pivots in row `at` tell (Sylvester's law of inertia): along
     that mode the method goes against the force, where the motion goes with it.
     """
+    linear, laws, step = sim.linear, sim.laws, sim.step
     now, trial = step.now, step.trial
     n = len(now.velocity)
     for i in range(n):
         if step.pivots[at, i] < 0.0:
-            run.falling += 1
+            sim.run.falling += 1
             break
     multiply(linear.damping, trial.acceleration, trial.damping_rate)
     if linear.all_mass:
@@ -359,12 +345,12 @@ def accept(
             )
     else:
         multiply(linear.damping, trial.velocity, trial.damping_force)
-    add_external_work(linear, laws, step, h, works)
+    add_external_work(sim, h)
     accept_members(laws)
     if len(laws.coupled) > 0:
         add_slip_work(laws, h)
         hold_friction_limits(laws)
-    accept_laws(laws, rules, h, works)
+    accept_laws(laws, rules, h, sim.works)
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
         update_residual(linear, step, scheme)
     copy(trial.displacement, now.displacement)

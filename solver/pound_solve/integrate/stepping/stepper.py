@@ -25,7 +25,7 @@ from pound_deck.schema import Field, Kind
 from pound_solve.check import Check, Subject, at_least, beyond, looked
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.present import KernelPresent
-from pound_solve.integrate.kernels.state import FALL, Scheme
+from pound_solve.integrate.kernels.state import FALL, Goals, Scheme
 from pound_solve.integrate.protocol import (
     MonitoredOutputs,
     Recorder,
@@ -105,8 +105,8 @@ class Stepper(KernelEngine):
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
         ex = self.system.excitation
         pieces = ex.pieces_after(ends - lengths)
-        coefs = np.ascontiguousarray(ex.coefs)
-        self.advance(kernel.advance, self.scheme, coefs, ex.breaks, ends, steps, h, is_output, pieces)
+        ahead = Goals(ends, is_output, pieces, np.ascontiguousarray(ex.coefs), ex.breaks)
+        self.advance(kernel.advance, self.scheme, ahead, steps, h)
 
     def resume(self, why: int) -> None:
         """Let joints without mass move where a force falls that held them; stop where nothing else can."""
