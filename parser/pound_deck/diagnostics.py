@@ -14,6 +14,7 @@ from typing import Final, Literal
 from pound_deck.model import Span
 
 _MANY_CHOICES, _MOST_CHOICES = 50, 500  #: to be looked through for the one that was meant
+SHORT, FEW = 3, 4  #: letters of a short word, and names that are offered for one
 _WIDTH: Final = 160  #: most characters of a source line in print
 
 
@@ -62,8 +63,12 @@ def closest(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
 
 
 def suggest(word: str, choices: Iterable[str]) -> str:
-    """``did you mean X?`` for the closest choice, or an empty text."""
-    near = closest(word, choices)
+    """``did you mean X?`` for the closest choice, or of short words for all that begin alike; or nothing."""
+    known = list(islice(choices, _MOST_CHOICES))
+    near = closest(word, known)
+    if not near and len(word) <= SHORT:
+        alike = [x for x in known if x[:1] == word[:1].upper() and len(x) == len(word)]
+        near = " or ".join(alike) if len(alike) <= FEW else ""
     return f"did you mean {near}?" if near else ""
 
 

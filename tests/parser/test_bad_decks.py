@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pound_deck.diagnostics import caret, render
+from pound_deck.diagnostics import caret, render, suggest
 from pound_deck.messages import MESSAGES, messages_page
 from pound_deck.reader import read_deck, read_text
 from pound_deck.source import MAX_BYTES, MAX_DEPTH, MAX_LINE
@@ -205,3 +205,15 @@ def test_long_lines_are_cut_around_the_caret(catalog):
 def test_render_stops_at_fifty(catalog):
     _, found, files = read_text(GOOD + "WEIGHTS\n" + " 1 oops\n" * 80, catalog)
     assert render(found, files).endswith("and 30 more")
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [("MY", "did you mean MI or MJ?"), ("ALFFA", "did you mean ALFA?"), ("Q", ""), ("QQQQ", "")],
+)
+def test_a_name_is_answered_with_those_that_are_like_it(word, told):
+    assert suggest(word, ("E", "A", "MI", "MJ", "KH", "ALFA")) == told
+
+
+def test_of_many_that_begin_alike_none_is_offered():
+    assert suggest("MY", [f"M{x}" for x in "ABCDEFGH"]) == ""

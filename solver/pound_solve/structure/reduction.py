@@ -28,7 +28,7 @@ from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, by_rows, entries, gathered, selection, used_rows
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.corotational import QUANTITIES, CorotationalMembers
-from pound_solve.structure.dofs import Dof, label, labels
+from pound_solve.structure.dofs import NAMES, Dof, label, labels
 from pound_solve.structure.reduction_checks import check_inertia, check_jumps
 from pound_solve.structure.structure import Structure
 
@@ -162,6 +162,25 @@ class ReducedSystem:
     def name(self, index: int) -> str:
         """Unknown in words."""
         return label(self.dofs[index])
+
+    def loose(self, index: int, softens: bool = False) -> str:
+        """Why no state of an unknown without mass is in balance, in words, with the cure.
+
+        Parameters
+        ----------
+        index : int
+        softens : bool
+            Its stiffness is negative; otherwise it has none.
+        """
+        owner, d = self.dofs[index]
+        if not softens:
+            return f"{self.name(index)} has no mass and nothing holds it"
+        if d >= len(NAMES):
+            cure = f"give element {owner} a flatter falling branch, or a longer LP"
+        else:
+            cure = "give the joints WR in WEIGHTS" if NAMES[d] == "rz" else "give it weight"
+        why = "its stiffness has become negative: it snaps through"
+        return f"{self.name(index)} has no mass, and {why}; {cure}"
 
 
 def moved_supports(motions: Sequence[Motion], fixed: Sequence[Dof]) -> tuple[Dof, ...]:

@@ -196,7 +196,7 @@ class Decomposer:
         except Mechanism as err:
             shape = np.zeros(system.size)
             shape[unknowns] = err.shape
-            raise Mechanism(shape) from None
+            raise Mechanism(shape, err.softens) from None
         dashpots = [
             (int(i), branches[i].damping, system.law_rows[i, unknowns]) for i in laws if branches[i].damping
         ]

@@ -100,8 +100,8 @@ class Laplace(EventDrivenRun):
                     system.damping + (b.T * c) @ b, system.stiffness + (b.T * k) @ b
                 )
             except Mechanism as err:
-                name = system.name(int(np.argmax(np.abs(err.shape))))
-                raise self.stop("A501", f"{name} has no mass and nothing holds it") from None
+                worst = int(np.argmax(np.abs(err.shape)))
+                raise self.stop("A501", system.loose(worst, err.softens)) from None
             fastest = found.spectral_radius
             if fastest * self.dt > 1.0:
                 why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"

@@ -100,6 +100,7 @@ class KernelEngine(ABC):
         self.uniqueness = Uniqueness(system)
         self.speed = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(self.times[0])  # latest instant that the recorder was shown
+        self.latest = list[list[float]]()  # transitions that were taken in last
 
     def run(self) -> Outcome:
         """Integrate to the last output time.
@@ -174,7 +175,8 @@ class KernelEngine(ABC):
         for k in range(int(self.state.tied)):
             self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
         self.state.tied = 0
-        for row in self.buffers.log[: self.state.logged].tolist():
+        self.latest = self.buffers.log[: self.state.logged].tolist()
+        for row in self.latest:
             law, before, after = (int(x) for x in row[:3])
             branches = self.springs[law].law.rule.branches
             if law in self.tracker.open:
@@ -218,8 +220,9 @@ class KernelEngine(ABC):
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
             return self.stop("A504", GROWS.format(self.state.initial_energy) + cause)
         if why == PIVOT:
-            name = self.system.name(int(self.order[fault]))
-            return self.stop("A501", f"{name} has no mass and nothing holds it")
+            return self.stop("A501", self.system.loose(int(self.order[fault])))
+        if why == CHATTER and (snaps := self._without_branch(fault)) is not None:
+            return self.stop("A501", self.system.loose(snaps, softens=True))
         place, last = "the members' turning", ""
         if fault >= 0:
             s = self.springs[fault]
@@ -234,6 +237,19 @@ class KernelEngine(ABC):
             text = f"Newton's iterations find no equilibrium of {place}, however short the step"
         others = "".join(f", or METHOD={method}" for method in without_steps(self.system))
         return self.stop("A503", f"{text}; try a DT well below {self.dt:g}{others}")
+
+    def _without_branch(self, law: int) -> int | None:
+        """Unknown without mass that a law holds on none of its branches; None if there is none.
+
+        At one instant its rate then has one sign on the falling branch and the other on the branches that
+        a rate of that sign leads to.
+        """
+        rows, has_mass = self.laws.rows, self.linear.has_mass
+        own = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
+        held = own[~np.asarray(has_mass, bool)[own]]
+        rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.state.time]
+        turns = min(rates, default=0.0) < 0.0 < max(rates, default=0.0)
+        return int(self.order[held[0]]) if turns and len(held) else None
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

@@ -27,11 +27,13 @@ HELD = 1e-12  #: singular values of constraints below this share of the largest 
 
 
 class Mechanism(Exception):
-    """Massless DOFs without stiffness or dashpot; `shape` is their motion over the subsystem's DOFs."""
+    """Massless DOFs without stiffness or dashpot, or whose stiffness is negative (`softens`); `shape` is
+    their motion over the subsystem's DOFs.
+    """
 
-    def __init__(self, shape: Array) -> None:
+    def __init__(self, shape: Array, softens: bool) -> None:
         super().__init__("massless degrees of freedom without stiffness")
-        self.shape = shape
+        self.shape, self.softens = shape, softens
 
 
 @dataclass(frozen=True)
@@ -108,8 +110,9 @@ def _without_static_dofs(c: Array, k: Array, with_mass: Flags) -> tuple[Array, A
     kb = basis.T @ k @ basis
     static = kb[n_x:, n_x:]
     low, shapes = np.linalg.eigh(static)
-    if low[0] <= 1e-13 * max(np.abs(np.diag(kb)).max(), 1e-300):
-        raise Mechanism(basis[:, n_x:] @ shapes[:, 0])
+    none = 1e-13 * max(np.abs(np.diag(kb)).max(), 1e-300)
+    if low[0] <= none:
+        raise Mechanism(basis[:, n_x:] @ shapes[:, 0], bool(low[0] < -none))
     flexibility = np.linalg.inv(static)
     keep = basis[:, :n_x] - basis[:, n_x:] @ flexibility @ kb[n_x:, :n_x]
     return keep, basis[:, n_x:] @ flexibility @ basis[:, n_x:].T, back
@@ -197,7 +200,7 @@ def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
     try:
         inner = state_space(t.T @ m @ t, t.T @ c @ t, t.T @ k @ t)
     except Mechanism as err:
-        raise Mechanism(t @ err.shape) from None
+        raise Mechanism(t @ err.shape, err.softens) from None
     load = t.T @ np.hstack([np.eye(n), -k @ w, -c @ w, -m @ w])
     u_p, v_p = np.zeros((n, load.shape[1])), np.zeros((n, load.shape[1]))
     if inner.u_p is not None and inner.v_p is not None:

@@ -309,10 +309,15 @@ class Taylor(KernelEngine):
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
         if held.pivots[STIFFNESS, n] < 0.0:
-            why = f"{name} has no mass, and its stiffness has become negative: it snaps through"
-            steps = "" if self.contacts.laws else ", or let METHOD=NEWMARK step over it"
-            return f"{why}; give it weight{steps}"
-        return f"{name} has no mass and nothing holds it"
+            return self.system.loose(self._softest(), softens=True)
+        return self.system.loose(int(self.order[fault]))
+
+    def _softest(self) -> int:
+        """Unknown without mass that moves most where those without mass and dashpot are least stiff."""
+        light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
+        rows = self.system.law_rows[:, light]
+        stiffness = self.system.stiffness[np.ix_(light, light)] + (rows.T * self.laws.stiffness) @ rows
+        return int(light[np.argmax(np.abs(np.linalg.eigh(stiffness)[1][:, 0]))])
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
