@@ -63,7 +63,7 @@ def closest(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
 
 
 def suggest(word: str, choices: Iterable[str]) -> str:
-    """``did you mean X?`` for the closest choice, or of short words for all that begin alike; or nothing."""
+    """``did you mean X?`` for the closest choice; of short words for all that begin alike; or nothing."""
     known = list(islice(choices, _MOST_CHOICES))
     near = closest(word, known)
     if not near and len(word) <= SHORT:
