@@ -13,8 +13,9 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
-#: why a kernel returns to Python; `FALL`: a force falls that holds a joint without mass
-DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL = range(8)
+#: why a kernel returns to Python; FALL: a force falls that holds a joint without mass; SHORT: steps are too
+#: short for the clock; LOOSE: nothing holds an unknown without mass; STRIKE: a rigid contact strikes, parts
+DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL, SHORT, LOOSE, STRIKE = range(11)
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns
 WHOLE, PART, MASS, MASSLESS = range(4)

@@ -27,6 +27,7 @@ from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.own_events import PARTS, RELEASES, TOUCHES
 from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Curved, Lengths, Series
 from pound_solve.laws.automaton import GAP
@@ -37,7 +38,6 @@ APART, PRESSED, RELEASED = range(3)  #: no overlap to speak of; a force acts; it
 TOUCH = 1e-12  #: overlap that counts as none, over the largest deformation
 RIGHT = 1e-10  #: share of the force that the last of its terms may be
 NEAR = 0.4  #: share of the time since touch that the first step after it is tried with
-TOUCHES, PARTS, RELEASES, PRESSES_AGAIN = -1, -2, -3, -4  #: events beside those of the branch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.numbers`
 

@@ -17,6 +17,7 @@ from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.curved import PRESSED
+from pound_solve.integrate.series.own_events import LIFT
 from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Friction, Series
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
@@ -24,7 +25,6 @@ from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS, RELEASE
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
 
-LIFT = -5  #: event beside those of the branch: a sticky contact begins to pull, or to press again
 KT, MU, MUD = range(3)  #: among the parameters
 OVERDUE = 1e-9  #: share of its terms above which an event function has jumped, as the normal force has
 

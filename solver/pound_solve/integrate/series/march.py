@@ -16,7 +16,10 @@ from pound_solve.integrate.kernels.state import (
     DONE,
     FALL,
     FULL,
+    LOOSE,
     RUNAWAY,
+    SHORT,
+    STRIKE,
     Buffers,
     Goals,
     Laws,
@@ -42,19 +45,20 @@ from pound_solve.integrate.series.expansion import (
     next_term,
 )
 from pound_solve.integrate.series.forces import count_largest, press, take_over
-from pound_solve.integrate.series.friction import LIFT, slides, touching
+from pound_solve.integrate.series.friction import slides, touching
 from pound_solve.integrate.series.massless import factorise, jumps, violated
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
+from pound_solve.integrate.series.own_events import BENDS, LIFT, TURNS
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.shown import has_room, is_full, keep_step
 from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
-from pound_solve.integrate.series.smooth import BENDS, bend, linearise
+from pound_solve.integrate.series.smooth import bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.strings import string_power
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
-from pound_solve.integrate.series.viscous import TURNS, settled
 from pound_solve.integrate.series.viscous import linearise as linearise_dampers
+from pound_solve.integrate.series.viscous import settled
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 
@@ -64,9 +68,6 @@ AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at t
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 FROM_REST = 1e-4  #: share of the time to the goal: longest implicit step in which a contact leaves its rest
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
-#: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
-#: without mass is not held; a rigid contact touches or parts
-SHORT, LOOSE, STRIKE = 8, 9, 10
 
 
 def add_law_losses(
@@ -375,6 +376,38 @@ def take(
     run.steps += 1
 
 
+def answer(
+    sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, terms: int, h: float,
+    end: float, event: LocatedEvent,
+) -> int:  # fmt: skip
+    """Let the law of an event at the present time change; `end` is how far its step was searched.
+
+    Returns
+    -------
+    int
+        DONE, or what is wrong.
+    """
+    laws, lengths, kind = sim.laws, series.lengths, event.event_index
+    if kind == LIFT:
+        r = series.friction.number[event.law]
+        series.friction.pressing[r] = not series.friction.pressing[r]
+        return DONE
+    if kind == BENDS:
+        bend(laws, series.smooth, lengths, event.law)
+        return DONE
+    if kind == TURNS:
+        sim.run.stale = 1
+        return DONE
+    if kind < 0:
+        change_phase(laws, series.curved, lengths, event.law, kind)
+        return DONE
+    if series.rigid.number[event.law] >= 0:
+        sim.run.fault = event.law
+        return STRIKE
+    change_branches(sim, rules, series, terms, h, end, event)
+    return settle(sim, rules, series, coefs, sim.run.time - begin)
+
+
 def stride(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
 ) -> int:
@@ -433,24 +466,7 @@ def stride(
         if run.same_instant > CHANGES + CHANGES_PER_LAW * len(laws.rule):
             run.fault = event.law
             return CHATTER
-        if event.event_index == LIFT:
-            r = series.friction.number[event.law]
-            series.friction.pressing[r] = not series.friction.pressing[r]
-            continue
-        if event.event_index == BENDS:
-            bend(laws, series.smooth, lengths, event.law)
-            continue
-        if event.event_index == TURNS:
-            run.stale = 1
-            continue
-        if event.event_index < 0:
-            change_phase(laws, series.curved, lengths, event.law, event.event_index)
-            continue
-        if series.rigid.number[event.law] >= 0:
-            run.fault = event.law
-            return STRIKE
-        change_branches(sim, rules, series, terms, h, end, event)
-        why = settle(sim, rules, series, coefs, run.time - begin)
+        why = answer(sim, rules, series, coefs, begin, terms, h, end, event)
         if why != DONE:
             return why
     return DONE

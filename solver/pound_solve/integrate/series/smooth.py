@@ -30,13 +30,13 @@ from pound_solve.integrate.kernels.laws import curve, internal, parameters, prop
 from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import NEAR, power_term, right_part
+from pound_solve.integrate.series.own_events import BENDS
 from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Lengths, Series, Smooth
 from pound_solve.laws.automaton import PAST
 from pound_solve.laws.functions import Tables, smooth_of
 from pound_solve.numerics.types import Array, Flags
 
-BENDS = -6  #: event beside those of the branch: the series goes on with another power
 UNSEEN = 1e-14  #: share of the force at w = y that a power left out may make
 ZERO = 0.1 * PAST  #: share of y below which w is none
 LACKING = 1e-13  #: share of w that terms of the power which are cut off may make

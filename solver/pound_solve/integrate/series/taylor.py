@@ -36,7 +36,7 @@ from pound_solve.integrate.kernels import allocation
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
-from pound_solve.integrate.kernels.state import CHATTER, FALL, RUNAWAY, Goals, Scheme
+from pound_solve.integrate.kernels.state import CHATTER, FALL, LOOSE, RUNAWAY, SHORT, STRIKE, Goals, Scheme
 from pound_solve.integrate.protocol import CHATTER as CHATTERS
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
@@ -216,7 +216,7 @@ class Taylor(KernelEngine):
         """Let rigid contacts strike, close or part, or joints without mass move where a force falls; stop
         where there is no going on.
         """
-        if why not in (march.STRIKE, FALL):
+        if why not in (STRIKE, FALL):
             raise self.trouble(why)
         if why == FALL:
             present = Present(self, self.series)
@@ -286,9 +286,9 @@ class Taylor(KernelEngine):
 
     def trouble(self, why: int) -> Stop:
         """What the kernel came back for, in words."""
-        if why == march.SHORT:
+        if why == SHORT:
             return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
-        if why == march.LOOSE:
+        if why == LOOSE:
             return self.stop("A501", self._loose())
         if why == RUNAWAY:
             return self.stop("A504", GROWS.format(self.state.initial_energy))

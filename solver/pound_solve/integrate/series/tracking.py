@@ -9,21 +9,10 @@ from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, Simulation, Step
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.series.curved import (
-    APART,
-    PARTS,
-    PRESSED,
-    PRESSES_AGAIN,
-    PULLS,
-    RELEASED,
-    RELEASES,
-    TOUCH,
-    TOUCHES,
-    K,
-    touch,
-)
+from pound_solve.integrate.series.curved import APART, PRESSED, PULLS, RELEASED, TOUCH, K, touch
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
+from pound_solve.integrate.series.own_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Series

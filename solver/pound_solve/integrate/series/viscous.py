@@ -26,12 +26,12 @@ from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import K, N, right_part
+from pound_solve.integrate.series.own_events import TURNS
 from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Series, Viscous
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
-TURNS = -7  #: event beside those of the branch: the force begins or ceases to go straight through zero
 SLOW = 1e-10  #: share of the largest rate, or of the force there, below which it does
 STOPPED = 1e-12  #: the same, of the rate one
 APART = 1e-3  #: share of this rate between the two events, lest they follow one another
