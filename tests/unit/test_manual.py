@@ -79,6 +79,26 @@ def test_every_module_is_on_the_map_of_the_developer_guide(package):
     assert not [x for x in names if not x.startswith("__") and f"`{x}`" not in table_of_places]
 
 
+#: what plain English says otherwise; regular expressions of phrases that the pages got rid of
+GONE = (
+    r"^Where\b", r"\bis not to be had\b", r"\breckoned with\b", r"\blest\b", r"\bwhat is more\b",
+    r"\b(?:is|are|was) told by\b", r"\blooked at\b", r"\blooked for\b", r"\blittle by little\b",
+    r"\bcomes? to lose\b", r"\bgiven up for\b", r"\bNone is made\b", r"\bdoes without\b",
+    r"\btells? of\b", r"\bdear(?:er|est)?\b", r"\bElse[,:]", r"\bOf several\b", r"\bstands? for one\b",
+    r"\bknown to us\b", r"\b(?:is|are) to be (?:had|seen|found)\b",
+)  # fmt: skip
+#: their texts come from the source
+GENERATED = {"messages.md", "deck-reference.md", "cole2011-study.md", "cole2011-readings.md"}
+
+
+@pytest.mark.parametrize("phrase", GONE)
+def test_the_pages_are_in_plain_english(phrase):
+    pages = [p for p in (*MANUAL.glob("*.md"), ROOT / "README.md") if p.name not in GENERATED]
+    assert len(pages) > 20
+    found = [(p.name, m[0]) for p in pages for m in re.finditer(phrase, prose(p), re.M)]
+    assert not found
+
+
 def test_formulas_are_closed():
     for page in (*MANUAL.glob("theory-*.md"), MANUAL / "hysteresis.md"):
         text = prose(page)
