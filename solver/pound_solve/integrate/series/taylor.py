@@ -116,60 +116,12 @@ class Taylor(KernelEngine):
         length = float(start.times[-1] - start.times[0])
         solved = Scheme(0.0, 0.0) if tolerance is None else Scheme(1.0, 1.0)  # nothing, or C and K
         super().__init__(system, start, monitored, recorder, solved, length, self.words)
-        o, laws = self.order, self.springs
         self.contacts, self.most = contacts, most
-        self.massless = massless.allocate(
-            self.linear,
-            system.stiffness[np.ix_(o, o)],
-            system.damping[np.ix_(o, o)],
-            system.law_rows[:, o],
-            np.array([0.0 if s.role.collides else s.steepest for s in laws], float),
-        )
         self.state.stale = 1
-        m, terms, rules = (
-            self.linear.mass.diagonals[0],
-            expansion.TERMS + 1,
-            expansion.TERMS // expansion.CHECK + 1,
-        )
-        kept = terms if tolerance is None else single_pole.LAST + 1
-        dampers = np.array([s.law.curved and s.role is Role.DAMPER for s in laws], bool)
-        is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
-        which, acting = self.place[np.flatnonzero(recorder.shown)], recorder.acting
-        modal = modal_tables.allocate(
-            system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), which
-        )
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
-        self.series = state.Series(
-            motion=np.zeros((terms, system.size)),
-            stiffness_product=np.zeros(system.size),
-            damping_product=np.zeros(system.size),
-            deformation=np.zeros((len(self.springs), terms)),
-            inputs=np.zeros((terms, system.inputs.shape[1])),
-            polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
-            inverse=np.divide(1.0, m, out=np.zeros(system.size), where=m > 0.0),
-            gauss=gauss_rules(rules),
-            springs=springs.allocate(
-                system.size,
-                self.laws.rows,
-                self.linear.inputs,
-                system.stiffness[np.ix_(o, o)] if len(self.massless.unknown) else None,
-            ),
-            massless=self.massless,
-            rigid=rigid.allocate(self.contacts, o, len(laws), terms),
-            curved=curved.allocate(np.array([s.law.curved and s.role.collides for s in laws], bool), terms),
-            friction=friction.allocate(
-                self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
-            ),
-            smooth=smooth.allocate(is_smooth, terms),
-            viscous=viscous.allocate(dampers, self.massless.law_number >= 0, terms),
-            strings=strings.allocate(len(self.laws.members.parameters), terms),
-            damped=self._damped(terms),
-            modal=modal,
-            shown=shown.allocate(which, acting, modal, kept),
-            single_pole=single_pole.allocate(system.size, system.inputs.shape[1], tolerance),
-            lengths=self.lengths,
-        )
+        self.massless = self._without_mass()
+        self.series = self._allocate(monitored, tolerance)
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
             curved.enter(self.laws, self.rules, self.series.curved, i)
@@ -177,6 +129,62 @@ class Taylor(KernelEngine):
         smooth.linearise(self.laws, self.rules, self.series.smooth)
         smooth.count_creep(self.laws, self.series.smooth, length)
         self._hold()
+
+    def _without_mass(self) -> state.Massless:
+        """Arrays of the unknowns without mass."""
+        o, system = self.order, self.system
+        return massless.allocate(
+            self.linear,
+            system.stiffness[np.ix_(o, o)],
+            system.damping[np.ix_(o, o)],
+            system.law_rows[:, o],
+            np.array([0.0 if s.role.collides else s.steepest for s in self.springs], float),
+        )
+
+    def _allocate(self, monitored: MonitoredOutputs, tolerance: float | None) -> state.Series:
+        """Arrays of the series, whose parts are empty where nothing in the system needs them."""
+        system, laws, held, o = self.system, self.laws, self.massless, self.order
+        n, n_inputs, n_laws, terms = (
+            system.size,
+            system.inputs.shape[1],
+            len(self.springs),
+            expansion.TERMS + 1,
+        )
+        mass, whole = self.linear.mass.diagonals[0], system.stiffness[np.ix_(o, o)]
+        is_curved = np.array([s.law.curved for s in self.springs], bool)
+        collides = np.array([s.role.collides for s in self.springs], bool)
+        is_damper = is_curved & np.array([s.role is Role.DAMPER for s in self.springs], bool)
+        is_smooth = np.array([s.law.rule.smooth is not None for s in self.springs], bool)
+        which, acting = self.place[np.flatnonzero(self.recorder.shown)], self.recorder.acting
+        modal = modal_tables.allocate(
+            system, laws.stiffness, monitored, self._intervals(), np.argsort(o), which
+        )
+        kept = terms if tolerance is None else single_pole.LAST + 1
+        return state.Series(
+            motion=np.zeros((terms, n)),
+            stiffness_product=np.zeros(n),
+            damping_product=np.zeros(n),
+            deformation=np.zeros((n_laws, terms)),
+            inputs=np.zeros((terms, n_inputs)),
+            polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
+            inverse=np.divide(1.0, mass, out=np.zeros(n), where=mass > 0.0),
+            gauss=gauss_rules(expansion.TERMS // expansion.CHECK + 1),
+            springs=springs.allocate(
+                n, laws.rows, self.linear.inputs, whole if len(held.unknown) else None
+            ),
+            massless=held,
+            rigid=rigid.allocate(self.contacts, o, n_laws, terms),
+            curved=curved.allocate(is_curved & collides, terms),
+            friction=friction.allocate(laws.coupled, laws.normal[laws.coupled], n_laws, terms),
+            smooth=smooth.allocate(is_smooth, terms),
+            viscous=viscous.allocate(is_damper, held.law_number >= 0, terms),
+            strings=strings.allocate(len(laws.members.parameters), terms),
+            damped=self._damped(terms),
+            modal=modal,
+            shown=shown.allocate(which, acting, modal, kept),
+            single_pole=single_pole.allocate(n, n_inputs, tolerance),
+            lengths=self.lengths,
+        )
 
     def _damped(self, terms: int) -> state.Damped:
         """The unknowns that dashpots act on, in the order of elimination."""
