@@ -223,7 +223,7 @@ def test_a_step_that_did_not_fit_is_tried_shorter(fit: float) -> None:
     lengths = record(state.Lengths)
     for parts in (1, 2, 1000):
         h = 1.0 / parts
-        march.shorten(lengths, h, fit)
+        march.shorten_step(lengths, h, fit)
         assert march.step_length(lengths, 0.0, 1.0) < h
 
 

@@ -87,7 +87,7 @@ def test_bounds_hold_between_the_ends_of_cells(monkeypatch: pytest.MonkeyPatch) 
         for i in range(len(own.offset)):
             for cell in range(cells):
                 y = np.array([value(own, i, cell, s, n_inputs) for s in SHARES])
-                low, high = modal.bounds(own, cell, i)
+                low, high = modal.cell_bounds(own, cell, i)
                 size = np.abs(own.values[:, i]).max() + 1e-12
                 assert (y > low - 1e-12 * size).all() and (y < high + 1e-12 * size).all()
                 ends = own.values[cell, i], own.values[cell + 1, i]

@@ -116,12 +116,12 @@ class EventDrivenRun(ABC):
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
         if self.laws[law].role.collides or not self._massless_laws[law]:
             return
-        from pound_solve.integrate.kernels.ties import arrives  # which most decks do not need
+        from pound_solve.integrate.kernels.ties import event_arrives  # which most decks do not need
 
         for i in np.flatnonzero(self._massless_laws & (np.arange(len(k)) != law)).tolist():
             own, rate, before = float(d[i]), float(v[i]), self.branches[i]
             for n, e in enumerate(() if self.laws[i].role.collides else before.events):
-                if arrives(*e, own, rate, float(self.largest[0, i])):
+                if event_arrives(*e, own, rate, float(self.largest[0, i])):
                     state = self.laws[i].law.transition(self.states[i], n, own, rate)
                     after = self.laws[i].branch(state)
                     if fell and falls(before, after, own):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.events.protocol import LOOKS, LocatedEvent, none
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
@@ -41,7 +41,7 @@ def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
     on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
     slope = on_d * laws.now.rate[i]
     if on_v != 0.0:
-        slope += on_v * along(laws.rows, i, step.now.acceleration)
+        slope += on_v * row_product(laws.rows, i, step.now.acceleration)
     return np.nan if slope < 0.0 else start_value(laws, i, e)
 
 
@@ -75,8 +75,8 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
     s0, s1 = on_d * laws.now.rate[i], on_d * laws.trial.rate[i]
     if on_v != 0.0:
-        s0 += on_v * along(laws.rows, i, step.now.acceleration)
-        s1 += on_v * along(laws.rows, i, step.trial.acceleration)
+        s0 += on_v * row_product(laws.rows, i, step.now.acceleration)
+        s1 += on_v * row_product(laws.rows, i, step.trial.acceleration)
     g0 = min(start_value(laws, i, e), 0.0)
     for k in range(1, LOOKS):
         if cubic_value(g0, g1, s0, s1, h, t * k / (LOOKS - 1)) > ALIKE * STILL * size:
@@ -97,8 +97,8 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     if g1 <= tol and not turns:
         return np.inf
     if on_v != 0.0:
-        s0 += on_v * along(laws.rows, i, step.now.acceleration)
-        s1 += on_v * along(laws.rows, i, step.trial.acceleration)
+        s0 += on_v * row_product(laws.rows, i, step.now.acceleration)
+        s1 += on_v * row_product(laws.rows, i, step.trial.acceleration)
     g0 = min(start_value(laws, i, e), 0.0)  # a branch holds when it is entered
     # accelerations of massless unknowns would mislead, as do limits that change
     if g1 > tol and g0 < 0.0 and (on_d == 0.0 or laws.normal[i] >= 0):

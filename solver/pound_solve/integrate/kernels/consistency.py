@@ -21,7 +21,7 @@ from pound_solve.integrate.kernels.corotational import (
     subtract_force,
 )
 from pound_solve.integrate.kernels.laws import linear_force
-from pound_solve.integrate.kernels.products import along, multiply
+from pound_solve.integrate.kernels.products import multiply, row_product
 from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Simulation
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
@@ -142,7 +142,7 @@ def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array
     multiply(linear.damping, velocity, out)
     for i in range(len(laws.rule)):
         if laws.damping[i] != 0.0:
-            force = laws.damping[i] * along(laws.rows, i, velocity)
+            force = laws.damping[i] * row_product(laws.rows, i, velocity)
             for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
                 out[laws.rows.columns[q]] += laws.rows.values[q] * force
 
@@ -169,7 +169,7 @@ def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
             trial.velocity[i] += change[i]
             trial.acceleration[i] = (trial.velocity[i] - now.velocity[i]) / h
     for i in range(len(laws.rule)):
-        laws.trial.rate[i] += along(laws.rows, i, change)
+        laws.trial.rate[i] += row_product(laws.rows, i, change)
 
 
 def jump_massless_rates(sim: Simulation) -> None:
@@ -209,7 +209,7 @@ def jump_massless_rates(sim: Simulation) -> None:
         now.velocity[i] += change[i]
     multiply(linear.damping, now.velocity, now.damping_force)
     for i in range(len(laws.rule)):
-        laws.now.rate[i] += along(laws.rows, i, change)
+        laws.now.rate[i] += row_product(laws.rows, i, change)
 
 
 def make_consistent(sim: Simulation) -> None:

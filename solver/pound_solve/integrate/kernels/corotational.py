@@ -86,7 +86,7 @@ def predicted_force(members: Corotational, c: int) -> None:
     add_tangent_force(members.tangent, c, members.predicted, members.trial.forces, 1.0)
 
 
-def anchor(members: Corotational, c: int) -> None:
+def anchor_member(members: Corotational, c: int) -> None:
     """Draw the line of member `c` through its force at the end of the step."""
     for j in range(6):
         members.at_zero[c, j] = members.trial.forces[c, j]
@@ -126,7 +126,7 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
             elif j > 3:
                 off /= length
             worst = off / allowed if not off <= worst * allowed else worst
-        anchor(members, c)
+        anchor_member(members, c)
     return worst
 
 

@@ -140,7 +140,7 @@ class KernelEngine(ABC):
                 self.tracker.switched(i, BranchKind.OPEN, kind, t, d, v, force)
                 laws.peak_force[i] = force
         for i in laws.coupled.tolist():
-            law_kernels.couple(laws, self.rules, self.step.now.acceleration, i)
+            law_kernels.couple_friction(laws, self.rules, self.step.now.acceleration, i)
         law_kernels.hold_friction_limits(laws)
         if told := provider().notice(advance):
             self.recorder.trial(t, told)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
 from pound_solve.integrate.protocol import STILL
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
@@ -23,7 +23,9 @@ from pound_solve.numerics.types import Array
 parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tuples
 
 
-def curve(laws: Laws, rules: Tables, i: int, d: float, v: float) -> tuple[float, float, float, float]:
+def curved_force(
+    laws: Laws, rules: Tables, i: int, d: float, v: float
+) -> tuple[float, float, float, float]:
     """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
     found: tuple[float, float, float, float] = curve_of(
         rules,
@@ -73,7 +75,7 @@ def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
     """Work done on law `i` so far, dashpots apart."""
     before: float = laws.entry_work[i]
     if laws.curved[i]:
-        return before + curve(laws, rules, i, d, 0.0)[3]
+        return before + curved_force(laws, rules, i, d, 0.0)[3]
     mean = 0.5 * laws.stiffness[i] * (d + laws.entry_deformation[i]) + laws.offset[i]
     done: float = before + mean * (d - laws.entry_deformation[i])
     return done
@@ -82,12 +84,12 @@ def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
 def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     """Force of law `i`."""
     if laws.curved[i]:
-        c = curve(laws, rules, i, d, v)
+        c = curved_force(laws, rules, i, d, v)
         return c[0] + proportional_damping(laws, i, c[1]) * v
     return linear_force(laws, i, d, v)
 
 
-def drag(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
+def drag_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     """Force whose work at the rate `v` law `i` dissipates, by its own rate and by proportional dashpots."""
     if not laws.curved[i]:
         dashpot: float = laws.damping[i] * v
@@ -106,7 +108,7 @@ def drag(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     return power / v + proportional_damping(laws, i, laws.stiffness[i]) * v
 
 
-def transition(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float) -> None:
+def leave_branch(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float) -> None:
     """Change the branch of law `i` by one of its events, at deformation `d` and rate `v`."""
     done = law_work(laws, rules, i, d)
     reversal = laws.events[i, event, 0] == 0.0 and laws.events[i, event, 2] == 0.0
@@ -143,7 +145,7 @@ def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> No
     """Strengths of the coupled laws at the end of a step."""
     for i in laws.coupled:
         j = laws.normal[i]
-        a = along(laws.rows, j, acceleration)
+        a = row_product(laws.rows, j, acceleration)
         set_normal_force(laws, i, laws.trial.deformation[j], laws.trial.rate[j], a)
         enter_branch(laws, rules, i)
 
@@ -165,26 +167,26 @@ def add_slip_work(laws: Laws, h: float) -> None:
             laws.friction_force[i], laws.entry_deformation[i] = f1, laws.trial.deformation[i]
 
 
-def couple(laws: Laws, rules: Tables, acceleration: Array, i: int) -> None:
+def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> None:
     """Let coupled law `i` engage or release with the contact that presses it, at the present normal
     force.
     """
     j = laws.normal[i]
-    d, v, a = laws.now.deformation[j], laws.now.rate[j], along(laws.rows, j, acceleration)
+    d, v, a = laws.now.deformation[j], laws.now.rate[j], row_product(laws.rows, j, acceleration)
     set_normal_force(laws, i, d, v, a)
     if laws.curved[j]:  # its tangent may be that of the end of a step that was tried
-        c = curve(laws, rules, j, d, v)
+        c = curved_force(laws, rules, j, d, v)
         laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(c[0], 0.0), c[1] * v + c[2] * a
     pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
     if pressed != (laws.branch[i] != 0):
-        transition(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
+        leave_branch(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
     enter_branch(laws, rules, i)
     laws.friction_force[i] = laws.stiffness[i] * laws.now.deformation[i] + laws.offset[i]
 
 
 def linearise_law(laws: Laws, rules: Tables, i: int, d: float, v: float) -> None:
     """Put the tangent of a curved law at deformation `d` and rate `v` in the place of its branch."""
-    c = curve(laws, rules, i, d, v)
+    c = curved_force(laws, rules, i, d, v)
     k, own = c[1], proportional_damping(laws, i, c[1])
     laws.stiffness[i], laws.damping[i] = k, c[2] + own
     laws.offset[i] = c[0] - k * d - c[2] * v

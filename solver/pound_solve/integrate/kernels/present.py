@@ -39,7 +39,7 @@ class KernelPresent:
         own, laws = self.engine, self.engine.laws
         before = int(laws.branch[law])
         laws.now.deformation[law], laws.now.rate[law] = d, v
-        law_kernels.transition(laws, own.rules, law, event_index, d, v)
+        law_kernels.leave_branch(laws, own.rules, law, event_index, d, v)
         self.enter(law)
         log_transition(own.sim, law, before, self.t, 0.0)
         own.fetch_transitions()

@@ -49,7 +49,7 @@ def multiply(a: Product, x: Array, out: Array) -> None:
         out[a.row[r]] += total
 
 
-def along(rows: Rows, i: int, x: Array) -> float:
+def row_product(rows: Rows, i: int, x: Array) -> float:
     """One sparse row times a vector."""
     total = 0.0
     for j in range(rows.pointers[i], rows.pointers[i + 1]):
@@ -57,7 +57,7 @@ def along(rows: Rows, i: int, x: Array) -> float:
     return total
 
 
-def reach(rows: Rows, i: int, x: Array) -> float:
+def row_magnitude(rows: Rows, i: int, x: Array) -> float:
     """Sum of the magnitudes of the terms of one sparse row times a vector."""
     total = 0.0
     for j in range(rows.pointers[i], rows.pointers[i + 1]):
@@ -65,7 +65,7 @@ def reach(rows: Rows, i: int, x: Array) -> float:
     return total
 
 
-def spread(rows: Rows, i: int, factor: float, out: Array) -> None:
+def add_row(rows: Rows, i: int, factor: float, out: Array) -> None:
     """Add `factor` times one sparse row to a vector."""
     for j in range(rows.pointers[i], rows.pointers[i + 1]):
         out[rows.columns[j]] += factor * rows.values[j]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pound_solve.integrate.kernels.consistency import make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Run, Simulation, Step
 from pound_solve.laws.functions import Tables, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
@@ -29,13 +29,13 @@ def count_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: flo
         laws.peak_force[law], laws.peak_time[law] = value, t
 
 
-def tracked(sim: Simulation, i: int) -> tuple[float, float]:
+def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     """Value and slope of tracked quantity `i` at the start of the coming step (see `tracker.Extremes`)."""
     linear, laws = sim.linear, sim.laws
     now, outputs, n_laws = sim.step.now, len(linear.monitored_constants), len(laws.rule)
     if i < outputs:
-        value = along(linear.monitored, i, now.displacement) + linear.monitored_constants[i]
-        slope = along(linear.monitored, i, now.velocity)
+        value = row_product(linear.monitored, i, now.displacement) + linear.monitored_constants[i]
+        slope = row_product(linear.monitored, i, now.velocity)
         for j in range(len(now.inputs)):
             value += linear.monitored_inputs[i, j] * now.inputs[j]
             slope += linear.monitored_inputs[i, j] * now.input_rates[j]
@@ -47,7 +47,7 @@ def tracked(sim: Simulation, i: int) -> tuple[float, float]:
     value, slope = laws.stiffness[law] * d + laws.offset[law], laws.stiffness[law] * v
     if laws.viscous[law] and laws.damping[law] != 0.0:  # damping is no part of a spring's force
         value += laws.damping[law] * v
-        slope += laws.damping[law] * along(laws.rows, law, now.acceleration)
+        slope += laws.damping[law] * row_product(laws.rows, law, now.acceleration)
         if touches_massless(
             linear, laws, law
         ):  # its acceleration is a jump of its velocity over a step, or a part
@@ -55,14 +55,14 @@ def tracked(sim: Simulation, i: int) -> tuple[float, float]:
     return value, slope
 
 
-def track(sim: Simulation, t: float, since: float) -> None:
+def track_peaks(sim: Simulation, t: float, since: float) -> None:
     """Count the motion at the start of the coming step into the peaks, and stationary points on the same
     branches since the last count, `since` ago.
     """
     laws, step = sim.laws, sim.step
     extremes, forces = step.extremes, len(sim.linear.monitored_constants) + len(laws.rule)
     for i in range(forces + len(laws.rule)):
-        value, slope = tracked(sim, i)
+        value, slope = tracked_value(sim, i)
         count_extreme(laws, step, i - forces, i, value, t)
         if since > 0.0 and extremes.slope[i] * slope < 0.0:
             sign = 1.0 if extremes.slope[i] > 0.0 else -1.0
@@ -124,7 +124,7 @@ def take_first_sample(sim: Simulation, rules: Tables) -> None:
     """Make the start consistent and keep it as the first sample."""
     run = sim.run
     make_consistent(sim)
-    track(sim, run.time, 0.0)
+    track_peaks(sim, run.time, 0.0)
     store_sample(sim, rules, run.time)
     run.started = 1
 

@@ -7,14 +7,14 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.consistency import lets_go, touches_massless
-from pound_solve.integrate.kernels.laws import restore_state, save_state, transition
+from pound_solve.integrate.kernels.laws import leave_branch, restore_state, save_state
 from pound_solve.integrate.kernels.state import Simulation
 from pound_solve.laws.functions import Tables
 
 TIED = 1e-9  #: share of its largest terms that an event function may lack of an event at the same instant
 
 
-def arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
+def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
     """Whether the event function ``a d + b v + c`` of a deformation alone comes to zero at `d` and the rate
     `v`, where the largest deformation so far is `largest`.
     """
@@ -45,9 +45,11 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
         d, v, k, f0 = laws.now.deformation[i], rate[i], laws.stiffness[i], laws.offset[i]
         for e in range(laws.n_events[i]):
             a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
-            if arrives(a, b, c, d, v, laws.largest_deformation[i]) and touches_massless(linear, laws, i):
+            if event_arrives(a, b, c, d, v, laws.largest_deformation[i]) and touches_massless(
+                linear, laws, i
+            ):
                 save_state(laws, i)
-                transition(laws, rules, i, e, d, v)
+                leave_branch(laws, rules, i, e, d, v)
                 if fell and lets_go(linear, laws, i, k, f0, d):
                     row[0, i], row[1, i], row[2, i] = -np.inf, laws.branch[i], v
                     found += 1

@@ -25,10 +25,10 @@ import numpy as np
 
 from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import internal, parameters
-from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.own_events import PARTS, RELEASES, TOUCHES
-from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Curved, Lengths, Series
 from pound_solve.laws.automaton import GAP
 from pound_solve.laws.functions import Tables, powers_of
@@ -62,13 +62,13 @@ def overlap(laws: Laws, i: int) -> float:
     return x
 
 
-def touch(laws: Laws, i: int) -> float:
+def touch_overlap(laws: Laws, i: int) -> float:
     """Overlap of contact `i` that counts as none."""
     x: float = TOUCH * (laws.largest_deformation[i] + abs(laws.parameters[i, GAP]))
     return x
 
 
-def enter(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
+def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     """Take over the branch that curved law `i` is on."""
     r = curved.number[i]
     found = powers_of(
@@ -78,7 +78,7 @@ def enter(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     own[K], own[N], own[C], own[Q], own[PULLS], own[SHIFT] = found
     x, v = overlap(laws, i), laws.now.rate[i]
     y = max(x - own[SHIFT], 0.0)
-    if own[K] == 0.0 or x <= touch(laws, i):
+    if own[K] == 0.0 or x <= touch_overlap(laws, i):
         curved.phase[r] = APART
     elif own[PULLS] > 0.0 or own[K] * y ** own[N] + own[C] * y ** own[Q] * v >= 0.0:
         curved.phase[r] = PRESSED
@@ -128,12 +128,12 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         i = curved.laws[r]
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
-            d[m] = deformation(laws, series, m, top, i)
+            d[m] = deformation_term(laws, series, m, top, i)
         x = d[0] - laws.parameters[i, GAP] - curved.numbers[r, SHIFT]
         force = force_term(curved.numbers[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force
         if curved.phase[r] == PRESSED:
-            spread(laws.rows, i, -h * h * force, new)
+            add_row(laws.rows, i, -h * h * force, new)
 
 
 def any_overlap(curved: Curved) -> bool:

@@ -15,14 +15,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.products import along, multiply, spread
+from pound_solve.integrate.kernels.products import add_row, multiply, row_product
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Simulation
 from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_right_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
-from pound_solve.integrate.series.rigid import hold
+from pound_solve.integrate.series.rigid import hold_contacts
 from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
-from pound_solve.integrate.series.springs import add_product, deformation
+from pound_solve.integrate.series.springs import add_product, deformation_term
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.strings import add_strings
 from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
@@ -66,7 +66,7 @@ def expand_deformations(laws: Laws, series: Series, terms: int, top: int) -> Non
     """Coefficients of the deformations up to `terms`; the inputs have `top` of them."""
     for k in range(terms + 1):
         for i in range(len(laws.rule)):
-            series.deformation[i, k] = deformation(laws, series, k, top, i)
+            series.deformation[i, k] = deformation_term(laws, series, k, top, i)
 
 
 def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
@@ -97,8 +97,8 @@ def structural_forces(
             out[i] = 0.0
         for r in range(len(held.heavy)):
             i = held.heavy[r]
-            elastic = along(springs.rows, springs.number[i], c[k])
-            out[i] = -on_stiffness * elastic - on_damping * along(held.heavy_damping, r, c[k + 1])
+            elastic = row_product(springs.rows, springs.number[i], c[k])
+            out[i] = -on_stiffness * elastic - on_damping * row_product(held.heavy_damping, r, c[k + 1])
         return
     multiply(linear.stiffness, c[k], series.stiffness_product)
     add_product(springs, c[k], series.stiffness_product)
@@ -126,8 +126,8 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
                     new[i] += springs.inputs[j, i] * push
     for q in range(springs.n_dashpots[0]):
         law = springs.dashpots[q]
-        force = rate * laws.damping[law] * deformation(laws, series, k + 1, top, law)
-        spread(laws.rows, law, -force, new)
+        force = rate * laws.damping[law] * deformation_term(laws, series, k + 1, top, law)
+        add_row(laws.rows, law, -force, new)
     add_contacts(laws, series, k, h, top, new)
     add_friction(laws, series, k, h, top, new)
     add_rests(laws, series.smooth, k, h, new)
@@ -143,7 +143,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
         for i in series.massless.unknown:  # loads on these are for `add_massless`
             new[i] = 0.0
-    hold(laws, series, k + 2, h, top)
+    hold_contacts(laws, series, k + 2, h, top)
     find_rests(laws, series, k + 2, top)
     find_drags(laws, series, k + 1, h, top)
     if len(series.massless.unknown):
@@ -158,7 +158,7 @@ def begin_series(sim: Simulation, series: Series, coefs: Array, begin: float, h:
     for i in range(len(now.displacement)):
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
     for k in range(2):
-        hold(laws, series, k, h, top)
+        hold_contacts(laws, series, k, h, top)
         find_rests(laws, series, k, top)
         if k == 1:
             find_drags(laws, series, 0, h, top)
@@ -173,7 +173,9 @@ def right_up_to(series: Series, terms: int, end: float) -> float:
     return drags_right_up_to(series.viscous, terms, end)
 
 
-def expand(sim: Simulation, series: Series, coefs: Array, begin: float, h: float) -> tuple[int, float]:
+def expand_series(
+    sim: Simulation, series: Series, coefs: Array, begin: float, h: float
+) -> tuple[int, float]:
     """Find the series of a step of length `h` from the present state on.
 
     Returns
@@ -220,7 +222,7 @@ def expand(sim: Simulation, series: Series, coefs: Array, begin: float, h: float
     return terms, right_up_to(series, terms, end)
 
 
-def derived(k: int, order: int, h: float) -> float:
+def derivative_factor(k: int, order: int, h: float) -> float:
     """What a derivative makes of the power `k`."""
     out = 1.0
     for j in range(order):
@@ -228,7 +230,7 @@ def derived(k: int, order: int, h: float) -> float:
     return out
 
 
-def evaluate(c: Array, terms: int, s: float, h: float, order: int, out: Array) -> None:
+def evaluate_motion(c: Array, terms: int, s: float, h: float, order: int, out: Array) -> None:
     """Derivative of an order of a motion with coefficients `c` at the place `s`."""
     n = len(out)
     for i in range(n):
@@ -236,8 +238,8 @@ def evaluate(c: Array, terms: int, s: float, h: float, order: int, out: Array) -
     k = terms
     while k >= order:
         # four terms at once: rows are read and written more slowly than they are reckoned with
-        f0, f1 = derived(k, order, h), derived(k - 1, order, h)
-        f2, f3 = derived(k - 2, order, h), derived(k - 3, order, h)
+        f0, f1 = derivative_factor(k, order, h), derivative_factor(k - 1, order, h)
+        f2, f3 = derivative_factor(k - 2, order, h), derivative_factor(k - 3, order, h)
         s2, s3, s4 = s * s, s * s * s, s * s * s * s
         if k - 3 >= order:
             for i in range(n):

@@ -4,8 +4,8 @@ and dampers: kernels."""
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.curved import PRESSED, enter, has_force
-from pound_solve.integrate.series.friction import rub, side_of, slides
+from pound_solve.integrate.series.curved import PRESSED, enter_curved, has_force
+from pound_solve.integrate.series.friction import is_sliding, side_of, update_friction
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import dashpot_rest
 from pound_solve.integrate.series.state import Series
@@ -17,14 +17,14 @@ from pound_solve.numerics.types import Array
 def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
     """Take over the branch that law `i` has gone to, where its force is a series."""
     if series.curved.number[i] >= 0:
-        enter(laws, rules, series.curved, i)
+        enter_curved(laws, rules, series.curved, i)
     if series.friction.number[i] >= 0:
         side_of(laws, series.friction, i)
 
 
 def has_series(series: Series, i: int) -> bool:
     """Whether the force of law `i` is a series of its own."""
-    own = is_held(series.rigid, i) or has_force(series.curved, i) or slides(series.friction, i)
+    own = is_held(series.rigid, i) or has_force(series.curved, i) or is_sliding(series.friction, i)
     return own or series.smooth.number[i] >= 0 or is_fast(series.viscous, i)
 
 
@@ -74,9 +74,9 @@ def force_at(force: Array, terms: int, s: float) -> float:
     return out
 
 
-def press(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
+def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
     """Make the forces at the place `s` those of the laws' branches."""
-    rub(laws, series, terms, s, h)
+    update_friction(laws, series, terms, s, h)
     rigid, curved = series.rigid, series.curved
     for q in range(rigid.n_held[0]):
         r = rigid.held[q]

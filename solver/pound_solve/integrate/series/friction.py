@@ -12,13 +12,13 @@ import numpy as np
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.allocation import places
-from pound_solve.integrate.kernels.laws import curve, linear_force
-from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.laws import curved_force, linear_force
+from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.own_events import LIFT
-from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Friction, Series
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
 from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS, RELEASED
@@ -52,7 +52,7 @@ def side_of(laws: Laws, friction: Friction, i: int) -> None:
     friction.side[friction.number[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
 
-def slides(friction: Friction, i: int) -> bool:
+def is_sliding(friction: Friction, i: int) -> bool:
     """Whether law `i` is friction that slides."""
     return bool(friction.number[i] >= 0 and friction.side[friction.number[i]] != 0.0)
 
@@ -64,9 +64,9 @@ def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
     if own >= 0:
         force: float = curved.force[own, k] if curved.phase[own] == PRESSED else 0.0
         return force
-    linear: float = laws.stiffness[j] * deformation(laws, series, k, top, j)
+    linear: float = laws.stiffness[j] * deformation_term(laws, series, k, top, j)
     if laws.damping[j] != 0.0:
-        linear += laws.damping[j] * (k + 1) / h * deformation(laws, series, k + 1, top, j)
+        linear += laws.damping[j] * (k + 1) / h * deformation_term(laws, series, k + 1, top, j)
     return linear + laws.offset[j] if k == 0 else linear
 
 
@@ -83,10 +83,10 @@ def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         if friction.side[r] != 0.0:
             share = friction.side[r] * laws.parameters[i, MUD] if friction.pressing[r] else 0.0
             friction.force[r, k] = share * friction.push[r, k]
-            spread(laws.rows, i, -h * h * friction.force[r, k], new)
+            add_row(laws.rows, i, -h * h * friction.force[r, k], new)
 
 
-def rub(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
+def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
     """Make the normal forces at the place `s` those of the friction laws, and the forces that follow."""
     friction = series.friction
     for r in range(len(friction.laws)):
@@ -103,7 +103,7 @@ def rub(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
             laws.offset[i] = friction.side[r] * laws.parameters[i, MUD] * max(push, 0.0)
 
 
-def touching(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
+def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
     """The event of friction `r` that follows from a change of its contact, whose force it is told; -1 for
     none.
     """
@@ -114,14 +114,14 @@ def touching(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
     d, v = laws.now.deformation[j], laws.now.rate[j]
     push, rate = linear_force(laws, j, d, v), laws.stiffness[j] * v
     if laws.curved[j]:
-        found = curve(laws, rules, j, d, v)
+        found = curved_force(laws, rules, j, d, v)
         push, rate = found[0], found[1] * v
     friction.pressing[r] = push >= 0.0
     laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(push, 0.0), rate
     return 0 if pressed else RELEASED
 
 
-def lift(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
+def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     """The instant at which the contact of friction `i` begins to pull, or to press again."""
     friction, p = series.friction, series.polynomial[POLYNOMIAL]
     r = friction.number[i]
@@ -138,7 +138,7 @@ def friction_event(laws: Laws, series: Series, terms: int, h: float, end: float,
     r, numbers = friction.number[i], laws.parameters[i]
     if laws.branch[i] == OPEN:
         return none(end)
-    first = lift(series, terms, end, i)
+    first = lift_event(series, terms, end, i)
     sliding, pressing = friction.side[r] != 0.0, 1.0 if friction.pressing[r] else 0.0
     for e in range(1 if sliding else 2):
         sign = friction.side[r] if sliding else 1.0 - 2.0 * e

@@ -7,10 +7,9 @@ import numpy as np
 from pound_solve.integrate.energy import Works, runs_away
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.consistency import make_consistent
-from pound_solve.integrate.kernels.laws import drag as law_drag
-from pound_solve.integrate.kernels.laws import law_force, linearise_law, transition
+from pound_solve.integrate.kernels.laws import drag_force, law_force, leave_branch, linearise_law
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
-from pound_solve.integrate.kernels.recording import log_transition, next_pause, store_sample, track
+from pound_solve.integrate.kernels.recording import log_transition, next_pause, store_sample, track_peaks
 from pound_solve.integrate.kernels.state import (
     CHATTER,
     DONE,
@@ -39,26 +38,25 @@ from pound_solve.integrate.series.expansion import (
     TERMS,
     begin_series,
     dot,
-    evaluate,
-    expand,
+    evaluate_motion,
+    expand_series,
     law_at,
     next_term,
 )
-from pound_solve.integrate.series.forces import count_largest, press, take_over
-from pound_solve.integrate.series.friction import slides, touching
-from pound_solve.integrate.series.massless import factorise, jumps, violated
+from pound_solve.integrate.series.forces import count_largest, take_over, update_branch_forces
+from pound_solve.integrate.series.friction import is_sliding, touch_event
+from pound_solve.integrate.series.massless import factorise_orders, first_violated, joints_jump
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.own_events import BENDS, LIFT, TURNS
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.shown import has_room, is_full, keep_step
 from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
-from pound_solve.integrate.series.smooth import bend, linearise
-from pound_solve.integrate.series.springs import add_up, deformation
+from pound_solve.integrate.series.smooth import linearise_smooth, shorten_for_bend
+from pound_solve.integrate.series.springs import add_up, deformation_term
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.strings import string_power
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
-from pound_solve.integrate.series.viscous import linearise as linearise_dampers
-from pound_solve.integrate.series.viscous import settled
+from pound_solve.integrate.series.viscous import linearise_dampers, tangents_settled
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 
@@ -82,13 +80,13 @@ def add_law_losses(
     rules: Tables,
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
-    press(laws, series, terms, s, h)
+    update_branch_forces(laws, series, terms, s, h)
     for i in range(len(laws.rule)):
         drag, curved = laws.damping[i], series.curved.number[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
         curves = overlaps or series.viscous.number[i] >= 0
-        sliding = slides(series.friction, i)
+        sliding = is_sliding(series.friction, i)
         if drag != 0.0 or moved or pressed or curves or sliding:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
@@ -98,7 +96,7 @@ def add_law_losses(
             if sliding:
                 laws.entry_work[i] += weight * laws.offset[i] * v
                 continue
-            lost = weight * v * (law_drag(laws, rules, i, d, v) if curves else drag * v)
+            lost = weight * v * (drag_force(laws, rules, i, d, v) if curves else drag * v)
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
                 works.contact += lost
@@ -143,7 +141,7 @@ def add_works(
     rule = min(carried, TERMS) // CHECK
     for g in range(2 * (rule + 1)):
         weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
-        evaluate(damped.motion, terms, s, h, 1, damped.velocity)
+        evaluate_motion(damped.motion, terms, s, h, 1, damped.velocity)
         multiply(damped.damping, damped.velocity, damped.force)
         works.damping += weight * dot(damped.velocity, damped.force)
         if moved:
@@ -159,7 +157,7 @@ def add_works(
                     if order == 1
                     else trial.acceleration
                 )
-                evaluate(series.motion, terms, s, h, order, out)
+                evaluate_motion(series.motion, terms, s, h, order, out)
             given, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
             put += weight * given
             works.damping += weight * lost
@@ -185,20 +183,20 @@ def count_reach(laws: Laws, series: Series, terms: int, end: float) -> None:
             laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
 
 
-def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, end: float) -> None:
+def accept_step(laws: Laws, now: MotionState, series: Series, terms: int, h: float, end: float) -> None:
     """Make the place `end` the present."""
-    evaluate(series.motion, terms, end, h, 0, now.displacement)
-    evaluate(series.motion, terms, end, h, 1, now.velocity)
+    evaluate_motion(series.motion, terms, end, h, 0, now.displacement)
+    evaluate_motion(series.motion, terms, end, h, 1, now.velocity)
     for i in range(len(laws.rule)):
         d, v = law_at(series, terms, end, h, i)
         if is_held(series.rigid, i):
             d, v = laws.entry_deformation[i], 0.0
-        if slides(series.friction, i):  # its work is added up
+        if is_sliding(series.friction, i):  # its work is added up
             laws.entry_deformation[i] = d
         laws.now.deformation[i], laws.now.rate[i] = d, v
         laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
         laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
-    press(laws, series, terms, end, h)
+    update_branch_forces(laws, series, terms, end, h)
     count_largest(laws, series)
 
 
@@ -207,7 +205,7 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
     laws, run = sim.laws, sim.run
     law = event.law
     before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
-    transition(laws, rules, law, event.event_index, d, v)
+    leave_branch(laws, rules, law, event.event_index, d, v)
     take_over(laws, rules, series, law)
     # the rate of what has no mass jumps, and with it the force of its dashpot
     force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
@@ -221,7 +219,7 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
 def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
     """Let friction follow the contacts that have touched or parted."""
     for r in range(len(series.friction.laws)):
-        event = touching(sim.laws, rules, series.friction, r)
+        event = touch_event(sim.laws, rules, series.friction, r)
         if event >= 0:
             law = series.friction.laws[r]
             change_branch(sim, rules, series, sim.run.time, LocatedEvent(law, event, 0.0))
@@ -236,7 +234,9 @@ def change_branches(
     stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
     change_branch(sim, rules, series, now, event)
     note_ties(sim, rules, event.law, stiffness, offset)
-    for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
+    for i in range(
+        len(laws.rule) if len(series.massless.unknown) == 0 else 0
+    ):  # else `settle_state` decides
         if i != event.law and series.rigid.number[i] < 0:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
             if own.law >= 0 and own.event_index >= 0 and own.time <= event.time + instant / h:
@@ -251,18 +251,18 @@ def count_instant(run: Run, h: float) -> None:
     run.last_event = run.time
 
 
-def renew(sim: Simulation, rules: Tables, series: Series) -> bool:
+def renew_branches(sim: Simulation, rules: Tables, series: Series) -> bool:
     """Take over the branches of the laws after a change, and the tangents of smooth ones; False where they
     leave an unknown without mass loose, which `run.fault` names.
     """
     laws, run = sim.laws, sim.run
     held = series.massless
     if run.stale:
-        linearise(laws, rules, series.smooth)
+        linearise_smooth(laws, rules, series.smooth)
         linearise_dampers(laws, rules, series.viscous)
         add_up(sim.linear, laws, series)
         renew_modes(laws, series)
-        fault = factorise(laws, held) if len(held.unknown) else -1
+        fault = factorise_orders(laws, held) if len(held.unknown) else -1
         if fault >= 0:
             run.fault = held.unknown[fault]
             return False
@@ -270,7 +270,7 @@ def renew(sim: Simulation, rules: Tables, series: Series) -> bool:
     return True
 
 
-def settle(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> int:
+def settle_state(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> int:
     """Give the unknowns without mass the rates that the present branches ask for, and closed rigid contacts
     their forces.
 
@@ -296,25 +296,25 @@ def settle(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: 
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
         change_friction(sim, rules, series)
-        if not renew(sim, rules, series):
+        if not renew_branches(sim, rules, series):
             return LOOSE
         begin_series(sim, series, coefs, begin, 1.0)
         if in_series:  # forces that are series need the accelerations
             next_term(sim, series, 0, 1.0, len(coefs))
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
-        if run.fault >= 0 and jumps(laws, series, len(coefs)):
+        if run.fault >= 0 and joints_jump(laws, series, len(coefs)):
             return FALL
         for i in held.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in held.laws:
-            laws.now.deformation[i] = deformation(laws, series, 0, len(coefs), i)
-            laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
-        if not settled(laws, series.viscous, now.velocity):
+            laws.now.deformation[i] = deformation_term(laws, series, 0, len(coefs), i)
+            laws.now.rate[i] = deformation_term(laws, series, 1, len(coefs), i)
+        if not tangents_settled(laws, series.viscous, now.velocity):
             run.stale = 1
             continue
-        law, event = violated(laws, held.laws)
+        law, event = first_violated(laws, held.laws)
         if law < 0:
-            press(laws, series, 2, 0.0, 1.0)
+            update_branch_forces(laws, series, 2, 0.0, 1.0)
             return DONE
         change_branch(sim, rules, series, run.time, LocatedEvent(law, event, 0.0))
     return CHATTER
@@ -344,7 +344,7 @@ def step_length(lengths: Lengths, t: float, goal: float) -> float:
     return t + h - t if goal + h > goal else 0.0
 
 
-def shorten(lengths: Lengths, h: float, fit: float) -> None:
+def shorten_step(lengths: Lengths, h: float, fit: float) -> None:
     """Have a step tried again that did not fit, shorter by a tenth at least: where less is missing, the
     equal parts of what is left would be as long as before.
     """
@@ -352,7 +352,7 @@ def shorten(lengths: Lengths, h: float, fit: float) -> None:
     lengths.rejected += 1
 
 
-def take(
+def take_step(
     sim: Simulation,
     series: Series,
     coefs: Array,
@@ -370,13 +370,13 @@ def take(
     if end > 0.0:
         keep_step(laws, series, terms, h, end, t)
         add_works(sim, series, coefs, t - begin, terms, series.lengths.carried, h, end, rules)
-        accept(laws, sim.step.now, series, terms, h, end)
+        accept_step(laws, sim.step.now, series, terms, h, end)
         if len(series.smooth.laws) + len(series.viscous.laws):
             run.stale = 1
     run.steps += 1
 
 
-def answer(
+def answer_event(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, terms: int, h: float,
     end: float, event: LocatedEvent,
 ) -> int:  # fmt: skip
@@ -393,7 +393,7 @@ def answer(
         series.friction.pressing[r] = not series.friction.pressing[r]
         return DONE
     if kind == BENDS:
-        bend(laws, series.smooth, lengths, event.law)
+        shorten_for_bend(laws, series.smooth, lengths, event.law)
         return DONE
     if kind == TURNS:
         sim.run.stale = 1
@@ -405,10 +405,10 @@ def answer(
         sim.run.fault = event.law
         return STRIKE
     change_branches(sim, rules, series, terms, h, end, event)
-    return settle(sim, rules, series, coefs, sim.run.time - begin)
+    return settle_state(sim, rules, series, coefs, sim.run.time - begin)
 
 
-def stride(
+def step_to_goal(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
 ) -> int:
     """Take steps on one piece of the excitation up to a goal, or until Python must look at it.
@@ -427,20 +427,20 @@ def stride(
         h = step_length(lengths, t, goal)
         if h == 0.0:
             return SHORT
-        if not renew(sim, rules, series):
+        if not renew_branches(sim, rules, series):
             return LOOSE
         if len(series.viscous.light):
-            why = settle(sim, rules, series, coefs, t - begin)
+            why = settle_state(sim, rules, series, coefs, t - begin)
             if why != DONE:
                 return why
         if is_implicit(series):
             terms, fit = expand_implicit(sim, series, coefs, t - begin, h)
             least, room = 1.0, 1.0
         else:
-            terms, fit = expand(sim, series, coefs, t - begin, h)
+            terms, fit = expand_series(sim, series, coefs, t - begin, h)
             least, room = CUT, TERMS / terms  # terms that were not needed make room for a longer step
         if not fit >= least:  # what is known of the motion from terms far too large misleads
-            shorten(lengths, h, fit)
+            shorten_step(lengths, h, fit)
             pause -= 1
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
@@ -452,10 +452,10 @@ def stride(
         event = first_event(laws, series, terms, h, end)
         at = event.time
         if h > FROM_REST * (goal - t) and begins_to_move(laws, series, event):
-            shorten(lengths, h, SHRINK)
+            shorten_step(lengths, h, SHRINK)
             pause -= 1
             continue
-        take(sim, series, coefs, begin, terms, h, at, rules)
+        take_step(sim, series, coefs, begin, terms, h, at, rules)
         if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)
@@ -466,13 +466,13 @@ def stride(
         if run.same_instant > CHANGES + CHANGES_PER_LAW * len(laws.rule):
             run.fault = event.law
             return CHATTER
-        why = answer(sim, rules, series, coefs, begin, terms, h, end, event)
+        why = answer_event(sim, rules, series, coefs, begin, terms, h, end, event)
         if why != DONE:
             return why
     return DONE
 
 
-def reach(
+def reach_goal(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
 ) -> int:
     """Take the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
@@ -483,7 +483,7 @@ def reach(
         return DONE
     from_modes(sim.laws, series.modal, step)
     series.modal.is_present[0] = 0
-    why = stride(
+    why = step_to_goal(
         sim, rules, series, coefs, begin, goal, pause
     )  # fmt: skip
     if why == DONE:
@@ -495,11 +495,11 @@ def reach(
     return why
 
 
-def sample(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> None:
+def take_sample(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> None:
     """Keep the present motion; as the first sample, count it into the peaks."""
     run = sim.run
     now = sim.step.now
-    why = settle(sim, rules, series, coefs, run.time - begin)
+    why = settle_state(sim, rules, series, coefs, run.time - begin)
     evaluate_inputs(coefs, run.time - begin, now.inputs, now.input_rates)
     form_load(sim.linear, now.inputs, now.load)
     multiply(sim.linear.damping, now.velocity, now.damping_force)
@@ -509,7 +509,7 @@ def sample(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: 
     for i in series.massless.unknown:
         now.acceleration[i] = 2.0 * series.motion[2, i]
     if run.started == 0:
-        track(sim, run.time, 0.0)
+        track_peaks(sim, run.time, 0.0)
         run.started = 1
     store_sample(sim, rules, run.time)
 
@@ -526,14 +526,14 @@ def load_times_place(linear: LinearSystem, step: Step, series: Series, coefs: Ar
 def settle_after_jump(
     sim: Simulation, rules: Tables, series: Series, goals: Goals, before: int, piece: int
 ) -> int:
-    """`settle` where another piece of the excitation begins: unknowns without mass move with loads that
-    jump, whose work is that of the mean load.
+    """Settle the state where another piece of the excitation begins: unknowns without mass move with loads
+    that jump, whose work is that of the mean load.
     """
     old, new = sim.run.time - goals.begins[before], sim.run.time - goals.begins[piece]
     put = 0.0
     for sign in (-1.0, 1.0):
         if sign > 0.0:
-            why = settle(sim, rules, series, goals.coefs[piece], new)
+            why = settle_state(sim, rules, series, goals.coefs[piece], new)
             if why != DONE:
                 return why
         put += 0.5 * sign * load_times_place(sim.linear, sim.step, series, goals.coefs[before], old)
@@ -554,19 +554,19 @@ def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
         piece = goals.piece[goal]
         begin, coefs = goals.begins[piece], goals.coefs[piece]
         if run.started == 0:
-            sample(sim, rules, series, coefs, begin)
+            take_sample(sim, rules, series, coefs, begin)
         # the excitation may have a kink here, or jump
         before = goals.piece[max(goal - 1, 0)]
         why = settle_after_jump(sim, rules, series, goals, before, piece)
         if why != DONE:
             return why
-        why = reach(sim, rules, series, coefs, begin, goals.times[goal], pause)
+        why = reach_goal(sim, rules, series, coefs, begin, goals.times[goal], pause)
         if why != DONE:
             return why
         run.goal += 1
         if goals.sampled[goal]:
             from_modes(sim.laws, series.modal, sim.step)
-            sample(sim, rules, series, coefs, begin)
+            take_sample(sim, rules, series, coefs, begin)
             if run.kept == len(sim.buffers.time):
                 return FULL
     return DONE

@@ -28,11 +28,11 @@ from pound_solve.integrate.kernels.allocation import (
     sparse_rows,
 )
 from pound_solve.integrate.kernels.laws import linear_force
-from pound_solve.integrate.kernels.products import along, spread
+from pound_solve.integrate.kernels.products import add_row, row_product
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.smooth import Q, dashpot_rest
-from pound_solve.integrate.series.springs import deformation, load
+from pound_solve.integrate.series.springs import deformation_term, load_term
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics.ldl import factor
 from pound_solve.numerics.matrices import (
@@ -105,7 +105,7 @@ def allocate(
     )
 
 
-def form(laws: Laws, held: Massless, which: int) -> None:
+def form_matrix(laws: Laws, held: Massless, which: int) -> None:
     """Fill in C of the unknowns of order one, or K of those of order zero; ones for the others."""
     for q in range(len(held.matrix)):
         held.matrix[q] = held.on_pattern[which, q]
@@ -116,7 +116,7 @@ def form(laws: Laws, held: Massless, which: int) -> None:
             held.matrix[held.pair_places[q]] += own * held.pair_values[q]
 
 
-def factorise(laws: Laws, held: Massless) -> int:
+def factorise_orders(laws: Laws, held: Massless) -> int:
     """Find the orders of the unknowns on the present branches, and factorise C and K for them.
 
     Returns
@@ -125,7 +125,7 @@ def factorise(laws: Laws, held: Massless) -> int:
         -1, or the number of one that nothing holds, or that would snap through, by K; one that is held by
         dashpots between such unknowns alone, by C.
     """
-    form(laws, held, DAMPING)
+    form_matrix(laws, held, DAMPING)
     held.counts[DAMPING] = held.counts[STIFFNESS] = 0
     for i in range(len(held.unknown)):
         held.damped[i] = held.matrix[held.pattern.ap[i]] != 0.0
@@ -134,7 +134,7 @@ def factorise(laws: Laws, held: Massless) -> int:
         held.counts[which] += 1
     for which in range(2):
         if which == STIFFNESS:
-            form(laws, held, STIFFNESS)
+            form_matrix(laws, held, STIFFNESS)
         for q in range(len(held.matrix)):
             i, j = held.pattern.ai[q], held.column[q]
             if held.damped[i] != (which == DAMPING) or held.damped[j] != (which == DAMPING):
@@ -150,11 +150,11 @@ def factorise(laws: Laws, held: Massless) -> int:
     return -1
 
 
-def undamped(laws: Laws, held: Massless) -> Index:
+def undamped_unknowns(laws: Laws, held: Massless) -> Index:
     """Numbers of the unknowns of order one that move where their dashpots do not resist: of the motion that
     is resisted least.
     """
-    form(laws, held, DAMPING)
+    form_matrix(laws, held, DAMPING)
     c = np.zeros((len(held.unknown), len(held.unknown)))
     c[held.pattern.ai, held.column] = c[held.column, held.pattern.ai] = held.matrix
     at = np.flatnonzero(held.damped)
@@ -179,45 +179,45 @@ def solve_order(held: Massless, which: int) -> None:
         x[j] = t
 
 
-def balance(series: Series, k: int, top: int, which: int) -> None:
+def balance_forces(series: Series, k: int, top: int, which: int) -> None:
     """Right sides of the unknowns of one order: load less the forces of K, of the laws' springs and what
     tangents leave at the coefficients `k`.
     """
     held, springs, c = series.massless, series.springs, series.motion[k]
     members, x = held.members[which], held.right_side
     for q in range(held.counts[which]):
-        x[members[q]] = -along(springs.rows, held.unknown[members[q]], c)
+        x[members[q]] = -row_product(springs.rows, held.unknown[members[q]], c)
     if k < top:
         for q in range(held.counts[which]):
-            x[members[q]] += load(springs, series, k, top, held.unknown[members[q]])
+            x[members[q]] += load_term(springs, series, k, top, held.unknown[members[q]])
     smooth = series.smooth
     for r in range(len(smooth.laws)):
         n = held.law_number[smooth.laws[r]]
         if n >= 0:
-            spread(held.rows, n, -smooth.numbers[r, Q] * smooth.rest[r, k], x)
+            add_row(held.rows, n, -smooth.numbers[r, Q] * smooth.rest[r, k], x)
     viscous = series.viscous
     for r in range(len(viscous.laws)):
         n = held.law_number[viscous.laws[r]]
         if n >= 0 and viscous.fast[r]:
-            spread(held.rows, n, -viscous.rest[r, k], x)
+            add_row(held.rows, n, -viscous.rest[r, k], x)
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     """Add the unknowns of order one to the coefficients `k` > 0."""
     held, c, x = series.massless, series.motion, series.massless.right_side
     members = held.members[DAMPING]
-    balance(series, k - 1, top, DAMPING)
+    balance_forces(series, k - 1, top, DAMPING)
     for q in range(held.counts[DAMPING]):
-        x[members[q]] -= k / h * along(held.damping, members[q], c[k])
+        x[members[q]] -= k / h * row_product(held.damping, members[q], c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
         if held.law_number[i] >= 0:
-            force = k / h * laws.damping[i] * deformation(laws, series, k, top, i)
-            spread(held.rows, held.law_number[i], -force, x)
+            force = k / h * laws.damping[i] * deformation_term(laws, series, k, top, i)
+            add_row(held.rows, held.law_number[i], -force, x)
     for r in range(len(series.smooth.laws)):
         n = held.law_number[series.smooth.laws[r]]
         if n >= 0:
-            spread(held.rows, n, -dashpot_rest(laws, series.smooth, r, k - 1, h), x)
+            add_row(held.rows, n, -dashpot_rest(laws, series.smooth, r, k - 1, h), x)
     solve_order(held, DAMPING)
     for q in range(held.counts[DAMPING]):
         c[k, held.unknown[members[q]]] = x[members[q]] * (h / k)
@@ -234,24 +234,24 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
             c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
     if k > 0 and held.counts[DAMPING] > 0:
         add_damped(laws, series, k, h, top)
-    balance(series, k, top, STIFFNESS)
+    balance_forces(series, k, top, STIFFNESS)
     solve_order(held, STIFFNESS)
     members = held.members[STIFFNESS]
     for q in range(held.counts[STIFFNESS]):
         c[k, held.unknown[members[q]]] = x[members[q]]
 
 
-def jumps(laws: Laws, series: Series, top: int) -> bool:
+def joints_jump(laws: Laws, series: Series, top: int) -> bool:
     """Whether the laws at joints without mass deform in no time; the inputs have `top` coefficients."""
     held, most, far = series.massless, 0.0, 0.0
     for i in held.laws:
         d = laws.now.deformation[i]
         most = max(most, abs(d), laws.largest_deformation[i])
-        far = max(far, abs(deformation(laws, series, 0, top, i) - d))
+        far = max(far, abs(deformation_term(laws, series, 0, top, i) - d))
     return far > JUMP * most
 
 
-def violated(laws: Laws, which: Index) -> tuple[int, int]:
+def first_violated(laws: Laws, which: Index) -> tuple[int, int]:
     """The first of some laws at fault and its event: its rate has jumped, and an event function that
     depends on it is above zero; -1 where there is none.
 

@@ -22,7 +22,7 @@ import numpy as np
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation, Step
 from pound_solve.integrate.series.expansion import CHECK, TERMS, dot, expand_inputs
@@ -39,7 +39,7 @@ DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_m
 
 
 @loose
-def product(a: Array, x: Array, rows: int, columns: int, out: Array, before: float) -> None:
+def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, before: float) -> None:
     """Product of a matrix with a vector, of so many rows and columns, and `before` times what was there."""
     for i in range(rows):
         total = before * out[i]
@@ -65,7 +65,7 @@ def renew_modes(laws: Laws, series: Series) -> None:
         load, rest = modal.x[b, 0], modal.rest[b]
         for i in range(n):
             load[i] = series.springs.constant[modal.unknowns[b, i]]
-        product(modal.held[b], load, twice, n, rest, 0.0)
+        multiply_dense(modal.held[b], load, twice, n, rest, 0.0)
         for i in range(modal.counts[b, FOLLOWED]):
             at = modal.followed[b, i]
             for j in range(twice):
@@ -81,7 +81,7 @@ def to_modes(modal: Modal, step: Step) -> None:
             motion = now.displacement if kind == DISPLACEMENT else now.velocity
             for i in range(n):
                 modal.x[b, 0, i] = motion[modal.unknowns[b, i]]
-            product(modal.to_modes[b, kind], modal.x[b, 0], twice, n, modal.modes[b], kind)
+            multiply_dense(modal.to_modes[b, kind], modal.x[b, 0], twice, n, modal.modes[b], kind)
     modal.is_present[0] = 1
 
 
@@ -94,11 +94,11 @@ def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
         n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
         for kind in range(2):
             out = now.displacement if kind == DISPLACEMENT else now.velocity
-            product(modal.from_modes[b, kind], modal.modes[b], n, twice, modal.x[b, 0], 0.0)
+            multiply_dense(modal.from_modes[b, kind], modal.modes[b], n, twice, modal.x[b, 0], 0.0)
             for i in range(n):
                 out[modal.unknowns[b, i]] = modal.x[b, 0, i]
     for i in range(len(laws.rule)):
-        d, v = along(laws.rows, i, now.displacement), along(laws.rows, i, now.velocity)
+        d, v = row_product(laws.rows, i, now.displacement), row_product(laws.rows, i, now.velocity)
         laws.now.deformation[i], laws.now.rate[i] = d, v
         laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
         laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
@@ -127,7 +127,7 @@ def start_interval(modal: Modal, inputs: Array) -> None:
                 x[place, count + j] = re[j] * x[0, count + j] + im[j] * x[0, j]
 
 
-def follow(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
+def follow_cells(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
     """Find the followed quantities at the ends of all cells, and how far they depart from chords."""
     n_followed, outputs, ends = len(modal.offset), len(linear.monitored_constants), len(modal.values)
     for i in range(n_followed):
@@ -150,7 +150,7 @@ def follow(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
                 modal.values[end, at] += dot(row, x[2 * end, :size])
 
 
-def bounds(modal: Modal, cell: int, i: int) -> tuple[float, float]:
+def cell_bounds(modal: Modal, cell: int, i: int) -> tuple[float, float]:
     """Bounds of a followed quantity over a cell."""
     begin, end = modal.values[cell, i], modal.values[cell + 1, i]
     return min(begin, end) - modal.apart[i], max(begin, end) + modal.apart[i]
@@ -203,7 +203,7 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
 
 def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
     """Whether the bounds let law `i` leave its branch within a cell; they do not know its rate."""
-    low, high = bounds(modal, cell, i)
+    low, high = cell_bounds(modal, cell, i)
     for e in range(laws.n_events[i]):
         on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
         if on_v != 0.0 or (on_d != 0.0 and not max(on_d * low, on_d * high) + constant <= 0.0):
@@ -225,7 +225,7 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int) -> bool:
     return True
 
 
-def exceeds(extremes: Extremes, i: int, low: float, high: float) -> bool:
+def exceeds_peaks(extremes: Extremes, i: int, low: float, high: float) -> bool:
     """Whether bounds let a tracked quantity exceed its peaks."""
     return not (high <= extremes.high[i] and low >= extremes.low[i])
 
@@ -256,18 +256,20 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
         count_ends(laws, step, modal, n_laws + i, i, 1.0, 0.0, t)
     for cell in range(cells):
         for i in range(n_laws):
-            low, high = bounds(modal, cell, i)
+            low, high = cell_bounds(modal, cell, i)
             k, offset = laws.stiffness[i], laws.offset[i]
             least, most = min(k * low, k * high) + offset, max(k * low, k * high) + offset
             force = outputs + n_laws + i
-            if exceeds(extremes, outputs + i, low, high) or exceeds(extremes, force, least, most):
+            if exceeds_peaks(extremes, outputs + i, low, high) or exceeds_peaks(
+                extremes, force, least, most
+            ):
                 terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
                 if terms == 0:
                     return False
                 track_law(laws, step, series, terms, h, 1.0, t + cell * h, outputs, i)
         for i in range(outputs):
-            low, high = bounds(modal, cell, n_laws + i)
-            if exceeds(extremes, i, low, high):
+            low, high = cell_bounds(modal, cell, n_laws + i)
+            if exceeds_peaks(extremes, i, low, high):
                 p = series.polynomial[POLYNOMIAL]
                 terms = expand_in_cell(modal, cell, n_laws + i, n_inputs, p)
                 if terms == 0:
@@ -319,7 +321,7 @@ def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, g
         to_modes(modal, sim.step)
     expand_inputs(series, coefs, run.time - begin, h)
     start_interval(modal, series.inputs)
-    follow(sim.linear, modal, n_inputs)
+    follow_cells(sim.linear, modal, n_inputs)
     if not is_quiet(sim.laws, series, n_inputs):
         return False
     if not count_peaks(sim, series, n_inputs, run.time):

@@ -219,11 +219,11 @@ def allocate(
         apart=np.zeros(n_followed),
     )
     for i, ((unknowns, p), own) in enumerate(zip(parts, seen)):
-        fill(out, i, p, own, place[unknowns], shown[own])
+        fill_tables(out, i, p, own, place[unknowns], shown[own])
     return out
 
 
-def fill(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: Index) -> None:
+def fill_tables(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: Index) -> None:
     """Fill in the tables of part `b`; `seen` are the numbers of the `shown` of its `unknowns`."""
     modes, rate = part.modes, part.rate
     h, steady = part.length, part.steady

@@ -9,7 +9,7 @@ from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.present import KernelPresent
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
 from pound_solve.integrate.series.forces import take_over
-from pound_solve.integrate.series.massless import violated
+from pound_solve.integrate.series.massless import first_violated
 from pound_solve.integrate.series.state import Series
 from pound_solve.laws.automaton import PUSH
 from pound_solve.numerics.types import Array, Index
@@ -55,14 +55,14 @@ class Present(KernelPresent):
         """Let those of some laws leave their branches whose rates an impact has turned."""
         now, laws = self.engine.laws.now, self.engine.laws
         for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
-            law, event = violated(laws, which)
+            law, event = first_violated(laws, which)
             if law < 0:
                 return
             self.transition(law, event, float(now.deformation[law]), float(now.rate[law]))
 
     def hand_back_impact(self, known: Index) -> None:
         """Let the run go on after an impact; the rates of the laws `known` do not depend on unknowns
-        without mass, which `march.settle` looks after.
+        without mass, which `march.settle_state` looks after.
         """
         laws = self.engine.laws
         self.hand_back()

@@ -18,7 +18,7 @@ import numpy as np
 from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.rigid.contacts import RigidContacts
-from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Rigid, Series
 from pound_solve.numerics.types import Flags, Index
 
@@ -54,7 +54,7 @@ def is_held(rigid: Rigid, law: int) -> bool:
     return bool(rigid.number[law] >= 0 and rigid.is_held[rigid.number[law]])
 
 
-def hold(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
+def hold_contacts(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     """Correct the coefficients `k` of the unknowns with mass so that closed contacts stay closed.
 
     The inputs have `top` coefficients.
@@ -63,7 +63,7 @@ def hold(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     n = rigid.n_held[0]
     for q in range(n):
         r = rigid.held[q]
-        off = deformation(laws, series, k, top, rigid.laws[r])
+        off = deformation_term(laws, series, k, top, rigid.laws[r])
         rigid.violation[q] = off - rigid.gap[r] if k == 0 else off
     for q in range(n):
         r, x = rigid.held[q], 0.0

@@ -38,7 +38,7 @@ import math
 import numpy as np
 
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
-from pound_solve.integrate.kernels.products import along, multiply, spread
+from pound_solve.integrate.kernels.products import add_row, multiply, row_product
 from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Simulation
 from pound_solve.integrate.series.expansion import dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
@@ -114,7 +114,7 @@ def elastic_force(linear: LinearSystem, series: Series, u: Array, out: Array) ->
     springs = series.springs
     if len(series.massless.unknown):  # K is part of these sums then
         for r in range(len(springs.row)):
-            out[springs.row[r]] = along(springs.rows, r, u)
+            out[springs.row[r]] = row_product(springs.rows, r, u)
         return
     multiply(linear.stiffness, u, out)
     add_product(springs, u, out)
@@ -152,7 +152,7 @@ def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array
             for j in range(own.inputs.shape[1]):
                 rate += change * (k + 1) / h * laws.inputs[law, j] * series.inputs[k + 1, j]
         if rate != 0.0:
-            spread(laws.rows, law, -scale * laws.damping[law] * rate, out)
+            add_row(laws.rows, law, -scale * laws.damping[law] * rate, out)
 
 
 def energy(linear: LinearSystem, series: Series, n: int) -> float:
@@ -219,7 +219,7 @@ def write_in_powers(series: Series) -> None:
 def expand_implicit(
     sim: Simulation, series: Series, coefs: Array, begin: float, h: float
 ) -> tuple[int, float]:
-    """Find the series of a step of length `h` from the present state on, as `expansion.expand` does.
+    """Find the series of a step of length `h` from the present state on, as `expansion.expand_series` does.
 
     Returns
     -------

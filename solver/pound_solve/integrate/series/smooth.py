@@ -26,12 +26,12 @@ import numpy as np
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier
 from pound_solve.integrate.kernels.allocation import places
-from pound_solve.integrate.kernels.laws import curve, internal, parameters, proportional_damping
-from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.laws import curved_force, internal, parameters, proportional_damping
+from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import NEAR, power_term, right_part
 from pound_solve.integrate.series.own_events import BENDS
-from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Lengths, Series, Smooth
 from pound_solve.laws.automaton import PAST
 from pound_solve.laws.functions import Tables, smooth_of
@@ -78,14 +78,14 @@ def is_product(n: float) -> bool:
     return n == np.floor(n) and n < 2.0**BITS
 
 
-def linearise(laws: Laws, rules: Tables, smooth: Smooth) -> None:
+def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
     """Put the present tangents in the place of the smooth laws' branches, and see how far their series
     hold.
     """
     for r in range(len(smooth.laws)):
         i, own = smooth.laws[r], smooth.numbers[r]
         d = laws.now.deformation[i]
-        force, tangent, _, _ = curve(laws, rules, i, d, 0.0)
+        force, tangent, _, _ = curved_force(laws, rules, i, d, 0.0)
         own[W], own[Y], own[N], own[A], own[B], k, own[Q] = smooth_of(
             rules,
             laws.rule[i],
@@ -137,7 +137,7 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
 def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
     """Take in the coefficient `k` of the motion: that of the force of smooth law `r`, and of the power."""
     smooth, i = series.smooth, series.smooth.laws[r]
-    own, share, d = smooth.numbers[r], smooth.share[r], deformation(laws, series, k, top, i)
+    own, share, d = smooth.numbers[r], smooth.share[r], deformation_term(laws, series, k, top, i)
     series.deformation[i, k] = d
     smooth.force[r, k] = laws.stiffness[i] * d + own[Q] * smooth.rest[r, k]
     smooth.part[r, k] = own[SLOPE] * d + smooth.rest[r, k]
@@ -182,10 +182,10 @@ def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
     """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
     for r in range(len(smooth.laws)):
         rest = smooth.numbers[r, Q] * smooth.rest[r, k] + dashpot_rest(laws, smooth, r, k, h)
-        spread(laws.rows, smooth.laws[r], -h * h * rest, new)
+        add_row(laws.rows, smooth.laws[r], -h * h * rest, new)
 
 
-def defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
+def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     """What w/y lacks at the place `s` for the power's series, which is cut off, as a share of it."""
     own, share = smooth.numbers[r], smooth.share[r, 0]
     x, power = 0.0, 0.0
@@ -206,7 +206,7 @@ def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
         end = right_part(smooth.force[r], terms, end)
         if smooth.bent[r]:
             at = min(end, 1.0)
-            lacks = defect(smooth, r, terms, at)
+            lacks = power_defect(smooth, r, terms, at)
             if not lacks <= LACKING:
                 end = at * (LACKING / lacks) ** (1.0 / terms)
     return end
@@ -227,7 +227,7 @@ def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> Locat
     return first
 
 
-def bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> None:
+def shorten_for_bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> None:
     """Choose the length of the first step of smooth law `i` whose power is seen."""
     r = smooth.number[i]
     if smooth.high[r] < np.inf:

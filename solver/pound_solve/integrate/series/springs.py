@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from pound_solve.integrate.kernels.allocation import coupled_pairs, places
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
 from pound_solve.numerics.ldl import pointers
@@ -92,10 +92,10 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
 def add_product(springs: Springs, x: Array, out: Array) -> None:
     """Add the forces of the springs at displacements `x`."""
     for r in range(len(springs.row)):
-        out[springs.row[r]] += along(springs.rows, r, x)
+        out[springs.row[r]] += row_product(springs.rows, r, x)
 
 
-def load(springs: Springs, series: Series, k: int, top: int, i: int) -> float:
+def load_term(springs: Springs, series: Series, k: int, top: int, i: int) -> float:
     """Coefficient `k` of the load on an unknown less the constant forces of laws; the inputs have `top`."""
     out: float = springs.constant[i] if k == 0 else 0.0
     if k < top:
@@ -104,9 +104,9 @@ def load(springs: Springs, series: Series, k: int, top: int, i: int) -> float:
     return out
 
 
-def deformation(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
+def deformation_term(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
     """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
-    d = along(laws.rows, i, series.motion[k])
+    d = row_product(laws.rows, i, series.motion[k])
     if k < top:
         for j in range(series.inputs.shape[1]):
             d += laws.inputs[i, j] * series.inputs[k, j]

@@ -124,9 +124,9 @@ class Taylor(KernelEngine):
         self.series = self._allocate(monitored, tolerance)
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
-            curved.enter(self.laws, self.rules, self.series.curved, i)
-        viscous.linearise(self.laws, self.rules, self.series.viscous)
-        smooth.linearise(self.laws, self.rules, self.series.smooth)
+            curved.enter_curved(self.laws, self.rules, self.series.curved, i)
+        viscous.linearise_dampers(self.laws, self.rules, self.series.viscous)
+        smooth.linearise_smooth(self.laws, self.rules, self.series.smooth)
         smooth.count_creep(self.laws, self.series.smooth, length)
         self._hold()
 
@@ -312,7 +312,7 @@ class Taylor(KernelEngine):
         fault, held = int(self.state.fault), self.massless
         name, n = self.system.name(int(self.order[fault])), int(np.flatnonzero(held.unknown == fault)[0])
         if held.damped[n]:
-            whole = massless.undamped(self.laws, held)
+            whole = massless.undamped_unknowns(self.laws, held)
             names = [self.system.name(i) for i in sorted(self.order[held.unknown[whole]].tolist())]
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"

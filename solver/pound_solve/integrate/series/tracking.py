@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, rate_size, size
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Simulation, Step
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.series.curved import APART, PRESSED, PULLS, RELEASED, TOUCH, K, touch
+from pound_solve.integrate.series.curved import APART, PRESSED, PULLS, RELEASED, TOUCH, K, touch_overlap
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
 from pound_solve.integrate.series.own_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
@@ -20,7 +20,7 @@ from pound_solve.integrate.series.viscous import turn_event
 from pound_solve.laws.automaton import GAP
 
 
-def parting(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
+def parting_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
     r, p = series.rigid.number[i], series.polynomial[POLYNOMIAL]
     still = STILL * series.rigid.largest[r]
@@ -37,7 +37,7 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
     phase, d, p = curved.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
     if curved.numbers[r, K] == 0.0:
         return first
-    sign, overlap = 1.0, touch(laws, i)
+    sign, overlap = 1.0, touch_overlap(laws, i)
     if phase == APART:  # where nothing has moved yet, the step tells how far
         overlap = max(overlap, TOUCH * size(series.deformation, i, terms))
     else:
@@ -66,7 +66,7 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
         if on_d == 0.0 and on_v == 0.0:
             continue
         if is_held(series.rigid, i):
-            return parting(series, terms, end, i)
+            return parting_event(series, terms, end, i)
         scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
         most = on_d * d[i, 0] + on_v * d[i, 1] / h + constant + abs(on_d) * far + abs(on_v) * faster
         if most <= STILL * scale:  # most laws are far from all their events
@@ -131,7 +131,7 @@ def track_outputs(
     p = series.polynomial[POLYNOMIAL]
     for i in range(len(linear.monitored_constants)):
         for k in range(terms + 1):
-            p[k] = along(linear.monitored, i, series.motion[k])
+            p[k] = row_product(linear.monitored, i, series.motion[k])
         for k in range(min(top, terms + 1)):
             for j in range(series.inputs.shape[1]):
                 p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]

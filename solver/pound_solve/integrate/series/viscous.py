@@ -8,7 +8,7 @@ the step, a linear dashpot, and a rest that is known from the terms before,
           r_k = \frac{1}{k x_0} \sum_{j=1}^{k-1} (n j - k + j)\, x_j\, |f|_{k-j} .
 
 So nodes without mass follow at the rate that their springs leave to the tangents: Newton's iteration finds
-it at the start of every step (`march.settle`).
+it at the start of every step (`march.settle_state`).
 
 The series ends where the damper turns, before or behind: steps shorten in proportion to the rate.  Where
 it, or the force, is below a share `SLOW` of the largest, the force goes straight through zero: what that
@@ -23,11 +23,11 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier
 from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import internal, parameters
-from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import K, N, right_part
 from pound_solve.integrate.series.own_events import TURNS
-from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Series, Viscous
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
@@ -58,7 +58,7 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
     )
 
 
-def linearise(laws: Laws, rules: Tables, viscous: Viscous) -> None:
+def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
     """Put the present tangents in the place of the dampers' branches."""
     for r in range(len(viscous.laws)):
         i, own = viscous.laws[r], viscous.numbers[r]
@@ -89,7 +89,7 @@ def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
     """Take in the coefficient `k` of the rate of damper `r`: that of its force."""
     viscous, i = series.viscous, series.viscous.laws[r]
     own, sign = viscous.numbers[r], 1.0 if viscous.numbers[r, K] > 0.0 else -1.0
-    x = sign * (k + 1) / h * deformation(laws, series, k + 1, top, i)
+    x = sign * (k + 1) / h * deformation_term(laws, series, k + 1, top, i)
     if k == 0:
         x = max(x, own[LIMIT])
         viscous.force[r, 0] = own[K] * x ** own[N]
@@ -120,7 +120,7 @@ def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> Non
     """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
-            spread(laws.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
+            add_row(laws.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
 
 
 def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
@@ -149,7 +149,7 @@ def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int
     return earlier(first, i, TURNS, first_rise(series.polynomial, terms, first.time, 0.0))
 
 
-def settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
+def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
     """Whether the tangents of those that hold unknowns without mass were at the present rates, as near as
     Newton's iteration needs and rounding of the `velocity` of the unknowns lets them be.
     """

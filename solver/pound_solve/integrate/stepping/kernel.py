@@ -11,11 +11,11 @@ from pound_solve.integrate.events.within_step import first_event
 from pound_solve.integrate.kernels.consistency import lets_go, make_consistent
 from pound_solve.integrate.kernels.laws import (
     event_on_path,
+    leave_branch,
     linear_force,
     linearise_law,
     restore_state,
     save_state,
-    transition,
 )
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
 from pound_solve.integrate.kernels.recording import (
@@ -24,7 +24,7 @@ from pound_solve.integrate.kernels.recording import (
     store_motion,
     store_sample,
     take_first_sample,
-    track,
+    track_peaks,
 )
 from pound_solve.integrate.kernels.state import (
     DONE,
@@ -41,7 +41,13 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.locating import go_on, step_in_parts
-from pound_solve.integrate.stepping.step import REFRESH, accept, factorise, try_step, update_factor
+from pound_solve.integrate.stepping.step import (
+    REFRESH,
+    accept_trial,
+    factorise_step,
+    try_step,
+    update_factor,
+)
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
 
@@ -57,7 +63,7 @@ def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
         if event < 0:
             break
         k, f0 = laws.stiffness[i], laws.offset[i]
-        transition(laws, rules, i, event, where, v1)
+        leave_branch(laws, rules, i, event, where, v1)
         if lets_go(sim.linear, laws, i, k, f0, where):
             return False
         sim.run.driven += 1
@@ -98,7 +104,7 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
         if change != 0.0 and not sim.linear.explicit:
             run.updates += 1
             if not update_factor(sim, i, change, WHOLE):
-                bad = factorise(sim, scheme, h, WHOLE)
+                bad = factorise_step(sim, scheme, h, WHOLE)
                 if bad >= 0:
                     run.fault = bad
                     return PIVOT
@@ -132,14 +138,14 @@ def step_through(
             return PIVOT
         if why == NEWTON:
             break
-        accept(sim, rules, scheme, length, WHOLE)
+        accept_trial(sim, rules, scheme, length, WHOLE)
         run.time += length
         run.events += run.driven
         for i in range(len(laws.rule)):
             if laws.saved[i] == 1 and laws.saved_state[i, 0] != laws.branch[i]:
                 force = linear_force(laws, i, laws.now.deformation[i], laws.now.rate[i])
                 log_transition(sim, i, int(laws.saved_state[i, 0]), run.time, force)
-        track(sim, run.time, length)
+        track_peaks(sim, run.time, length)
         return DONE
     for i in range(len(laws.rule)):
         if laws.saved[i] == 1:
@@ -176,9 +182,9 @@ def plain_steps(
             return False
         if passes_event(sim.laws, sim.step, scheme, h):
             return True
-        accept(sim, rules, scheme, h, WHOLE)
+        accept_trial(sim, rules, scheme, h, WHOLE)
         run.time += h
-        track(sim, run.time, h)
+        track_peaks(sim, run.time, h)
         run.step += 1
         run.steps += 1
         store_motion(sim, rules, run.time)
@@ -206,7 +212,7 @@ def begin_goal(sim: Simulation, scheme: Scheme, coefs: Array, s: float, h: float
     if jumps:
         run.jumped = run.time
         make_consistent(sim)
-        track(sim, run.time, 0.0)
+        track_peaks(sim, run.time, 0.0)
 
 
 def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
@@ -216,7 +222,7 @@ def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
     run = sim.run
     if run.factor_length == h and run.updates <= REFRESH:
         return DONE
-    bad = factorise(sim, scheme, h, WHOLE)
+    bad = factorise_step(sim, scheme, h, WHOLE)
     if bad >= 0:
         run.fault = bad
         return PIVOT

@@ -12,13 +12,13 @@ from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEAR, lets_go, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import (
-    couple,
+    couple_friction,
     hold_friction_limits,
+    leave_branch,
     linear_force,
     linearise_law,
-    transition,
 )
-from pound_solve.integrate.kernels.recording import log_transition, store_motion, track
+from pound_solve.integrate.kernels.recording import log_transition, store_motion, track_peaks
 from pound_solve.integrate.kernels.state import (
     CHATTER,
     CROWD,
@@ -35,8 +35,8 @@ from pound_solve.integrate.kernels.ties import note_ties
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.step import (
     REFRESH,
-    accept,
-    factorise,
+    accept_trial,
+    factorise_step,
     start_again,
     try_step,
     update_factor,
@@ -58,9 +58,9 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     linear, laws, run = sim.linear, sim.laws, sim.run
     before, k, c = laws.branch[i], laws.stiffness[i], laws.damping[i]
     if laws.normal[i] >= 0:
-        couple(laws, rules, sim.step.now.acceleration, i)
+        couple_friction(laws, rules, sim.step.now.acceleration, i)
     d, v, f0 = laws.now.deformation[i], laws.now.rate[i], laws.offset[i]
-    transition(laws, rules, i, event, d, v)
+    leave_branch(laws, rules, i, event, d, v)
     if laws.normal[i] < 0 and lets_go(linear, laws, i, k, f0, d):
         run.fell = i
     if laws.curved[i]:
@@ -80,7 +80,7 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     run.events += 1
     for j in laws.coupled:
         before = laws.branch[j]
-        couple(laws, rules, sim.step.now.acceleration, j)
+        couple_friction(laws, rules, sim.step.now.acceleration, j)
         if before != laws.branch[j]:
             log_transition(sim, j, before, run.time, laws.friction_force[j])
             run.updates = REFRESH + 1
@@ -149,7 +149,7 @@ def go_on(sim: Simulation, rules: Tables) -> None:
     """
     run = sim.run
     make_consistent(sim)
-    track(sim, run.time, 0.0)
+    track_peaks(sim, run.time, 0.0)
     after = 4.0 * INSTANT * max(1.0, run.time) if run.time == run.jumped else 0.0
     store_motion(sim, rules, run.time + after)
 
@@ -168,7 +168,7 @@ class Bracket(NamedTuple):
     g_third: float
 
 
-def narrowed(b: Bracket, tau: float, g: float, passed: bool) -> Bracket:
+def narrowed_bracket(b: Bracket, tau: float, g: float, passed: bool) -> Bracket:
     """The bracket after a trial at `tau`, where the event function is `g`, and the event passed or not."""
     if passed:
         return Bracket(b.low, tau, b.high, b.g_low, g, b.g_high)
@@ -189,7 +189,7 @@ def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
     return tau if b.low < tau < b.high else 0.5 * (b.low + b.high)
 
 
-def verdict(
+def search_verdict(
     b: Bracket, g: float, size: float, tau: float, guess: float, passed: bool, last: bool, h: float
 ) -> int:
     """Whether the search ends at `tau`, and whether an event is MET there; `size` is that of its terms."""
@@ -200,7 +200,7 @@ def verdict(
     return NONE if not passed and b.g_high <= 0.0 else GO_ON
 
 
-def locate(
+def locate_event(
     sim: Simulation,
     rules: Tables,
     scheme: Scheme,
@@ -242,7 +242,7 @@ def locate(
             tau = b.high
         elif trial > PATIENCE or bisects:
             tau = 0.5 * (b.low + b.high)
-        bad = factorise(sim, scheme, tau, PART)
+        bad = factorise_step(sim, scheme, tau, PART)
         if bad >= 0:
             sim.run.fault = bad
             return PIVOT, event
@@ -260,19 +260,19 @@ def locate(
             at_start = value_at_start(laws, step, law, index) if b.low == 0.0 else np.nan
             b = Bracket(b.low, b.high, b.third, at_start, np.nan, b.g_third)
         g, size = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])
-        ends = verdict(b, g, size, tau, found.time, passed, last, h)
+        ends = search_verdict(b, g, size, tau, found.time, passed, last, h)
         if ends != GO_ON:
             met = LocatedEvent(law if ends == MET else -1, index, tau)
             mark_others(sim, met, tried, h)
             return DONE, met
-        b = narrowed(b, tau, g, passed)
+        b = narrowed_bracket(b, tau, g, passed)
         tau = next_time(b, passed, found.time, h)
     return NEWTON, event
 
 
 def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int) -> int:
     """Factorise A for a part of a step, which Newton's iterations may have halved."""
-    bad = factorise(sim, scheme, length, PART)
+    bad = factorise_step(sim, scheme, length, PART)
     if bad < 0:
         return DONE
     if halvings > 0:
@@ -328,7 +328,7 @@ def step_in_parts(
                 run.updates = REFRESH + 1
             at = PART
             begin = t - piece_start
-            why, event = locate(sim, rules, scheme, coefs, begin, part, h, event)
+            why, event = locate_event(sim, rules, scheme, coefs, begin, part, h, event)
             if why != DONE:
                 return why
             part = event.time
@@ -337,10 +337,10 @@ def step_in_parts(
         else:
             run.longest_part *= 2.0
         if part > 0.0:
-            accept(sim, rules, scheme, part, at)
+            accept_trial(sim, rules, scheme, part, at)
             left -= part
             run.time = t + part
-            track(sim, run.time, part)
+            track_peaks(sim, run.time, part)
             if at == PART:
                 store_motion(sim, rules, run.time)
         at = PART

@@ -21,7 +21,7 @@ import numpy as np
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.consistency import correct_massless_rates
 from pound_solve.integrate.kernels.corotational import (
-    anchor,
+    anchor_member,
     correct_members,
     force_size,
     predict_members,
@@ -32,8 +32,8 @@ from pound_solve.integrate.kernels.corotational import (
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
 from pound_solve.integrate.kernels.laws import (
     add_slip_work,
-    curve,
-    drag,
+    curved_force,
+    drag_force,
     hold_friction_limits,
     law_force,
     linear_force,
@@ -42,7 +42,14 @@ from pound_solve.integrate.kernels.laws import (
     set_normal_force,
     update_friction_limits,
 )
-from pound_solve.integrate.kernels.products import along, copy, evaluate_inputs, form_load, multiply, reach
+from pound_solve.integrate.kernels.products import (
+    copy,
+    evaluate_inputs,
+    form_load,
+    multiply,
+    row_magnitude,
+    row_product,
+)
 from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Scheme, Simulation, Step
 from pound_solve.integrate.kernels.work import (
     load_on_nodes,
@@ -62,7 +69,7 @@ SLOW = 0.05  #: part of an error that an iteration may leave before the factor i
 MOST_ITERATIONS = 50
 
 
-def factorise(sim: Simulation, scheme: Scheme, h: float, at: int) -> int:
+def factorise_step(sim: Simulation, scheme: Scheme, h: float, at: int) -> int:
     """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
     on_mass = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
     return factorise_effective_mass(sim, on_mass, scheme.gamma * h, scheme.beta * h * h, at)
@@ -81,7 +88,7 @@ def update_factor(sim: Simulation, i: int, change: float, at: int) -> bool:
     return update(sim.linear.pattern, step.factors[at], step.pivots[at], step.row, first, change)
 
 
-def predict(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: float) -> None:
+def predict_step(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: float) -> None:
     """Motion and forces at the end of a step of length `h`, at the local time `end`, but for the
     acceleration there.
     """
@@ -118,7 +125,7 @@ def predict(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: float)
     predict_members(laws, step)
 
 
-def solve(sim: Simulation, at: int) -> None:
+def solve_acceleration(sim: Simulation, at: int) -> None:
     """Acceleration at the end of the step, with the laws and the members on their present tangents."""
     laws, step = sim.laws, sim.step
     acceleration = step.trial.acceleration
@@ -151,11 +158,11 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
             continue
         j = laws.normal[i]
         if j >= 0:
-            a = along(laws.rows, j, acceleration)
+            a = row_product(laws.rows, j, acceleration)
             set_normal_force(laws, i, laws.trial.deformation[j] + bk * a, laws.trial.rate[j] + gk * a, a)
-        a = along(laws.rows, i, acceleration)
+        a = row_product(laws.rows, i, acceleration)
         d, v = laws.trial.deformation[i] + bk * a, laws.trial.rate[i] + gk * a
-        c = curve(laws, rules, i, d, v)
+        c = curved_force(laws, rules, i, d, v)
         k, own = c[1], proportional_damping(laws, i, c[1])
         damp, force = c[2] + own, c[0] + own * v
         guess = linear_force(laws, i, d, v)
@@ -167,7 +174,7 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         sim.run.updates += 1
         if sim.linear.explicit or update_factor(sim, i, change, at):
             continue
-        if factorise(sim, scheme, h, at) >= 0:
+        if factorise_step(sim, scheme, h, at) >= 0:
             return -1.0, -1
     return worst, law
 
@@ -177,22 +184,22 @@ def redraw_members(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
     members = sim.laws.members
     take_tangents(members, members.trial.quantities)
     for c in range(len(members.parameters)):
-        anchor(members, c)
-    if factorise(sim, scheme, h, at) >= 0:
+        anchor_member(members, c)
+    if factorise_step(sim, scheme, h, at) >= 0:
         return False
     if at != WHOLE:
         sim.run.updates = REFRESH + 1
     return True
 
 
-def iterate(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> bool:
+def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> bool:
     """Solve for the acceleration at the end of the step; False where Newton does not converge, and the law
     furthest from it in `run.fault`.
     """
     last, worst, law = np.inf, 0.0, -1
     sim.run.fault = -1
     for _ in range(MOST_ITERATIONS):
-        solve(sim, at)
+        solve_acceleration(sim, at)
         worst, law = correct_curved(sim, rules, scheme, h, at)
         if worst == -1.0:
             return False
@@ -215,11 +222,11 @@ def try_step(
     sim: Simulation, rules: Tables, scheme: Scheme, coefs: Array, end: float, h: float, at: int
 ) -> bool:
     """Try a step of length `h` that ends at the local time `end`, with the factor `at`; False where Newton
-    does not converge (see `iterate`).
+    does not converge (see `iterate_newton`).
     """
     linear, laws = sim.linear, sim.laws
-    predict(sim, scheme, coefs, end, h)
-    if not iterate(sim, rules, scheme, h, at):
+    predict_step(sim, scheme, coefs, end, h)
+    if not iterate_newton(sim, rules, scheme, h, at):
         return False
     trial, bk, gk = sim.step.trial, scheme.beta * h * h, scheme.gamma * h
     for i in range(len(trial.acceleration)):
@@ -227,11 +234,11 @@ def try_step(
     for i in range(len(trial.acceleration)):
         trial.velocity[i] += gk * trial.acceleration[i]
     for i in range(len(laws.rule)):
-        a = along(laws.rows, i, trial.acceleration)
+        a = row_product(laws.rows, i, trial.acceleration)
         laws.trial.deformation[i] += bk * a
         laws.trial.rate[i] += gk * a
         if laws.contact[i]:  # of bodies that move alike the deformation is rounding
-            far = reach(laws.rows, i, trial.displacement)
+            far = row_magnitude(laws.rows, i, trial.displacement)
             laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
     if len(laws.coupled) > 0:
         update_friction_limits(laws, rules, trial.acceleration)
@@ -282,7 +289,7 @@ def accept_laws(laws: Laws, rules: Tables, h: float, works: Works) -> None:
     for i in range(len(laws.rule)):
         d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
         v0, v1 = laws.now.rate[i], laws.trial.rate[i]
-        drag0, drag1 = drag(laws, rules, i, d0, v0), drag(laws, rules, i, d1, v1)
+        drag0, drag1 = drag_force(laws, rules, i, d0, v0), drag_force(laws, rules, i, d1, v1)
         if drag0 != 0.0 or drag1 != 0.0:
             lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             laws.dashpot_loss[i] += lost
@@ -322,7 +329,7 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
         residual[i] = one * (step.right_side[i] - scheme.alpha_f * residual[i])
 
 
-def accept(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> None:
+def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> None:
     """Make the end of the step that was tried the start of the next; count it, if it is longer than the
     time in which a falling branch gives way.
 
