@@ -326,6 +326,22 @@ def test_imports_go_down_within_a_room(name):
                 assert order.index(words[2]) <= order.index(own), f"{place(path)} imports {dotted}"
 
 
+#: names of one word that say what they return, or that the field knows
+OF_ONE_WORD = {
+    "advance", "allocate", "basis", "buffers", "copy", "dot", "earlier", "energy", "highest", "integrate",
+    "layout", "limit", "march", "monomials", "multiply", "none", "overlap", "places", "pole", "product",
+    "room", "size", "slopes", "value",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("folder", ["events", "kernels", "series", "stepping"])
+def test_names_of_kernels_say_what_they_do_with_what(folder):
+    for path in (SOLVER / "integrate" / folder).glob("*.py"):
+        tree = ast.parse(path.read_text("utf-8"))
+        functions = [x.name for x in tree.body if isinstance(x, ast.FunctionDef)]
+        assert not [x for x in functions if "_" not in x and x not in OF_ONE_WORD], place(path)
+
+
 def test_numerics_open_no_file_and_print_nothing():
     for path in SOLVER.rglob("*.py"):
         if place(path).startswith(NUMERICS) and path.name != "jit.py":

@@ -81,7 +81,7 @@ polynomials = st.one_of(anything, st.builds(series, waves, st.floats(-1.5, 0.5))
 def halved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
     """The widths of the cells that a search halves."""
     seen: list[float] = []
-    own = polynomial_roots.halve
+    own = polynomial_roots.halve_cell
 
     def halve(p: Array, terms: int, row: int) -> None:
         seen.append(float(p[row, -1]))
@@ -99,8 +99,8 @@ def halved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
 def test_cells_hold_the_polynomial(c: Array, end: float) -> None:
     """In Bernstein's form on [0, end], and on both halves; within the hull of the coefficients."""
     p, terms = rows(c)
-    polynomial_roots.enclose(p, terms, end)
-    polynomial_roots.halve(p, terms, CELLS)
+    polynomial_roots.write_in_bernstein_form(p, terms, end)
+    polynomial_roots.halve_cell(p, terms, CELLS)
     sigma = np.linspace(0.0, 1.0, 40)
     slack = 50 * noise(c)
     for row, place in ((CELLS, 0.5 * end), (CELLS + 1, 0.0)):
@@ -132,11 +132,12 @@ def test_values_and_slopes(c: Array, s: float) -> None:
 def test_bends_are_no_fewer_than_extremes(c: Array) -> None:
     """Changes of sign that dense samples show; and so it turns that often at most."""
     p, terms = rows(c)
-    polynomial_roots.enclose(p, terms, 1.0)
+    polynomial_roots.write_in_bernstein_form(p, terms, 1.0)
     steps = np.diff(on(c, np.linspace(0.0, 1.0, 400)))
     seen = steps[np.abs(steps) > 10 * noise(c)]
     turns = int((np.diff(np.sign(seen)) != 0).sum())
-    first, count = polynomial_roots.bends(p, terms, CELLS, polynomial_roots.NOISE * float(np.abs(c).sum()))
+    noise_here = polynomial_roots.NOISE * float(np.abs(c).sum())
+    first, count = polynomial_roots.sign_changes(p, terms, CELLS, noise_here)
     assert count >= turns
     if count == 0 and len(seen):
         assert np.sign(first) == np.sign(seen[0])
@@ -151,7 +152,7 @@ def test_the_zero_of_a_rise(root: float, more: list[float]) -> None:
     top = min([x.real for x in np.roots(inner[::-1]) if abs(x.imag) < 1e-9 and x.real > root] + [9.0])
     w = min(1.0, root + 0.9 * (top - root))
     p, terms = rows(c)
-    found = polynomial_roots.zero(p, terms, 0.0, w)
+    found = polynomial_roots.find_zero(p, terms, 0.0, w)
     assert found == pytest.approx(root, abs=noise(c) / abs(float(on(inner, root))) + 4 * EPS)
 
 
@@ -159,7 +160,7 @@ def test_the_zero_of_a_rise(root: float, more: list[float]) -> None:
 def test_the_zero_of_a_rise_that_starts_flat(degree: int) -> None:
     """s^n - 2^-n: Newton's steps from the flat part would leave the bracket."""
     p, terms = rows([-(0.01**degree), *[0.0] * (degree - 1), 1.0])
-    assert polynomial_roots.zero(p, terms, 0.0, 1.0) == pytest.approx(0.01, rel=1e-14)
+    assert polynomial_roots.find_zero(p, terms, 0.0, 1.0) == pytest.approx(0.01, rel=1e-14)
 
 
 @given(at=st.floats(1e-6, 0.999), bend=st.floats(0.1, 50), tilt=st.floats(-0.05, 0.05))
@@ -168,7 +169,7 @@ def test_the_summit_of_a_hill(at: float, bend: float, tilt: float) -> None:
     s = np.polynomial.polynomial.Polynomial([-at, 1.0])
     c = (3.0 - bend * s**2 * (1.0 + tilt * s)).coef
     p, terms = rows(c)
-    assert polynomial_roots.summit(p, terms, 0.0, 1.0) == pytest.approx(at, rel=1e-8, abs=1e-14)
+    assert polynomial_roots.find_summit(p, terms, 0.0, 1.0) == pytest.approx(at, rel=1e-8, abs=1e-14)
 
 
 # ---------------------------------------------------------------- the first rise

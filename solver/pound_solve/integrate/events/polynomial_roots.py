@@ -69,7 +69,7 @@ def slopes(p: Array, terms: int, s: float) -> tuple[float, float]:
     return first, second
 
 
-def enclose(p: Array, terms: int, end: float) -> None:
+def write_in_bernstein_form(p: Array, terms: int, end: float) -> None:
     """Write the polynomial on [0, end] in Bernstein's form, into the first cell."""
     place, width = p.shape[1] - 2, p.shape[1] - 1
     scale = 1.0
@@ -84,7 +84,7 @@ def enclose(p: Array, terms: int, end: float) -> None:
     p[CELLS, place], p[CELLS, width] = 0.0, end
 
 
-def halve(p: Array, terms: int, row: int) -> None:
+def halve_cell(p: Array, terms: int, row: int) -> None:
     """Leave the right half of a cell in its row, and put the left one into the next (de Casteljau)."""
     place, width = p.shape[1] - 2, p.shape[1] - 1
     p[row + 1, 0] = p[row, 0]
@@ -97,7 +97,7 @@ def halve(p: Array, terms: int, row: int) -> None:
     p[row, place], p[row, width] = p[row, place] + half, half
 
 
-def bends(p: Array, terms: int, row: int, noise: float) -> tuple[float, int]:
+def sign_changes(p: Array, terms: int, row: int, noise: float) -> tuple[float, int]:
     """Sign of the first difference of a cell's coefficients, and how often the sign of these changes."""
     first, last, count = 0.0, 0.0, 0
     for j in range(terms):
@@ -120,7 +120,7 @@ def highest_of(p: Array, terms: int, row: int) -> float:
     return most
 
 
-def zero(p: Array, terms: int, low: float, high: float) -> float:
+def find_zero(p: Array, terms: int, low: float, high: float) -> float:
     """Where the polynomial, not above zero at `low`, rises through it before `high`: Newton's method, kept
     in its bracket.
     """
@@ -143,7 +143,7 @@ def zero(p: Array, terms: int, low: float, high: float) -> float:
     return at
 
 
-def summit(p: Array, terms: int, low: float, high: float) -> float:
+def find_summit(p: Array, terms: int, low: float, high: float) -> float:
     """Where the slope of the polynomial falls through zero between `low` and `high`."""
     at, last = 0.5 * (low + high), np.inf
     for _ in range(100):
@@ -175,18 +175,18 @@ def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
     place, width = p.shape[1] - 2, p.shape[1] - 1
     noise = NOISE * (abs(p[POLYNOMIAL, 0]) + far)
     p[POLYNOMIAL, 0] = min(p[POLYNOMIAL, 0], 0.0)
-    enclose(p, terms, end)
+    write_in_bernstein_form(p, terms, end)
     row = CELLS
     while row >= CELLS:
         if highest_of(p, terms, row) > tol:
-            first, count = bends(p, terms, row, noise)
+            first, count = sign_changes(p, terms, row, noise)
             if count > 0 and row - CELLS < DEPTH:
-                halve(p, terms, row)
+                halve_cell(p, terms, row)
                 row += 1
                 continue
             if p[row, terms] > tol and (first >= 0.0 or count > 0):
                 at = p[row, place]
-                return at if p[row, 0] >= 0.0 else zero(p, terms, at, at + p[row, width])
+                return at if p[row, 0] >= 0.0 else find_zero(p, terms, at, at + p[row, width])
         row -= 1
     return -1.0
 
@@ -201,13 +201,13 @@ def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, floa
         return best, where
     place, width = p.shape[1] - 2, p.shape[1] - 1
     noise = NOISE * (abs(p[POLYNOMIAL, 0]) + far)
-    enclose(p, terms, end)
+    write_in_bernstein_form(p, terms, end)
     row = CELLS
     while row >= CELLS:
         if highest_of(p, terms, row) > best:
-            first, count = bends(p, terms, row, noise)
+            first, count = sign_changes(p, terms, row, noise)
             if count > 1 and row - CELLS < DEPTH:
-                halve(p, terms, row)
+                halve_cell(p, terms, row)
                 row += 1
                 continue
             low = p[row, place]
@@ -217,7 +217,7 @@ def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, floa
             if p[row, terms] > best:
                 best, where = p[row, terms], high
             if count > 0 and first > 0.0:
-                at = summit(p, terms, low, high)
+                at = find_summit(p, terms, low, high)
                 top = value(p, terms, at)
                 if top > best:
                     best, where = top, at

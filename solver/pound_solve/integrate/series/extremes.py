@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, highest, size
+from pound_solve.integrate.series.expansion import derivative_factor
 from pound_solve.integrate.series.shown import STEPS
 from pound_solve.integrate.series.state import Shown
 from pound_solve.numerics.ldl import Place
@@ -50,14 +51,6 @@ class RowExtremes(NamedTuple):
     polynomial: Array
 
 
-def falling(k: int, order: int) -> float:
-    """What a derivative makes of the power `k`."""
-    out = 1.0
-    for j in range(order):
-        out *= k - j
-    return out
-
-
 def bound_series(own: RowExtremes, i: int, c: Array, terms: int, h: float) -> None:
     """Find the value of series `i` at the start of a step, and how far it can come from it."""
     zeroth, first, second = abs(c[1]) + abs(c[2]), 2.0 * abs(c[2]), 0.0
@@ -82,7 +75,7 @@ def may_exceed(own: RowExtremes, r: int) -> bool:
 def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) -> None:
     """Add a derivative of a series, times a factor, to a polynomial."""
     for k in range(terms + 1 - order):
-        p[k] += factor * falling(k + order, order) * c[k + order]
+        p[k] += factor * derivative_factor(k + order, order, 1.0) * c[k + order]
 
 
 def form_row(shown: Shown, inputs: Array, own: RowExtremes, s: int, r: int) -> None:
