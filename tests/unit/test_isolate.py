@@ -88,7 +88,7 @@ def halved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
         assert len(seen) < 5000, "no end"
         own(p, terms, row)
 
-    monkeypatch.setattr(polynomial_roots, "halve", halve)
+    monkeypatch.setattr(polynomial_roots, "halve_cell", halve)
     yield seen
 
 
