@@ -46,7 +46,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "use a range.",
     ),
     "P201": (
-        "character without meaning",
+        "invalid character",
         "The character has no meaning outside quotes. Minus signs and quotes pasted from a text "
         "processor are the usual cause.",
     ),
@@ -278,7 +278,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "PATTERN=FORCES and as many NODES, ADAPTIVE=YES needs PATTERN=MODE; the other patterns need mass.",
     ),
     "P336": (
-        "contact pressed at rest (warning)",
+        "bodies overlap at rest (warning)",
         "GAP is negative: the bodies overlap at rest and press on each other. A distance is positive.",
     ),
     "P337": (
@@ -292,7 +292,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "not a single building, or not a floor",
         "A BUILDINGS line names nodes that elements do not connect, a building that has a name, or a "
         "name already used; or its FLOORS are nodes elsewhere or at levels without mass. A building is "
-        "everything that elements and slaving connect; contacts do not.",
+        "all that elements and slaving connect; contacts do not.",
     ),
     "P339": (
         "building damped twice, or not at all (warning)",
@@ -354,7 +354,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "the two. Touching frames are not reported: columns stand on both sides.",
     ),
     "P350": (
-        "one name of several elements (warning)",
+        "elements with the same name (warning)",
         "Elements have the same NAME, for example from a line that generates several. The report cannot "
         "tell them apart. Give each a line and a name, or omit NAME: numbers then replace it.",
     ),
@@ -500,8 +500,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P375": (
         "member missing or out of place (warning)",
         "A beam ends above a column that ends below it; no beam joins two columns whose feet one joins; "
-        "only one beam of its property set slopes; or an element passes a node from which nothing leads "
-        "up.",
+        "only one beam of a property set slopes; or an element passes a node from which nothing leads up.",
     ),
     "P376": (
         "no such material (warning)",

@@ -53,7 +53,8 @@ SPEC = Spec(
             Kind.WORD,
             default="STATIC",
             words=("STATIC", "REST"),
-            doc="start from the static state under the loads, or unloaded at rest, loads applied at t = 0",
+            doc="start from the static state under the loads, or unloaded at rest with loads applied at "
+            "t = 0",
         ),
         Field(
             "SAVE",

@@ -205,7 +205,7 @@ SPEC = Spec(
             "E", Kind.REAL, "-", default=None, above=0, hi=1, doc="restitution of an impact that reaches DM"
         ),
         Field("DM", Kind.REAL, "L", default=None, above=0, doc="largest expected overlap"),
-        Field("A", Kind.REAL, "-", default=0.1, above=0, below=1, doc="DY / DM"),
+        Field("A", Kind.REAL, "-", default=0.1, above=0, below=1, doc="ratio DY / DM"),
         Field(
             "RELATION",
             Kind.WORD,

@@ -80,7 +80,7 @@ ALFA = Field(
     default=0.0,
     lo=0.0,
     hi=1.0,
-    doc="unloading stiffness falls with this power of the ductility; 0: it stays initial",
+    doc="unloading stiffness falls with this power of ductility; 0: initial stiffness",
 )
 LOSS = (
     Field(

@@ -47,7 +47,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             hi=1.0,
-            doc="reloading aims short of the peak by this part of plastic deformation",
+            doc="reloading aims short of the peak by this share of plastic deformation",
         ),
         *LOSS,
     ),

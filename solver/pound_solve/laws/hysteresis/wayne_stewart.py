@@ -341,7 +341,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             hi=1.0,
-            doc="exponent of the reloading stiffness; 0: it stays initial",
+            doc="exponent of reloading stiffness; 0: initial stiffness",
         ),
         Field(
             "RPINCH",

@@ -129,7 +129,7 @@ def _column(width: int, timed: int, column: int | None) -> int:
 SPEC: Final = Spec(
     "record",
     "COLUMNS",
-    "columns of numbers or CSV",
+    "number columns, also CSV",
     FIELDS,
     impl=Format(sniff, read, greedy=True),
 )
