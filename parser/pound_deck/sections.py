@@ -32,7 +32,7 @@ SECTIONS: Final = (
                 "MASTER",
                 Kind.NODE,
                 default=None,
-                doc="node that the SLAVED directions follow, rigid arm included",
+                doc="node that the SLAVED directions follow, with a rigid arm",
             ),
         ),
     ),
@@ -44,7 +44,7 @@ SECTIONS: Final = (
             _step("ELEMENT", Kind.INT, doc="element number; a range generates elements", lo=1),
             Field("PROP", Kind.PROP, doc="label of its property set", positional=True),
             _step("I", Kind.NODE, doc="first node"),
-            _step("J", Kind.NODE, default=None, doc="second node; left out: the ground or a wall"),
+            _step("J", Kind.NODE, default=None, doc="second node; omitted: the ground or a wall"),
             Field("NAME", Kind.TEXT, default="", doc="name in the report"),
         ),
     ),
@@ -53,14 +53,14 @@ SECTIONS: Final = (
         "WEIGHTS",
         "nodal weights; mass = weight / gravity",
         (
-            Field("NODES", Kind.NODES, doc="nodes that get this weight each", positional=True),
+            Field("NODES", Kind.NODES, doc="nodes that each get this weight", positional=True),
             Field("WX", Kind.REAL, "F", doc="weight that moves along x", lo=0, positional=True),
             Field(
                 "WY",
                 Kind.REAL,
                 "F",
                 default=None,
-                doc="weight that moves along y; left out: WX",
+                doc="weight that moves along y; omitted: WX",
                 lo=0,
                 positional=True,
             ),
@@ -80,7 +80,7 @@ SECTIONS: Final = (
         "LOADS",
         "static nodal loads",
         (
-            Field("NODES", Kind.NODES, doc="nodes that get this load each", positional=True),
+            Field("NODES", Kind.NODES, doc="nodes that each get this load", positional=True),
             Field("FX", Kind.REAL, "F", default=0.0, doc="force along x", positional=True),
             Field("FY", Kind.REAL, "F", default=0.0, doc="force along y, upwards", positional=True),
             Field("MZ", Kind.REAL, "F*L", default=0.0, doc="moment, anticlockwise", positional=True),
@@ -89,7 +89,7 @@ SECTIONS: Final = (
                 Kind.WORD,
                 default="YES",
                 words=("YES", "NO"),
-                doc="NO: in STATIC only, taken off at once where the history starts (snap-back)",
+                doc="NO: only in STATIC, removed suddenly when the history starts (snap-back)",
             ),
         ),
     ),
@@ -98,13 +98,9 @@ SECTIONS: Final = (
         "MEMBER_LOADS",
         "static loads on members (FRAME, BEAM_COLUMN), held during the history",
         (
-            Field("ELEMENTS", Kind.ELEMENTS, doc="members that get this load each", positional=True),
-            Field(
-                "WX", Kind.REAL, "F/L", default=0.0, doc="uniform load along global x per length of member"
-            ),
-            Field(
-                "WY", Kind.REAL, "F/L", default=0.0, doc="uniform load along global y per length of member"
-            ),
+            Field("ELEMENTS", Kind.ELEMENTS, doc="members that each get this load", positional=True),
+            Field("WX", Kind.REAL, "F/L", default=0.0, doc="uniform load along global x per member length"),
+            Field("WY", Kind.REAL, "F/L", default=0.0, doc="uniform load along global y per member length"),
             Field("PX", Kind.REAL, "F", default=0.0, doc="point load along global x"),
             Field("PY", Kind.REAL, "F", default=0.0, doc="point load along global y"),
             Field(
@@ -112,7 +108,7 @@ SECTIONS: Final = (
                 Kind.REAL,
                 "-",
                 default=0.5,
-                doc="place of the point load as a share of the flexible length from I",
+                doc="point load position as a fraction of the flexible length from I",
                 lo=0,
                 hi=1,
             ),
@@ -123,7 +119,7 @@ SECTIONS: Final = (
         "INITIAL",
         "motion at the start of the history, added to the static state",
         (
-            Field("NODES", Kind.NODES, doc="nodes that start so", positional=True),
+            Field("NODES", Kind.NODES, doc="affected nodes", positional=True),
             Field("UX", Kind.REAL, "L", default=0.0, doc="displacement along x"),
             Field("UY", Kind.REAL, "L", default=0.0, doc="displacement along y"),
             Field("UR", Kind.REAL, "-", default=0.0, doc="rotation"),
@@ -135,7 +131,7 @@ SECTIONS: Final = (
     Spec(
         "section",
         "DRIFT",
-        "storey drifts to follow: displacement of J less that of I",
+        "storey drifts to record: displacement of J minus I",
         (
             Field("NAME", Kind.TEXT, doc="name in the report", positional=True),
             Field("I", Kind.NODE, doc="lower node", positional=True),
@@ -146,7 +142,7 @@ SECTIONS: Final = (
                 "L",
                 default=None,
                 above=0,
-                doc="storey height; left out: from the coordinates",
+                doc="storey height; omitted: from the coordinates",
             ),
             Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of the drift"),
         ),
@@ -154,7 +150,7 @@ SECTIONS: Final = (
     Spec(
         "section",
         "BUILDINGS",
-        "names of buildings: connected parts of the structure, contacts apart",
+        "names of buildings: parts connected other than by contacts",
         (
             Field("NAME", Kind.TEXT, doc="name in the report", positional=True),
             Field("NODES", Kind.NODES, doc="one or more of its nodes"),
@@ -162,8 +158,8 @@ SECTIONS: Final = (
                 "FLOORS",
                 Kind.NODES,
                 default=None,
-                doc="a node at each of its floors; left out: the highest level of nodes with mass, and all "
-                "that have a tenth of the mass of the heaviest",
+                doc="one node of each floor; omitted: the highest level with mass, and all levels with "
+                "at least a tenth of the heaviest level's mass",
             ),
         ),
     ),
@@ -178,16 +174,16 @@ SECTIONS: Final = (
                 "T",
                 default=None,
                 above=0,
-                doc="interval of stored histories; left out: about 1000 rows",
+                doc="interval of stored histories; omitted: about 1000 rows",
             ),
             Field(
-                "NODES", Kind.NODES, default=None, doc="nodes with histories and envelopes; left out: all"
+                "NODES", Kind.NODES, default=None, doc="nodes with histories and envelopes; omitted: all"
             ),
             Field(
                 "MEMBERS",
                 Kind.ELEMENTS,
                 default=None,
-                doc="elements with histories and envelopes; left out: all",
+                doc="elements with histories and envelopes; omitted: all",
             ),
             Field(
                 "CLOSEUPS",
@@ -195,8 +191,8 @@ SECTIONS: Final = (
                 default=4.0,
                 lo=0.0,
                 hi=1e5,
-                doc="megabytes at most of histories at the instants of the method while a contact is "
-                "pressed, and at the peaks of its force; 0: none",
+                doc="limit in megabytes for histories at the method's own instants while a contact is "
+                "closed, and at its force peaks; 0: none",
             ),
             Field(
                 "EXTREMES",
@@ -204,8 +200,8 @@ SECTIONS: Final = (
                 default=4.0,
                 lo=0.0,
                 hi=1e5,
-                doc="megabytes at most of the smallest and largest values between samples, or between "
-                "every second, fourth, ... of them; 0: none",
+                doc="limit in megabytes for the minima and maxima between samples, or between every "
+                "second, fourth, ... sample; 0: none",
             ),
             Field(
                 "HISTORIES",
@@ -220,7 +216,7 @@ SECTIONS: Final = (
                 Kind.WORD,
                 default="YES",
                 words=("YES", "NO"),
-                doc="base shears; drifts, shears and accelerations of storeys; NO where time counts most",
+                doc="base shears; drifts, shears and accelerations of storeys; NO if speed matters most",
             ),
         ),
     ),
@@ -267,7 +263,7 @@ CARDS: Final = (
             Field(
                 "GEOMETRY",
                 Kind.WORD,
-                doc="what displacements do to equilibrium",
+                doc="displacement effects in equilibrium",
                 words=("SMALL", "PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"),
                 codes={"SMALL": 0, "PDELTA": 1, "LARGE": 2},
                 positional=True,
@@ -277,12 +273,12 @@ CARDS: Final = (
     Spec(
         "card",
         "MEANT",
-        "warnings about what is meant so",
+        "warnings to suppress",
         (
             Field(
                 "MEANT",
                 Kind.WORD,
-                doc="codes of warnings that are not to be told",
+                doc="codes of warnings to suppress",
                 words=WARNINGS,
                 count=(1, len(WARNINGS)),
                 positional=True,

@@ -44,7 +44,7 @@ ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 SPEC = Spec(
     "analysis",
     "HISTORY",
-    "motion in time",
+    "time history",
     (
         Field("T", Kind.REAL, "T", doc="length of the history", above=0, positional=True),
         Field("METHOD", Kind.FAMILY, default="AUTO", family="method", doc="integrator"),
@@ -53,8 +53,8 @@ SPEC = Spec(
             Kind.WORD,
             default="STATIC",
             words=("STATIC", "REST"),
-            doc="start from the static state under the loads, "
-            "or unloaded at rest with the loads put on at t = 0",
+            doc="start from the static state under the loads, or unloaded at rest with loads applied at "
+            "t = 0",
         ),
         Field(
             "SAVE",
@@ -62,20 +62,20 @@ SPEC = Spec(
             "T",
             default=None,
             above=0,
-            doc="time whose state is kept in the results file for a RESTART; left out: the end",
+            doc="time whose state is saved in the results file for a RESTART; omitted: the end",
         ),
         Field(
             "RESTART",
             Kind.TEXT,
             default="",
-            doc="results file (.h5) whose saved state this history goes on from",
+            doc="results file (.h5) whose saved state this history continues",
         ),
         Field(
             "NEW",
             Kind.WORD,
             default="NOTHING",
             words=("NOTHING", "MOTION"),
-            doc="what may differ from the run that saved the state; with a new MOTION, time begins at zero",
+            doc="what can differ from the run that saved the state; with a new MOTION, time begins at zero",
         ),
     ),
 )

@@ -39,7 +39,7 @@ SPEC = Spec(
             Kind.INT,
             default=None,
             lo=1,
-            doc="number of modes; left out: all, at most 12",
+            doc="number of modes; omitted: all, at most 12",
             positional=True,
         ),
         Field("SHAPES", Kind.WORD, default="YES", words=("YES", "NO"), doc="print the mode shapes"),

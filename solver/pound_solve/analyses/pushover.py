@@ -322,7 +322,7 @@ def _control(structure: Structure, card: Card) -> Array:
 SPEC = Spec(
     "analysis",
     "PUSHOVER",
-    "forces that grow on the static state",
+    "forces growing from the static state",
     (
         Field("NODE", Kind.NODE, doc="control node", positional=True),
         Field(
@@ -330,7 +330,7 @@ SPEC = Spec(
             Kind.REAL,
             "L",
             default=None,
-            doc="displacement of the control node to go to, the static one included",
+            doc="target displacement of the control node, including the static one",
             positional=True,
         ),
         Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of forces and control"),
@@ -339,19 +339,17 @@ SPEC = Spec(
             Kind.WORD,
             default="TRIANGULAR",
             words=("UNIFORM", "TRIANGULAR", "MODE", "FORCES", "LOADS"),
-            doc="forces by mass, by mass and height, by mass and mode (all of sum 1), as FORCES says, "
-            "or the LOADS once more",
+            doc="forces by mass, by mass and height, by mass and mode (each of sum 1), as in FORCES, or "
+            "the LOADS again",
         ),
-        Field("NODES", Kind.NODES, default=None, doc="nodes that are pushed; left out: all that have mass"),
-        Field(
-            "BUILDING", Kind.TEXT, default="", doc="name of the one building that is pushed; left out: all"
-        ),
+        Field("NODES", Kind.NODES, default=None, doc="pushed nodes; omitted: all that have mass"),
+        Field("BUILDING", Kind.TEXT, default="", doc="name of the only building pushed; omitted: all"),
         Field(
             "NEIGHBOURS",
             Kind.WORD,
             default="YES",
             words=("YES", "NO"),
-            doc="whether the other buildings stand beside that BUILDING, or are removed",
+            doc="keep the other buildings beside that BUILDING, or remove them",
         ),
         Field(
             "FORCES",
@@ -359,28 +357,28 @@ SPEC = Spec(
             "F",
             default=None,
             count=(1, 1000),
-            doc="forces on NODES, one for each, with PATTERN=FORCES",
+            doc="forces on NODES, one per node, with PATTERN=FORCES",
         ),
         Field(
             "CONTROL",
             Kind.WORD,
             default="DISPLACEMENT",
             words=("DISPLACEMENT", "FORCE"),
-            doc="what grows: the displacement of NODE (past the largest load too) or the load factor",
+            doc="what grows: the displacement of NODE (also past the peak load) or the load factor",
         ),
         Field(
             "FACTOR",
             Kind.REAL,
             "-",
             default=None,
-            doc="ends at this load factor, if TARGET is not met before",
+            doc="stops at this load factor unless TARGET comes first",
         ),
         Field(
             "ADAPTIVE",
             Kind.WORD,
             default="NO",
             words=("NO", "YES"),
-            doc="with PATTERN=MODE: take the mode anew after every event and at every station",
+            doc="with PATTERN=MODE: update the mode after every event and at every station",
         ),
         Field(
             "STEPS", Kind.INT, default=50, lo=1, hi=100_000, doc="number of stations on the capacity curve"
@@ -389,7 +387,7 @@ SPEC = Spec(
             "BASE",
             Kind.NODES,
             default=None,
-            doc="supports whose reactions make the base shear; left out: all that holds what is pushed",
+            doc="supports whose reactions form the base shear; omitted: all that holds the pushed part",
         ),
     ),
     reference="Antoniou & Pinho 2004 (adaptive)",

@@ -179,14 +179,14 @@ SPEC = Spec(
             Kind.WORD,
             default="NO",
             words=("NO", "YES"),
-            doc="let the nodal WEIGHTS load the structure downwards",
+            doc="apply the nodal WEIGHTS as downward loads",
         ),
         Field(
             "SELF_WEIGHT",
             Kind.WORD,
             default="YES",
             words=("YES", "NO"),
-            doc="let the weight WGT of the members load it",
+            doc="apply the weight WGT of members as loads",
         ),
     ),
 )

@@ -227,7 +227,7 @@ def integrate(
 SPEC = Spec(
     "method",
     "AUTO",
-    "EXACT or TAYLOR where they pay, else runs that meet a tolerance",
+    "EXACT or TAYLOR if efficient, else runs that meet a tolerance",
     (
         Field(
             "TOL",
@@ -236,16 +236,16 @@ SPEC = Spec(
             default=1e-4,
             lo=1e-9,
             hi=0.1,
-            doc="largest error of the peaks as a share of them, by LAGUERRE or NEWMARK",
+            doc="largest relative error of the peaks, by LAGUERRE or NEWMARK",
         ),
         Field(
             "PEAKS",
             Kind.WORD,
             default=RESPONSE,
             words=(RESPONSE, ALL),
-            doc="peaks that TOL is for: RESPONSE drifts, contact forces, deformations and plastic work of "
-            "springs and hinges that can yield; ALL also accelerations "
-            "and forces of the nodes and members that OUTPUT names",
+            doc="peaks that TOL covers. RESPONSE: drifts, contact forces, deformations and plastic work "
+            "of springs and hinges that can yield; ALL: also accelerations and forces of nodes and "
+            "members in OUTPUT",
         ),
         Field(
             "TOL_ACCELERATION",
@@ -254,8 +254,8 @@ SPEC = Spec(
             default=None,
             lo=1e-9,
             hi=0.1,
-            doc="largest error of the peak accelerations of the nodes that OUTPUT names, as a share of the "
-            "largest; left out: TOL with PEAKS=ALL, else none is asked for",
+            doc="largest error of the peak accelerations of the nodes in OUTPUT, relative to the "
+            "largest; omitted: TOL with PEAKS=ALL, else no limit",
         ),
         Field(
             "TOL_MEMBER",
@@ -264,8 +264,8 @@ SPEC = Spec(
             default=None,
             lo=1e-9,
             hi=0.1,
-            doc="the same for the peak forces of the members that OUTPUT names, as a share of the largest "
-            "of their unit",
+            doc="the same for the peak forces of the members in OUTPUT, relative to the largest of their "
+            "unit",
         ),
     ),
     impl=integrate,

@@ -307,8 +307,8 @@ SPEC = Spec(
     "LAPLACE",
     "numerical Laplace transform between events",
     (
-        Field("DT", Kind.REAL, "T", above=0, doc="distance of the samples"),
-        Field("POINTS", Kind.INT, default=4096, lo=16, hi=1_000_000, doc="samples in one transform"),
+        Field("DT", Kind.REAL, "T", above=0, doc="sampling interval"),
+        Field("POINTS", Kind.INT, default=4096, lo=16, hi=1_000_000, doc="samples per transform"),
     ),
     reference="after Chouw 2002; Wilcox 1978",
     impl=integrate,

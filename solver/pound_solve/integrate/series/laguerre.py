@@ -90,7 +90,7 @@ SPEC = Spec(
             default=1e-8,
             lo=1e-12,
             hi=0.1,
-            doc="largest share of the motion, by its energy, that the last term of a step may be",
+            doc="largest ratio of a step's last term to the motion, by energy",
         ),
     ),
     reference="Nørsett 1974; Hairer & Wanner 1996, IV.6",

@@ -47,7 +47,7 @@ def integrate(
 SPEC = Spec(
     "method",
     "GENERALISED_ALPHA",
-    "implicit steps, high frequencies damped as asked",
+    "implicit steps, tunable high-frequency damping",
     (
         *COMMON,
         Field(

@@ -53,7 +53,7 @@ SPEC = Spec(
             default=-0.1,
             lo=-1 / 3,
             hi=0.0,
-            doc="damps the higher, the lower it is",
+            doc="a lower value damps more",
         ),
     ),
     reference="Hilber, Hughes & Taylor 1977",

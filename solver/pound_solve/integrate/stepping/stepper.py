@@ -49,7 +49,7 @@ COMMON = (
         Kind.WORD,
         default="LOCATED",
         words=("LOCATED", "STEPPED"),
-        doc="cut the step where a law changes branch, or let it change at the end of the step",
+        doc="cut the step where a law changes branch, or change branch at the end of the step",
     ),
 )  #: fields of every implicit method
 

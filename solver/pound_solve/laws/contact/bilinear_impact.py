@@ -194,7 +194,7 @@ def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:
 SPEC = Spec(
     "contact",
     "BILINEAR_IMPACT",
-    "two stiffnesses with a loop that loses energy",
+    "two stiffnesses with a dissipative loop",
     (
         Field("K1", Kind.REAL, "F/L", default=None, above=0, doc="first stiffness (with K2 and DY)"),
         Field("K2", Kind.REAL, "F/L", default=None, above=0, doc="second stiffness (with K1 and DY)"),
@@ -204,14 +204,14 @@ SPEC = Spec(
         Field(
             "E", Kind.REAL, "-", default=None, above=0, hi=1, doc="restitution of an impact that reaches DM"
         ),
-        Field("DM", Kind.REAL, "L", default=None, above=0, doc="largest overlap that is expected"),
-        Field("A", Kind.REAL, "-", default=0.1, above=0, below=1, doc="DY as a share of DM"),
+        Field("DM", Kind.REAL, "L", default=None, above=0, doc="largest expected overlap"),
+        Field("A", Kind.REAL, "-", default=0.1, above=0, below=1, doc="ratio DY / DM"),
         Field(
             "RELATION",
             Kind.WORD,
             default="EXACT",
             words=("EXACT", "PUBLISHED"),
-            doc="how E becomes K1 and K2: exact at DM, or by the loss on a Hertz contact's energy",
+            doc="how E gives K1 and K2: exact at DM, or by the energy loss of a Hertz contact",
         ),
     ),
     reference="Muthukumar 2003; Nielson 2005",

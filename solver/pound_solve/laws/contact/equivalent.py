@@ -73,7 +73,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "EQUIVALENT",
-    "Kelvin-Voigt contact of rigid floors that stands for distributed diaphragms (DIAPHRAGMS)",
+    "Kelvin-Voigt contact of rigid floors, equivalent to distributed diaphragms (DIAPHRAGMS)",
     (
         Field(
             "MODEL",
@@ -89,7 +89,7 @@ SPEC = Spec(
             default=1.0,
             above=0,
             hi=1,
-            doc="plasticity index of the collision: 1 elastic",
+            doc="plasticity index of collision; 1: elastic",
         ),
         TENSION,
     ),

@@ -170,7 +170,7 @@ DOC = "damping constant d"
 SPEC = Spec(
     "contact",
     "HUNT_CROSSLEY",
-    "power of the overlap, damping in proportion to it",
+    "power of the overlap, damping proportional to it",
     (*power_fields(1.5), *constants.fields("D", DOC, "Hunt & Crossley 1975")),
     reference="Hunt & Crossley 1975",
     sample="E=0.5",

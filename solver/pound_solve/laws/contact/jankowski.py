@@ -127,7 +127,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "JANKOWSKI",
-    "power of the overlap, and a dashpot in approach only",
+    "power of the overlap, dashpot in approach only",
     (*power_fields(1.5, linear=False), *constants.fields("XI", "impact damping ratio", "Jankowski 2006")),
     reference="Jankowski 2005, 2006",
     sample="E=0.5",

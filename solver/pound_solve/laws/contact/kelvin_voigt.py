@@ -144,13 +144,13 @@ TENSION = Field(
     default="NO",
     words=("NO", "YES"),
     codes={"NO": 0, "YES": 1},
-    doc="hold until the overlap is gone",
+    doc="tension until the overlap ends",
 )
 
 SPEC = Spec(
     "contact",
     "KELVIN_VOIGT",
-    "spring and dashpot while pressed",
+    "spring and dashpot while closed",
     (
         *linear_fields("Anagnostopoulos 2004"),
         TENSION,

@@ -20,7 +20,7 @@ from pound_solve.laws.contact.stereomechanics import build
 SPEC = Spec(
     "contact",
     "LAGRANGE",
-    "rigid: together while the multiplier presses",
+    "rigid: closed while the multiplier presses",
     (
         Field(
             "E",
@@ -29,7 +29,7 @@ SPEC = Spec(
             default=0.0,
             lo=0,
             hi=1,
-            doc="restitution of the two nodes alone; 0: they take up one velocity",
+            doc="restitution of the two nodes alone; 0: they move on together",
         ),
     ),
     reference="after Papadrakakis et al. 1991",

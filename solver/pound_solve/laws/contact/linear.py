@@ -20,7 +20,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "LINEAR",
-    "spring while pressed",
+    "spring while closed",
     (Field("K", Kind.REAL, "F/L", above=0, words=("ADJACENT",), doc="contact stiffness"),),
     code=0,
     reference="Maison & Kasai 1990 and others",

@@ -87,7 +87,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "MAHMOUD_JANKOWSKI",
-    "spring, and a dashpot in approach only",
+    "spring, and dashpot in approach only",
     linear_fields("Mahmoud & Jankowski 2011"),
     reference="Mahmoud & Jankowski 2011",
     sample="E=0.5",

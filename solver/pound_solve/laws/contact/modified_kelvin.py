@@ -32,7 +32,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "MODIFIED_KELVIN",
-    "linear spring, damping in proportion to its force",
+    "linear spring, damping proportional to its force",
     (stiffness_field(N), *constants.fields("D", DOC, "Ye, Li & Zhu 2009")),
     reference="Ye, Li & Zhu 2009",
     sample="E=0.5",

@@ -46,15 +46,13 @@ def drag_slope(k: float, n: float, mass: float, x: float, v: float, c: float) ->
 
 def stiffness_field(n: float) -> Field:
     """K of a law with that exponent."""
-    return Field(
-        "K", Kind.REAL, stiffness_unit(n), above=0, doc="contact stiffness: force at an overlap of one"
-    )
+    return Field("K", Kind.REAL, stiffness_unit(n), above=0, doc="contact stiffness: force at unit overlap")
 
 
 def power_fields(n: float, linear: bool = True) -> tuple[Field, Field]:
     """K and N of a law whose exponent is free, by default `n`; `linear`: N may be 1."""
     return (
-        Field("K", Kind.REAL, "F/L^N", above=0, doc="contact stiffness: force at an overlap of one"),
+        Field("K", Kind.REAL, "F/L^N", above=0, doc="contact stiffness: force at unit overlap"),
         Field(
             "N",
             Kind.REAL,

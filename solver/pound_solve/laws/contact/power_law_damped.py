@@ -134,7 +134,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "POWER_LAW_DAMPED",
-    "power of the overlap, restitution independent of the speed",
+    "power of the overlap, restitution independent of speed",
     (
         *power_fields(1.5, linear=False),
         *constants.fields("ALPHA", "damping constant", "the one with tension"),

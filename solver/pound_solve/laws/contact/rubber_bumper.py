@@ -176,10 +176,8 @@ SPEC = Spec(
     "rubber of limited thickness, damped in restitution",
     (
         *power_fields(2.65),
-        Field("THICKNESS", Kind.REAL, "L", default=None, above=0, doc="of the rubber; left out: unlimited"),
-        Field(
-            "LIMIT", Kind.REAL, "-", default=0.8, above=0, hi=1, doc="share of the thickness that is soft"
-        ),
+        Field("THICKNESS", Kind.REAL, "L", default=None, above=0, doc="thickness; omitted: unlimited"),
+        Field("LIMIT", Kind.REAL, "-", default=0.8, above=0, hi=1, doc="soft fraction of the thickness"),
         Field("KU", Kind.REAL, "F/L", default=None, above=0, doc="stiffness beyond the limit"),
         *constants.fields("D", "damping constant d", "their fit"),
     ),

@@ -93,7 +93,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "STEREOMECHANICS",
-    "rigid: velocities change at once",
+    "rigid: velocities jump",
     (
         Field(
             "E",

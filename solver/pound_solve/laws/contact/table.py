@@ -168,17 +168,17 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 SPEC = Spec(
     "contact",
     "TABLE",
-    "force by points, elastic or crushing",
+    "tabulated force, elastic or crushing",
     (
         Field("DEPTHS", Kind.REAL, "L", count=(1, MOST), above=0, doc="overlaps of the points, ascending"),
-        Field("FORCES", Kind.REAL, "F", count=(1, MOST), above=0, doc="forces there"),
+        Field("FORCES", Kind.REAL, "F", count=(1, MOST), above=0, doc="their forces"),
         Field(
             "KU",
             Kind.REAL,
             "F/L",
             default=None,
             above=0,
-            doc="unloading stiffness of what crushes; left out: back along the table",
+            doc="unloading stiffness if crushing; omitted: back along the table",
         ),
     ),
     sample="DEPTHS=0.5,1.5,3 FORCES=1,1.4,3 KU=2.5",

@@ -183,7 +183,7 @@ def build(
 SPEC = Spec(
     "damper",
     "FLUID",
-    "a power of the rate; with ALPHA=1 a linear dashpot",
+    "power of the rate; with ALPHA=1 a linear dashpot",
     (Field("ALPHA", Kind.REAL, "-", default=1.0, above=0, doc="exponent of the rate in the force"),),
     reference="Constantinou & Symans 1992",
     sample="ALPHA=0.5",

@@ -71,7 +71,7 @@ R = Field(
     default=0.0,
     lo=0.0,
     below=1.0,
-    doc="post-yield stiffness as a share of the initial",
+    doc="ratio of post-yield to initial stiffness",
 )
 ALFA = Field(
     "ALFA",
@@ -80,7 +80,7 @@ ALFA = Field(
     default=0.0,
     lo=0.0,
     hi=1.0,
-    doc="unloading stiffness falls with this power of the ductility; 0: it stays the initial",
+    doc="unloading stiffness falls with this power of ductility; 0: initial stiffness",
 )
 LOSS = (
     Field(
@@ -89,8 +89,8 @@ LOSS = (
         default="NONE",
         words=tuple(FORMS),
         codes=FORMS,
-        doc="strength falls with the ductility of each direction, with the larger of both, or with the "
-        "number of inelastic cycles; RCYC: by cycles, too; SUDDEN: that, and beyond DUCT2 at DUCT3 only",
+        doc="strength falls with the ductility of each direction, the larger of both, or the number of "
+        "inelastic cycles; RCYC: also with cycles; SUDDEN: likewise, and beyond DUCT2 only at DUCT3",
     ),
     Field(
         "DUCT1",
@@ -98,17 +98,17 @@ LOSS = (
         "-",
         default=None,
         lo=1.0,
-        doc="ductility (CYCLES: number of cycles) where the loss of strength begins",
+        doc="ductility (CYCLES: number of cycles) at which strength loss begins",
     ),
     Field("DUCT2", Kind.REAL, "-", default=None, above=1.0, doc="ductility where it ends"),
-    Field("RDUCT", Kind.REAL, "-", default=None, above=0.0, hi=1.0, doc="share of the yield force left"),
+    Field("RDUCT", Kind.REAL, "-", default=None, above=0.0, hi=1.0, doc="residual yield force ratio"),
     Field(
         "DUCT3",
         Kind.REAL,
         "-",
         default=None,
         above=1.0,
-        doc="ductility where 0.01 of the yield force is left; left out: the share RDUCT stays",
+        doc="ductility where 0.01 of the yield force is left; omitted: RDUCT stays",
     ),
     Field(
         "RCYC",
@@ -117,7 +117,7 @@ LOSS = (
         default=None,
         lo=0.0,
         below=100.0,
-        doc="loss of the yield force by each inelastic cycle, per cent; of the forms RCYC and SUDDEN",
+        doc="loss of yield force per inelastic cycle, per cent; for the forms RCYC and SUDDEN",
     ),
 )
 _ITEMS = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")

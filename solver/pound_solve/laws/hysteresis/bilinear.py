@@ -93,7 +93,7 @@ SPEC = Spec(
             "-",
             default=0.0,
             below=1.0,
-            doc="post-yield stiffness as a share of the initial",
+            doc="ratio of post-yield to initial stiffness",
         ),
         *LOSS,
     ),

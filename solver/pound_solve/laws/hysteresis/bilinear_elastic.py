@@ -88,7 +88,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             below=1.0,
-            doc="stiffness beyond the limit as a share of the initial",
+            doc="stiffness beyond the limit / initial stiffness",
         ),
     ),
     reference="elementary",

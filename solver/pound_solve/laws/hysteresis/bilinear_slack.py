@@ -147,7 +147,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
 SPEC = Spec(
     "hysteresis",
     "BILINEAR_SLACK",
-    "bilinear with slackness",
+    "bilinear with slack",
     (
         Field(
             "R",
@@ -156,7 +156,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             below=1.0,
-            doc="post-yield stiffness as a share of the initial",
+            doc="ratio of post-yield to initial stiffness",
         ),
         Field(
             "SLACK",
@@ -164,8 +164,8 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which the spring engages, positive and (signed) negative; "
-            "one value: the same on both sides",
+            doc="deformation at which the spring engages, positive and (signed) negative; one value: "
+            "both sides",
         ),
         Field(
             "GROW",

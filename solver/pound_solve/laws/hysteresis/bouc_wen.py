@@ -280,7 +280,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             below=1.0,
-            doc="post-yield stiffness as a share of the initial",
+            doc="ratio of post-yield to initial stiffness",
         ),
         Field("N", Kind.REAL, "-", lo=1.0, hi=100.0, doc="exponent; the larger, the sharper the knee"),
         Field(
@@ -290,7 +290,7 @@ SPEC = Spec(
             default=0.5,
             lo=0.5,
             hi=1.0,
-            doc="share of beta in beta + gamma; 0.5: it unloads along a straight line",
+            doc="ratio beta / (beta + gamma); 0.5: unloading is a straight line",
         ),
     ),
     reference="Bouc 1967; Wen 1976",

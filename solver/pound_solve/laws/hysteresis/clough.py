@@ -30,7 +30,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
 SPEC = Spec(
     "hysteresis",
     "CLOUGH",
-    "degrading stiffness, towards the peak",
+    "degrading stiffness, peak-oriented",
     (R, ALFA, *LOSS),
     code=11,
     reference="Clough & Johnston 1966; Ruaumoko rule 11",

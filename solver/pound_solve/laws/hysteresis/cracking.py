@@ -26,9 +26,7 @@ PARAMETERS = 9  #: numbers of a law that belong to the backbone, with the power 
 
 Point = tuple[float, float]  #: deformation and force, mirrored
 
-R = replace(
-    SHARE_OF_INITIAL, doc="post-yield stiffness as a share of the secant stiffness to the yield point"
-)
+R = replace(SHARE_OF_INITIAL, doc="ratio of post-yield stiffness to secant stiffness at the yield point")
 FCR = Field(
     "FCR",
     Kind.REAL,
@@ -37,9 +35,7 @@ FCR = Field(
     above=0.0,
     below=1.0,
     count=(1, 2),
-    doc="force of the crack point as a share of the yield force, positive and negative side; "
-    "one value: "
-    "both",
+    doc="ratio of cracking force to yield force, positive and negative side; one value: both",
 )
 RHO = Field(
     "RHO",
@@ -49,7 +45,7 @@ RHO = Field(
     above=0.0,
     below=1.0,
     count=(1, 2),
-    doc="secant stiffness to the yield point as a share of the initial",
+    doc="secant stiffness at the yield point / initial stiffness",
 )
 
 

@@ -130,7 +130,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             below=1.0,
-            doc="post-yield stiffness as a share of the initial",
+            doc="ratio of post-yield to initial stiffness",
         ),
         Field(
             "BETA",
@@ -138,7 +138,7 @@ SPEC = Spec(
             "-",
             above=0.0,
             hi=1.0,
-            doc="height of the flag as a share of the yield force; without any, BILINEAR_ELASTIC",
+            doc="ratio of flag height to yield force; for zero height use BILINEAR_ELASTIC",
         ),
     ),
     reference="Christopoulos, Filiatrault & Folz 2002",

@@ -176,7 +176,7 @@ BACKBONE = (
         default=0.0,
         lo=0.0,
         below=1.0,
-        doc="hardening stiffness as a share of the initial",
+        doc="ratio of hardening to initial stiffness",
     ),
     Field(
         "DP",
@@ -184,8 +184,8 @@ BACKBONE = (
         "L",
         above=0.0,
         count=(1, 2),
-        doc="plastic deformation from yield to the cap (theta_p), positive side and negative side; "
-        "one value: the same on both sides",
+        doc="plastic deformation from yield to the cap (theta_p), positive and negative side; one value: "
+        "both",
     ),
     Field(
         "DPC",
@@ -202,7 +202,7 @@ BACKBONE = (
         default=0.0,
         lo=0.0,
         below=1.0,
-        doc="residual strength as a share of the yield force",
+        doc="ratio of residual strength to yield force",
     ),
     Field(
         "DU",
@@ -211,7 +211,7 @@ BACKBONE = (
         default=None,
         above=0.0,
         count=(1, 2),
-        doc="ultimate deformation, at which all strength is lost, likewise; left out: none",
+        doc="ultimate deformation, at which all strength is lost, likewise; omitted: none",
     ),
 )
 

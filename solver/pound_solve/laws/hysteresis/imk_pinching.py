@@ -307,7 +307,7 @@ SPEC = Spec(
             "-",
             above=0.0,
             hi=1.0,
-            doc="force that slack reloading aims at, as a share of the peak's",
+            doc="target force of pinched reloading / peak force",
         ),
         Field(
             "KAPPAD",
@@ -315,8 +315,8 @@ SPEC = Spec(
             "-",
             lo=0.0,
             hi=1.0,
-            doc="break point: where slack reloading ends, counted back from the plastic deformation "
-            "as a share of it",
+            doc="break point ending pinched reloading: distance back from plastic deformation as a "
+            "fraction of it",
         ),
     ),
     reference="Ibarra, Medina & Krawinkler 2005; Lignos & Krawinkler 2011",

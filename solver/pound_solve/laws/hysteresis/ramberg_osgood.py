@@ -234,7 +234,7 @@ SPEC = Spec(
             "-",
             default=1.0,
             above=0.0,
-            doc="plastic deformation at the yield force as a share of the elastic",
+            doc="ratio of plastic to elastic deformation at the yield force",
         ),
     ),
     code=3,

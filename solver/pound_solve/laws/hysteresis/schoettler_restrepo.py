@@ -250,7 +250,7 @@ SPEC = Spec(
             default=1.0,
             above=0.0,
             hi=1.0,
-            doc="force of the pinch point as a share of that at the largest deformation; 1: no pinching",
+            doc="ratio of pinching force to force at the largest deformation; 1: no pinching",
         ),
         Field(
             "DULT",
@@ -259,7 +259,7 @@ SPEC = Spec(
             default=None,
             above=1.0,
             count=(1, 2),
-            doc="ductility up to which the rule is known: beyond it the report warns; left out: none",
+            doc="ductility up to which the rule is known; the report warns beyond; omitted: none",
         ),
     ),
     code=52,

@@ -47,7 +47,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             hi=1.0,
-            doc="reloading aims this share of the plastic deformation short of the peak",
+            doc="reloading aims short of the peak by this share of plastic deformation",
         ),
         *LOSS,
     ),

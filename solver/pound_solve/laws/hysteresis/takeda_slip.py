@@ -257,7 +257,7 @@ SPEC = Spec(
             default=3.0,
             lo=0.0,
             hi=20.0,
-            doc="power n in the stiffness of slip; 0: the least slip",
+            doc="exponent n of the slip stiffness; 0: least slip",
         ),
         Field(
             "INNER",
@@ -266,7 +266,7 @@ SPEC = Spec(
             default=1.0,
             above=0.0,
             hi=1.0,
-            doc="stiffness of unloading from a reloading line as a share of that from the backbone",
+            doc="ratio of unloading stiffness from a reloading line to that from the backbone",
         ),
     ),
     reference="Takeda, Sozen & Nielsen 1970; Kabeyasawa et al. 1983",

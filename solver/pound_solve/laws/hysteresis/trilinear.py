@@ -114,7 +114,7 @@ SPEC = Spec(
             "-",
             above=0.0,
             below=1.0,
-            doc="stiffness after the first yield as a share of the initial",
+            doc="stiffness after the first yield / initial stiffness",
         ),
         Field(
             "R2",
@@ -122,7 +122,7 @@ SPEC = Spec(
             "-",
             default=0.0,
             below=1.0,
-            doc="stiffness after the second yield as a share of the initial",
+            doc="stiffness after the second yield / initial stiffness",
         ),
         Field(
             "F2",

@@ -291,14 +291,14 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             below=1.0,
-            doc="stiffness from the yield to the ultimate force as a share of the initial",
+            doc="ratio of stiffness from yield to ultimate force to initial stiffness",
         ),
         Field(
             "FU",
             Kind.REAL,
             "F",
             count=(1, 2),
-            doc="ultimate force, positive and (signed) negative; one value: the same on both sides",
+            doc="ultimate force, positive and (signed) negative; one value: both sides",
         ),
         Field("FI", Kind.REAL, "F", lo=0.0, doc="force at which the pinched lines cross zero deformation"),
         Field(
@@ -307,7 +307,7 @@ SPEC = Spec(
             "-",
             default=0.0,
             hi=0.0,
-            doc="stiffness beyond the ultimate force as a share of the initial",
+            doc="stiffness beyond the ultimate force / initial stiffness",
         ),
         Field(
             "PUNL",
@@ -323,8 +323,8 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which the spring first engages, positive and (signed) negative; "
-            "one value: the same on both sides",
+            doc="deformation at which the spring first engages, positive and (signed) negative; one "
+            "value: both sides",
         ),
         Field(
             "BETA",
@@ -341,7 +341,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             hi=1.0,
-            doc="power of the reloading stiffness; 0: it stays the initial one",
+            doc="exponent of reloading stiffness; 0: initial stiffness",
         ),
         Field(
             "RPINCH",
@@ -350,7 +350,7 @@ SPEC = Spec(
             default=None,
             lo=0.0,
             below=1.0,
-            doc="stiffness of the pinched lines as a share of the initial; left out: R",
+            doc="stiffness of the pinched lines / initial stiffness; omitted: R",
         ),
     ),
     code=9,

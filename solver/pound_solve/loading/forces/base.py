@@ -11,7 +11,7 @@ from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.records.base import RecordError
 
 COMMON: Final = (
-    Field("NODES", Kind.NODES, doc="nodes that get this force each", positional=True),
+    Field("NODES", Kind.NODES, doc="nodes that each get this force", positional=True),
     Field("FX", Kind.REAL, "F", default=None, doc="force along x", positional=True),
     Field("FY", Kind.REAL, "F", default=None, doc="force along y, upwards", positional=True),
     Field("MZ", Kind.REAL, "F*L", default=None, doc="moment, anticlockwise", positional=True),

@@ -27,7 +27,7 @@ SPEC: Final = Spec(
     "force history from a file",
     (
         *COMMON,
-        Field("FILE", Kind.TEXT, doc="file of the history, or the name of a known record"),
+        Field("FILE", Kind.TEXT, doc="file of the history, or name of a known record"),
         *record.FIELDS,
     ),
     impl=build,

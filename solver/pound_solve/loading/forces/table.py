@@ -32,8 +32,7 @@ SPEC: Final = Spec(
             "POINTS",
             Kind.REAL,
             count=(4, 400_000),
-            doc="time, factor, time, factor, ...; straight lines between them, zero outside; "
-            "a time that stands twice is a jump",
+            doc="time, factor, time, factor, ...; linear between, zero outside; a repeated time is a jump",
         ),
     ),
     impl=build,

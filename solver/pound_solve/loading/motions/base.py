@@ -40,16 +40,16 @@ COMMON: Final = (
         Kind.REAL,
         "-",
         default=1.0,
-        doc="factor on the acceleration; a negative one reverses it",
+        doc="factor on the acceleration; negative: reversed",
     ),
-    Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; left out: the whole base"),
+    Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; omitted: the whole base"),
     Field(
         "WAVE",
         Kind.REAL,
         "L/T",
         default=None,
-        doc="speed at which the motion runs along x from one of SUPPORTS to the next, below zero "
-        "towards -x; left out: all move at once",
+        doc="speed of the motion along x from one of SUPPORTS to the next, negative towards -x; omitted: "
+        "all move at once",
     ),
     Field(
         "ABOUT",
@@ -57,7 +57,7 @@ COMMON: Final = (
         "L",
         default=(0.0, 0.0),
         count=(2, 2),
-        doc="x,y of the point that stays in place where DIRECTION=R rotates the ground",
+        doc="x,y of the fixed point about which DIRECTION=R rotates the ground",
     ),
 )
 

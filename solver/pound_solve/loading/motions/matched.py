@@ -193,7 +193,7 @@ SPEC: Final = Spec(
             Kind.REAL,
             above=0,
             count=(4, 400),
-            doc="period, pseudo-acceleration, period, ... in deck units; straight lines in logarithms",
+            doc="period, pseudo-acceleration, period, ... in deck units; log-log interpolation",
         ),
         Field(
             "XI",
@@ -204,7 +204,7 @@ SPEC: Final = Spec(
             hi=MOST_DAMPING,
             doc="damping ratio of SPECTRUM",
         ),
-        Field("TOL", Kind.REAL, "-", default=0.05, lo=0.01, hi=1, doc="misfit that is allowed, relative"),
+        Field("TOL", Kind.REAL, "-", default=0.05, lo=0.01, hi=1, doc="allowed relative misfit"),
         *ENVELOPE,
         *COMMON,
     ),

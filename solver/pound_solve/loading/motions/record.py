@@ -205,21 +205,21 @@ _USED: Final = 0.05  #: share of gravity that a record has which someone uses as
 
 #: what of a file acts, and when
 FIELDS: Final = (
-    Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="how the file is written"),
+    Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="format of the file"),
     Field(
         "LINES",
         Kind.INT,
         default=None,
         lo=1,
         count=(2, 2),
-        doc="first and last line of the file that hold the record; left out: all",
+        doc="first and last line of the record in the file; omitted: all",
     ),
     Field(
         "START",
         Kind.REAL,
         "T",
         default=0.0,
-        doc="time of the record that acts at t = 0; below zero: a delay",
+        doc="time of the record at t = 0; negative: a delay",
     ),
     Field(
         "DURATION",
@@ -227,9 +227,9 @@ FIELDS: Final = (
         "T",
         default=None,
         above=0,
-        doc="length of the part that acts; left out: to the end",
+        doc="duration of the part used; omitted: to the end",
     ),
-    Field("TSCALE", Kind.REAL, "-", default=1.0, above=0, doc="factor on the times of the part that acts"),
+    Field("TSCALE", Kind.REAL, "-", default=1.0, above=0, doc="factor on the times of the part used"),
 )
 
 SPEC: Final = Spec(
@@ -237,13 +237,13 @@ SPEC: Final = Spec(
     "RECORD",
     "recorded accelerogram",
     (
-        Field("FILE", Kind.TEXT, doc="file of the record, or the name of a known record", positional=True),
+        Field("FILE", Kind.TEXT, doc="file of the record, or name of a known record", positional=True),
         Field(
             "UNIT",
             Kind.WORD,
             default=None,
             words=_UNITS,
-            doc="unit of the samples; left out: what the file says, else G; DECK: the deck's own",
+            doc="unit of the samples; omitted: as the file states, else G; DECK: the deck's own",
         ),
         *FIELDS,
         *COMMON,

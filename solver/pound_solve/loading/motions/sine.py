@@ -163,7 +163,7 @@ FIELDS: Final = (
         "T",
         default=None,
         above=0,
-        doc="how long it lasts; left out: to the end of the analysis",
+        doc="duration; omitted: to the end of the analysis",
     ),
 )
 
@@ -179,14 +179,14 @@ SPEC: Final = Spec(
             Kind.REAL,
             "L/T",
             default=None,
-            doc="ground velocity at t = 0; left out: the steady one",
+            doc="ground velocity at t = 0; omitted: steady state",
         ),
         Field(
             "DISPLACEMENT0",
             Kind.REAL,
             "L",
             default=None,
-            doc="ground displacement at t = 0; left out: the steady one",
+            doc="ground displacement at t = 0; omitted: steady state",
         ),
         *COMMON,
     ),

@@ -153,11 +153,11 @@ def envelope(t: Array, rise: float, strong: float, decay: float) -> Array:
 #: items of every motion that noise under an envelope makes
 ENVELOPE: Final = (
     Field("SEED", Kind.INT, default=1, lo=0, doc="seed of the noise; the same seed gives the same motion"),
-    Field("DT", Kind.REAL, "T", default=0.01, above=0, doc="step of the samples"),
+    Field("DT", Kind.REAL, "T", default=0.01, above=0, doc="sampling interval"),
     Field("DURATION", Kind.REAL, "T", default=20.0, above=0, doc="length of the motion"),
-    Field("RISE", Kind.REAL, "T", default=2.0, lo=0, doc="length of the rise of the envelope"),
-    Field("STRONG", Kind.REAL, "T", default=8.0, lo=0, doc="length of its constant part"),
-    Field("DECAY", Kind.REAL, "1/T", default=0.3, lo=0, doc="exponent of its fall"),
+    Field("RISE", Kind.REAL, "T", default=2.0, lo=0, doc="rise time of the envelope"),
+    Field("STRONG", Kind.REAL, "T", default=8.0, lo=0, doc="duration of its plateau"),
+    Field("DECAY", Kind.REAL, "1/T", default=0.3, lo=0, doc="its decay exponent"),
 )
 
 SPEC: Final = Spec(
@@ -181,7 +181,7 @@ SPEC: Final = Spec(
             "1/T",
             default=None,
             above=0,
-            doc="frequency of the second filter; left out: a tenth of WG",
+            doc="frequency of the second filter; omitted: a tenth of WG",
         ),
         Field(
             "ZF",
@@ -189,7 +189,7 @@ SPEC: Final = Spec(
             "-",
             default=None,
             above=0,
-            doc="damping ratio of the second filter; left out: ZG",
+            doc="damping ratio of the second filter; omitted: ZG",
         ),
         *ENVELOPE,
         *COMMON,

@@ -78,8 +78,8 @@ SPEC: Final = Spec(
             "POINTS",
             Kind.REAL,
             count=(4, 400_000),
-            doc="time, acceleration, time, acceleration, ... in the deck's units; straight lines between "
-            "them, zero outside; a time that stands twice is a jump",
+            doc="time, acceleration, time, acceleration, ... in the deck's units; linear between, zero "
+            "outside; a repeated time is a jump",
         ),
         *COMMON,
     ),

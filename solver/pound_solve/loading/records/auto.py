@@ -53,7 +53,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 SPEC: Final = Spec(
     "record",
     "AUTO",
-    "recognised by its content",
+    "recognised by content",
     columns.FIELDS + header.FIELDS,
     impl=Format(sniff, read),
 )

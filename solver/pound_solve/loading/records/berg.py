@@ -47,7 +47,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 SPEC: Final = Spec(
     "record",
     "BERG",
-    "pairs of time and acceleration, four a line (Ruaumoko .EQB)",
+    "time-acceleration pairs, four per line (Ruaumoko .EQB)",
     code=1,
     reference="Carr, Ruaumoko manual: earthquake records",
     impl=Format(sniff, read),

@@ -21,21 +21,21 @@ FIELDS: Final = (
         "T",
         default=None,
         above=0,
-        doc="step of evenly spaced samples; left out: column 1 is the time",
+        doc="step of evenly spaced samples; omitted: column 1 is the time",
     ),
     Field(
         "COLUMN",
         Kind.INT,
         default=None,
         lo=0,
-        doc="column of the acceleration, counted from 1; 0: all numbers in turn; left out: the only one",
+        doc="column of the acceleration, counted from 1; 0: all numbers in turn; omitted: the only one",
     ),
     Field(
         "TIMES",
         Kind.INT,
         default=1,
         lo=1,
-        doc="column of the times, counted from 1, where DT is left out",
+        doc="column of the times, counted from 1, if DT is omitted",
     ),
 )
 
@@ -129,7 +129,7 @@ def _column(width: int, timed: int, column: int | None) -> int:
 SPEC: Final = Spec(
     "record",
     "COLUMNS",
-    "columns of numbers, CSV too",
+    "number columns, also CSV",
     FIELDS,
     impl=Format(sniff, read, greedy=True),
 )

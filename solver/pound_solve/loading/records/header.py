@@ -16,7 +16,7 @@ FIELDS: Final = (
         "COMPONENT",
         Kind.TEXT,
         default=None,
-        doc="1, 2, 3 or the name in the file such as N28W, 90 or UP; left out: the first horizontal one",
+        doc="1, 2, 3 or the name in the file, such as N28W, 90 or UP; omitted: the first horizontal one",
     ),
 )
 

@@ -18,7 +18,7 @@ BUILDING = Field(
     "BUILDING",
     Kind.TEXT,
     default="",
-    doc="name of the building that is damped, by its own modes; left out: the whole structure",
+    doc="name of the building to damp by its own modes; omitted: the whole structure",
 )
 NODES = Field(
     "NODES",
@@ -91,8 +91,7 @@ AFTER = Field(
     Kind.WORD,
     default="REST",
     words=("REST", "STATIC"),
-    doc="whose modes are meant: those of the structure at rest, or of the loaded one, as of MODAL "
-    "AFTER=STATIC",
+    doc="modes of the structure at rest, or of the loaded structure, as in MODAL AFTER=STATIC",
 )  #: of the models that are made of modes
 
 

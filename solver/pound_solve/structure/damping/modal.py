@@ -101,7 +101,7 @@ def build(card: Card, context: DampingContext) -> Group:
 SPEC = Spec(
     "damping",
     "MODAL",
-    "ratios of the modes, constant matrix",
+    "modal ratios, constant matrix",
     (
         Field(
             "XI",
@@ -109,7 +109,7 @@ SPEC = Spec(
             "-",
             count=(1, 1000),
             lo=0,
-            doc="damping ratio of mode 1, 2, ...; the last holds for the rest; or at OMEGA or MODES",
+            doc="damping ratio of mode 1, 2, ..., the last also for the rest; or at OMEGA or MODES",
         ),
         Field(
             "OMEGA",
@@ -118,23 +118,23 @@ SPEC = Spec(
             default=None,
             count=(2, 100),
             above=0,
-            doc="circular frequencies that have XI; modes between them are interpolated",
+            doc="circular frequencies of XI; modes between them are interpolated",
         ),
-        Field("MODES", Kind.INT, default=None, count=(2, 100), lo=1, doc="the same by modes"),
+        Field("MODES", Kind.INT, default=None, count=(2, 100), lo=1, doc="modes with XI"),
         Field(
             "BEYOND",
             Kind.WORD,
             default="CONSTANT",
             words=("CONSTANT", "LINEAR"),
             codes={"CONSTANT": 3, "LINEAR": 2},
-            doc="before the first and after the last point: the same ratio, or the same line",
+            doc="before the first and after the last point: same ratio, or same line",
         ),
         Field(
             "OVER",
             Kind.WORD,
             default="FREQUENCY",
             words=("FREQUENCY", "MODE"),
-            doc="what the ratio is linear in: the frequency, or the number of the mode",
+            doc="the ratio is linear in the frequency, or in the mode number",
         ),
         BUILDING,
         NODES,

@@ -92,8 +92,8 @@ SPEC = Spec(
     "RAYLEIGH",
     "mass and stiffness proportional",
     (
-        Field("ALPHA", Kind.REAL, "1/T", default=None, lo=0, doc="factor of the mass"),
-        Field("BETA", Kind.REAL, "T", default=None, lo=0, doc="factor of the stiffness"),
+        Field("ALPHA", Kind.REAL, "1/T", default=None, lo=0, doc="factor on the mass"),
+        Field("BETA", Kind.REAL, "T", default=None, lo=0, doc="factor on the stiffness"),
         Field(
             "XI",
             Kind.REAL,
@@ -101,7 +101,7 @@ SPEC = Spec(
             default=None,
             count=(1, 2),
             lo=0,
-            doc="damping ratio at OMEGA or MODES; one value: the same at both",
+            doc="damping ratio at OMEGA or MODES; one value: at both",
         ),
         Field(
             "OMEGA",
@@ -110,7 +110,7 @@ SPEC = Spec(
             default=None,
             count=(2, 2),
             above=0,
-            doc="circular frequencies that have XI",
+            doc="circular frequencies of XI",
         ),
         Field(
             "MODES",
@@ -118,7 +118,7 @@ SPEC = Spec(
             default=None,
             count=(2, 2),
             lo=1,
-            doc="modes of the structure, or of the BUILDING, that have XI",
+            doc="modes of the structure, or of the BUILDING, with XI",
         ),
         Field(
             "STIFFNESS",
@@ -126,15 +126,15 @@ SPEC = Spec(
             default="INITIAL",
             words=("INITIAL", "TANGENT", "SECANT", "ELASTIC"),
             codes={"INITIAL": 0, "TANGENT": 1, "SECANT": 6},
-            doc="stiffness of hysteretic laws that BETA goes with: at rest, present, secant, or none",
+            doc="stiffness of hysteretic laws that BETA multiplies: initial, tangent, secant or none",
         ),
         BUILDING,
-        Field("NODES", Kind.NODES, default=None, doc="nodes of the mass part; left out: all"),
+        Field("NODES", Kind.NODES, default=None, doc="nodes of the mass term; omitted: all"),
         Field(
             "PROPS",
             Kind.PROPS,
             default=None,
-            doc="property sets of the stiffness part; left out: all but contacts",
+            doc="property sets of the stiffness term; omitted: all but contacts",
         ),
         AFTER,
     ),

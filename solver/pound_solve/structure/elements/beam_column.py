@@ -189,7 +189,7 @@ def build(context: ElementContext) -> Parts:
 SPEC = Spec(
     "element",
     "BEAM_COLUMN",
-    "beam-column with interaction of axial force and moment",
+    "beam-column with axial force-moment interaction",
     (
         *beam.FIELDS,
         Field(
@@ -207,8 +207,8 @@ SPEC = Spec(
             "",
             default=None,
             count=(6, 80),
-            doc="corners N,M,N,M,... of any other section's diagram, tension and sagging positive; without "
-            "hogging corners the hogging side is the mirror image",
+            doc="corners N,M,N,M,... of any other section's diagram, tension and sagging positive; "
+            "without hogging corners the hogging side mirrors them",
         ),
         Field(
             "SKEW",
@@ -216,7 +216,7 @@ SPEC = Spec(
             "-",
             default=0.1,
             lo=0,
-            doc="how far the diagram may be from symmetric about its centre, as a share of its half width",
+            doc="allowed asymmetry of the diagram about its centre, as a fraction of its half width",
         ),
         Field(
             "LP",
@@ -231,7 +231,7 @@ SPEC = Spec(
             Kind.WORD,
             default="BOTH",
             words=("BOTH", "I", "J"),
-            doc="ends that may yield; pinned ones do not",
+            doc="ends that can yield; pinned ends do not",
         ),
         Field(
             "RULE",

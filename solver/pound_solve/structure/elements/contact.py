@@ -160,28 +160,26 @@ SPEC = Spec(
             Kind.REAL,
             "deg",
             default=None,
-            doc="direction from I towards J or the wall; left out: the line I-J, or +x for a wall",
+            doc="direction from I towards J or the wall; omitted: the line I-J, or +x for a wall",
         ),
         Field(
             "ADJACENT",
             Kind.WORD,
             default="SOFTER",
             words=("SOFTER", "STIFFER", "HARMONIC"),
-            doc="which neighbour's stiffness K=ADJACENT takes, or the harmonic mean of both",
+            doc="neighbour whose stiffness K=ADJACENT uses, or harmonic mean of both",
         ),
         Field("LAW", Kind.FAMILY, default="LINEAR", family="contact", doc="contact law"),
-        Field("MU", Kind.REAL, "-", default=None, above=0, doc="coefficient of friction; left out: none"),
+        Field("MU", Kind.REAL, "-", default=None, above=0, doc="coefficient of friction; omitted: none"),
         Field(
             "MUD",
             Kind.REAL,
             "-",
             default=None,
             lo=0,
-            doc="coefficient of friction while it slips; left out: MU",
+            doc="coefficient of sliding friction; omitted: MU",
         ),
-        Field(
-            "KT", Kind.REAL, "F/L", default=None, above=0, doc="tangential stiffness while friction sticks"
-        ),
+        Field("KT", Kind.REAL, "F/L", default=None, above=0, doc="tangential stiffness while sticking"),
         Field(
             "MASSES",
             Kind.REAL,
@@ -189,7 +187,7 @@ SPEC = Spec(
             default=None,
             count=(1, 2),
             above=0,
-            doc="colliding masses for E and XI; left out: the nodes' own (a wall: infinite)",
+            doc="colliding masses for E and XI; omitted: the nodes' own (a wall: infinite)",
         ),
         Field(
             "DIAPHRAGMS",
@@ -198,8 +196,8 @@ SPEC = Spec(
             default=None,
             count=(1, 2),
             above=0,
-            doc="axial stiffness EA/L of the diaphragms that the nodes I and J stand for; one value: "
-            "that of I, the other is rigid; left out: the members behind the nodes are looked at",
+            doc="axial stiffness EA/L of the diaphragms that nodes I and J represent; one value: for I, "
+            "the other is rigid; omitted: from the members behind the nodes",
         ),
     ),
     impl=build,

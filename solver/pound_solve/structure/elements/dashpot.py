@@ -68,10 +68,10 @@ SPEC = Spec(
             "F*T/L",
             default=0.0,
             lo=0,
-            doc="force at the rate one along local x",
+            doc="force at unit rate along local x",
         ),
-        Field("CY", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="force at the rate one along local y"),
-        Field("CR", Kind.REAL, "F*L*T", default=0.0, lo=0, doc="moment at the rate one"),
+        Field("CY", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="force at unit rate along local y"),
+        Field("CR", Kind.REAL, "F*L*T", default=0.0, lo=0, doc="moment at unit rate"),
         *PLACEMENT,
         Field("LAW", Kind.FAMILY, default="FLUID", family="damper", doc="damper law"),
         Field(
@@ -80,8 +80,7 @@ SPEC = Spec(
             "F",
             default=None,
             count=(1, 2),
-            doc="largest force along x, positive and (signed) negative; one value: the same for both; "
-            "left out: none",
+            doc="largest force along x, positive and (signed) negative; one value: both; omitted: no limit",
         ),
         Field("FY", Kind.REAL, "F", default=None, count=(1, 2), doc="largest force along y"),
         Field("MR", Kind.REAL, "F*L", default=None, count=(1, 2), doc="largest moment"),
@@ -91,8 +90,8 @@ SPEC = Spec(
             "L",
             default=None,
             count=(1, 2),
-            doc="play along x, positive and (signed) negative end; one value: the same for both; "
-            "no force inside it, beyond it the damper resists the motion outwards and back",
+            doc="play along x, positive and (signed) negative end; one value: both; no force within it; "
+            "beyond it the damper resists motion outwards and back",
         ),
         Field("GAPY", Kind.REAL, "L", default=None, count=(1, 2), doc="play along y"),
         Field("GAPR", Kind.REAL, "rad", default=None, count=(1, 2), doc="play of the rotation"),

@@ -157,17 +157,15 @@ SPEC = Spec(
         Field("NU", Kind.REAL, "-", lo=0, below=0.5, doc="Poisson's ratio of the soil"),
         Field("WGT", Kind.REAL, "F/L^3", default=0.0, lo=0, doc="unit weight of the soil; 0: no radiation"),
         Field("B", Kind.REAL, "L", above=0, doc="half the footing's length along x"),
-        Field("L", Kind.REAL, "L", above=0, doc="half its length across the plane of the frame"),
-        Field(
-            "UPLIFT", Kind.WORD, default="NO", words=("NO", "YES"), doc="let the footing lift off the soil"
-        ),
+        Field("L", Kind.REAL, "L", above=0, doc="half its length normal to the frame plane"),
+        Field("UPLIFT", Kind.WORD, default="NO", words=("NO", "YES"), doc="allow uplift of the footing"),
         Field(
             "QU",
             Kind.REAL,
             "F",
             default=None,
             above=0,
-            doc="bearing strength of the whole footing, with UPLIFT; left out: elastic",
+            doc="bearing strength of the whole footing, with UPLIFT; omitted: elastic",
         ),
         Field(
             "COUNT", Kind.INT, "-", default=10, lo=2, hi=50, doc="number of springs below it, with UPLIFT"

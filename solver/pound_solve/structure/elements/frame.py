@@ -119,7 +119,7 @@ SPEC = Spec(
             "F*L",
             default=None,
             count=(1, 2),
-            doc="yield moment of the hinge at I, sagging and (signed) hogging; left out: no hinge there",
+            doc="yield moment of the hinge at I, sagging and (signed) hogging; omitted: no hinge",
         ),
         Field("MJ", Kind.REAL, "F*L", default=None, count=(1, 2), doc="yield moment of the hinge at J"),
         Field(
@@ -138,7 +138,7 @@ SPEC = Spec(
             default=None,
             above=0,
             count=(1, 2),
-            doc="length of the hinges at I and J, out of the beam, in place of KH; one value: both",
+            doc="length of the hinges at I and J within the beam, in place of KH; one value: both",
         ),
         *DAMAGE,
     ),

@@ -137,19 +137,19 @@ SPEC = Spec(
     "MULTISPRING",
     "row of springs across a section",
     (
-        Field("KX", Kind.REAL, "F/L", above=0, doc="stiffness of all springs along local x"),
+        Field("KX", Kind.REAL, "F/L", above=0, doc="total spring stiffness along local x"),
         Field(
             "FX",
             Kind.REAL,
             "F",
             default=None,
             count=(1, 2),
-            doc="yield force of all springs, positive and (signed) negative",
+            doc="total yield force, positive and (signed) negative",
         ),
         Field(
             "ANGLE", Kind.REAL, "deg", default=90.0, doc="angle of the springs from global x, anticlockwise"
         ),
-        Field("WIDTH", Kind.REAL, "L", default=None, above=0, doc="width that the springs are spread over"),
+        Field("WIDTH", Kind.REAL, "L", default=None, above=0, doc="width covered by the springs"),
         Field("COUNT", Kind.INT, "-", default=10, lo=2, hi=50, doc="number of springs over WIDTH"),
         Field(
             "Y",
@@ -157,7 +157,7 @@ SPEC = Spec(
             "L",
             default=None,
             count=(1, 50),
-            doc="places of the springs along local y, to the left of their direction, in place of WIDTH",
+            doc="spring positions along local y, to the left of their direction, in place of WIDTH",
         ),
         Field(
             "SHARE",
@@ -166,14 +166,14 @@ SPEC = Spec(
             default=None,
             above=0,
             count=(1, 50),
-            doc="shares of the springs at Y in KX and FX, of any sum; left out: equal",
+            doc="shares of the springs at Y in KX and FX, any sum; omitted: equal",
         ),
         Field(
             "TENSION",
             Kind.WORD,
             default="YES",
             words=("YES", "NO"),
-            doc="NO: springs open in tension, and are crushed at the negative FX, if any",
+            doc="NO: springs open in tension and crush at the negative FX, if any",
         ),
         Field(
             "RULE",

@@ -138,8 +138,8 @@ PLACEMENT = (
         default=None,
         lo=0,
         hi=1,
-        doc="where on the line I-J it sits, as a share from I: rigid arms join it to the nodes; "
-        "left out: its forces make no moment",
+        doc="position on the line I-J as a fraction from I: rigid arms join it to the nodes; omitted: "
+        "its forces cause no moment",
     ),
 )
 
@@ -158,7 +158,7 @@ SPEC = Spec(
             "F",
             default=None,
             count=(1, 2),
-            doc="yield force along x, positive and (signed) negative; left out: elastic",
+            doc="yield force along x, positive and (signed) negative; omitted: elastic",
         ),
         Field("FY", Kind.REAL, "F", default=None, count=(1, 2), doc="yield force along y"),
         Field("MR", Kind.REAL, "F*L", default=None, count=(1, 2), doc="yield moment"),

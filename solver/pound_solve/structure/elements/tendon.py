@@ -57,11 +57,11 @@ def build(context: ElementContext) -> Parts:
 SPEC = Spec(
     "element",
     "TENDON",
-    "bar or cable that takes tension only",
+    "tension-only bar or cable",
     (
         Field("E", Kind.REAL, "F/L^2", above=0, doc="modulus of elasticity"),
         Field("A", Kind.REAL, "L^2", above=0, doc="cross-section area"),
-        Field("PY", Kind.REAL, "F", default=None, above=0, doc="yield force; left out: elastic"),
+        Field("PY", Kind.REAL, "F", default=None, above=0, doc="yield force; omitted: elastic"),
         Field(
             "R",
             Kind.REAL,
@@ -69,7 +69,7 @@ SPEC = Spec(
             default=0.0,
             lo=0.0,
             below=1.0,
-            doc="post-yield stiffness as a share of the initial",
+            doc="ratio of post-yield to initial stiffness",
         ),
         Field("N0", Kind.REAL, "F", default=0.0, lo=0, doc="prestress of the undeformed structure"),
         Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it becomes taut"),
