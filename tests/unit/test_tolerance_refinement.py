@@ -94,7 +94,7 @@ def test_smaller_tolerances_follow_the_differences(tmp_path: Path, monkeypatch: 
         tried = tolerances(monkeypatch)
         made_up(monkeypatch, [1.0, second, second, second, second, second])
         found = run(tmp_path, "AUTO TOL=1e-2")
-        assert tried[:3] == pytest.approx([1e-3, 1e-4, share * 1e-4])
+        assert tried[:3] == pytest.approx([1e-5, 1e-6, share * 1e-6])
         assert estimated(found) <= 1e-2
         found.close()
         monkeypatch.undo()
@@ -112,10 +112,15 @@ def test_two_runs_that_agree_by_chance_are_not_believed(
     assert estimated(found) == pytest.approx(0.02 * (tried[-2] / tried[0]) ** 0.5)
 
 
-def test_a_difference_of_nothing_is_no_estimate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("tol", "least"), [(1e-5, 1e-6), (1e-4, 1e-5), (1e-3, 5e-5), (0.1, 5e-3)])
+def test_a_difference_of_nothing_is_no_estimate(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tol: float, least: float
+) -> None:
+    """The tolerance of the first run counts, and a share of what was asked for."""
     tried = tolerances(monkeypatch)
     made_up(monkeypatch, [1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
-    assert estimated(run(tmp_path, "AUTO TOL=1e-3")) == tried[-2]
+    assert estimated(run(tmp_path, f"AUTO TOL={tol}")) == pytest.approx(least, rel=1e-12)
+    assert tried[0] <= 1e-5
 
 
 def test_it_ends_where_no_smaller_tolerance_brings_nearer(

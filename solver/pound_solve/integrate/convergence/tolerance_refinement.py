@@ -6,7 +6,8 @@ ten times that of the second; it is taken for that of the second.  Two runs may 
 to the runs before them count, too, as if errors fell with the root of the tolerance only.  Steps that end
 with the intervals of the record may be the same in both runs, and then no difference tells nothing: an
 estimate is at least the tolerance of the first run, and runs of as many steps are compared only where no
-tolerance is smaller.
+tolerance is smaller.  Two runs may also take the same wrong way where a hinge nearly turns back: the first
+tolerance is therefore small even where much error is allowed, and an estimate is at least a share of that.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ from pound_solve.structure.reduction import ReducedSystem
 
 STEPS = 2.0  #: of a run that are expected between two samples of the excitation or instants of output
 FIRST = 0.1  #: tolerance of the first run, as a share of that of the peaks
-MOST = 1e-3  #: the same at most: a larger one makes hardly fewer steps, since intervals and events remain
+MOST = 1e-5  #: the same at most: a larger one hardly saves steps, since intervals and events remain
+CLAIMED = 0.05  #: least estimate over the tolerance of the peaks: no more is claimed than was asked for
 NEXT, NEXT_LEAST = 0.1, 1e-3  #: tolerance of the next run over that of the last, at most and at least
 LEAST = 1e-12  #: smallest tolerance of a run
 POWER = 0.5  #: of the tolerance that errors are assumed to fall with, at least
@@ -158,7 +160,8 @@ class ToleranceRefinement:
             fallen = (self.floor / tol) ** POWER
             apart = np.maximum(apart, fallen * np.abs(own.values - before.values) / scales)
         for kind in self.tolerances:
-            self.errors[kind] = max(float(apart[own.kinds == kind].max(initial=0.0)), self.floor)
+            least = max(self.floor, CLAIMED * self.tolerances[kind])
+            self.errors[kind] = max(float(apart[own.kinds == kind].max(initial=0.0)), least)
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
 
     def _interrupted(self, stop: Stop, replay: Replay) -> Stop:
