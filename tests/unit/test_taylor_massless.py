@@ -267,6 +267,24 @@ def test_a_joint_that_snaps_through_is_named(method: str) -> None:
     assert len(r.time) > 2
 
 
+@pytest.mark.parametrize("method", ["TAYLOR", "NEWMARK"])
+def test_a_joint_of_a_large_structure_that_snaps_through_is_named(method: str) -> None:
+    """Its matrices are sparse."""
+    steep = "STEEP SPRING KX=30 FX=2 RULE=BILINEAR R=-0.5"
+    deck = (
+        ZENER.replace("UX=1 VX=0.5", "VX=3").replace("DRAG DASHPOT CX={c}", steep).replace("DRAG", "STEEP")
+    )
+    others = range(101, 421)
+    nodes = "".join(f" {n} {n} 9 FIX=YR\n" for n in others)
+    chain = "".join(f" {n} K {n} {n + 1}\n" for n in others[:-1])
+    deck = deck.replace("ELEMENTS\n", nodes + "ELEMENTS\n").replace(
+        "PROPS\n", f" 100 K 101 4\n{chain}PROPS\n"
+    )
+    deck = deck.replace(" 2 1\nINITIAL", " 2 1\n 101 TO 420 1\nINITIAL").replace("HISTORY 10", "HISTORY 1")
+    r = run_text(deck, None, method, 0.001 if method == "NEWMARK" else None)
+    assert r.message.startswith("A501 at t = ") and "node 3 ux has no mass, and its" in r.message, r.message
+
+
 def test_the_cure_is_that_of_what_snaps_through() -> None:
     dofs = (7, 0), (7, 2), (4, 4)
     stub = SimpleNamespace(dofs=dofs, name=lambda i: label(dofs[i]))

@@ -76,7 +76,7 @@ from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import BranchKind
-from pound_solve.numerics.matrices import used_rows
+from pound_solve.numerics.matrices import MOST_DENSE, dense, used_rows
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
@@ -323,9 +323,12 @@ class Taylor(KernelEngine):
     def _softest(self) -> int:
         """Unknown without mass that moves most where those without mass and dashpot are least stiff."""
         light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
-        rows = self.system.law_rows[:, light]
-        stiffness = self.system.stiffness[np.ix_(light, light)] + (rows.T * self.laws.stiffness) @ rows
-        return int(light[np.argmax(np.abs(np.linalg.eigh(stiffness)[1][:, 0]))])
+        if len(light) > MOST_DENSE:
+            return int(self.order[int(self.state.fault)])
+        rows = dense(self.system.law_rows[:, light])
+        stiffness = dense(self.system.stiffness[np.ix_(light, light)])
+        shapes = np.linalg.eigh(stiffness + (rows.T * self.laws.stiffness) @ rows)[1]
+        return int(light[np.argmax(np.abs(shapes[:, 0]))])
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
