@@ -189,6 +189,11 @@ def test_two_equal_storeys_of_which_the_first_to_fail_relieves_the_other(
         given = {"rule": FALLING, "damping": damping, "ultimate": ultimate}
         return run_text(BRITTLE.format(**given), None, method, dt)
 
+    if (
+        method == "LAPLACE" and damping
+    ):  # the dashpot of a joint without mass makes a mode that DT does not resolve
+        assert run(200.0).message.startswith("A502 at t = 0 s: DT=0.002 does not resolve the fastest mode")
+        return
     assert told(run(200.0)).startswith("1, 2 at t = 0.031")
     assert told(run(200.2)) == ""
 
