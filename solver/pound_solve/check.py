@@ -23,6 +23,7 @@ class Subject(StrEnum):
     ERROR = "error"  #: an estimate of the error in time
     STEPS = "steps"  #: whether the steps follow the motion
     ROUNDING = "rounding"  #: how far digits are lost
+    MAGNIFICATION = "magnification"  #: of rounding, by the motion
     PEAKS = "peaks"  #: one peak against another source of it
     UNIQUENESS = "uniqueness"  #: of the solution
     STORAGE = "storage"  #: what found no room

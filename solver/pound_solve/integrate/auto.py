@@ -11,6 +11,9 @@ costs little, or no more than the runs that were made and the one to come.  Wher
 from the start, and before each such run, EXACT is tried with a share of what the others cost
 (:mod:`.trial`).  Costs are counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not
 measured, so that a deck is always solved in the same way.
+
+A run of EXACT or TAYLOR is followed by its twin, which tells whether the motion magnifies rounding
+(:mod:`.convergence.twin`).
 """
 
 from __future__ import annotations
@@ -23,8 +26,9 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form import exact
+from pound_solve.integrate.convergence import twin
 from pound_solve.integrate.convergence.compared import ALL, RESPONSE, tolerances
-from pound_solve.integrate.convergence.replay import Replay
+from pound_solve.integrate.convergence.replay import Replay, Watch
 from pound_solve.integrate.convergence.step_refinement import StepRefinement
 from pound_solve.integrate.convergence.tolerance_refinement import ToleranceRefinement, UnfitError
 from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
@@ -177,7 +181,7 @@ def to_tolerance(
             return outcome
 
 
-def integrate(
+def by_choice(
     system: ReducedSystem,
     start: Start,
     monitored: MonitoredOutputs,
@@ -222,6 +226,22 @@ def integrate(
                 return by_series(system, start, monitored, recorder)
         series = np.inf  # which stop there, too
     return to_tolerance(StepRefinement(*asked), stepped(system, reason or DEAR), trial, series)
+
+
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: EnvelopeRecorder,
+) -> Outcome:
+    """Run the method of choice, and its twin where its error is not estimated otherwise."""
+    watch = Watch(recorder)
+    outcome = by_choice(system, start, monitored, options, watch)
+    if outcome.exact:
+        tol = min(tolerances(options).values())
+        outcome.checks = [*twin.checks(system, start, monitored, outcome, watch, tol), *outcome.checks]
+    return outcome
 
 
 SPEC = Spec(

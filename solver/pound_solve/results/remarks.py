@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from pound_solve.check import Subject, looked
 from pound_solve.results.record import RunRecord
 
 SIGNS: Final = (
@@ -14,7 +15,10 @@ SIGNS: Final = (
 
 def how_found(run: RunRecord) -> str:
     """Tell whether the peaks that the method tracks are exact."""
-    if run.history.returned.exact:
+    returned = run.history.returned
+    if any(check.subject is Subject.MAGNIFICATION for check in looked(returned.checks)):
+        return "Peaks are those of one of several motions that only rounding tells apart."
+    if returned.exact:
         return "Peaks are exact."
     if run.history.recorder.envelopes.searched:
         return "Peaks between the ends of the steps are included."

@@ -36,6 +36,8 @@ class Answer(NamedTuple):
         CPU time of the history [s].
     claimed : float or None
         Error that AUTO estimates; None where it takes no steps.
+    magnified : float or None
+        What AUTO says that rounding may do to the peaks; None where it takes steps.
     met : bool
         Whether it says that the tolerance is met.
     unique : bool
@@ -51,6 +53,7 @@ class Answer(NamedTuple):
     method: str
     seconds: float
     claimed: float | None
+    magnified: float | None
     met: bool
     unique: bool
     peaks: dict[str, Array]
@@ -71,17 +74,19 @@ def answer(deck: Path, records: Path | None, method: str, options: Mapping[str, 
             with bar, pound_solve.run(deck, out=out, records=folders, method=chosen, **options) as results:
                 return _read(results)
         except DeckError as err:
-            return Answer("refused", str(err), "", 0.0, None, False, True, {}, [])
+            return Answer("refused", str(err), "", 0.0, None, None, False, True, {}, [])
 
 
 def _read(results: Results) -> Answer:
     """Read an answer from a results file."""
     facts = {r["item"]: r["value"] for name in ("run", "run_figures") if name in results.tables
              for r in results.table(name)}  # fmt: skip
-    claimed, met, unique = None, True, True
+    claimed, magnified, met, unique = None, None, True, True
     for check in results.checks:
         if check.subject is Subject.ERROR:
             claimed, met = check.value, not check.looks
+        elif check.subject is Subject.MAGNIFICATION:
+            magnified, met = check.value, not check.looks
         elif check.subject is Subject.UNIQUENESS:
             unique = not check.looks
     done = results.status == "done"
@@ -91,6 +96,7 @@ def _read(results: Results) -> Answer:
         facts.get("method", "").split(",")[0],
         float(facts.get("solve seconds, CPU", "nan")),
         claimed,
+        magnified,
         met,
         unique,
         _peaks(results) if done else {},

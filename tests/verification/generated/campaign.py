@@ -69,9 +69,9 @@ class Worker:
                 return found
             except EOFError:
                 self.end()
-                return Answer("crashed", "the process ended", "", np.nan, None, False, True, {}, [])
+                return Answer("crashed", "the process ended", "", np.nan, None, None, False, True, {}, [])
         self.end()
-        return Answer("timeout", f"no end in {limit:g} s", "", limit, None, False, True, {}, [])
+        return Answer("timeout", f"no end in {limit:g} s", "", limit, None, None, False, True, {}, [])
 
     def used(self) -> float:
         """CPU seconds of the process; seconds where the system does not tell [s]."""
@@ -119,7 +119,9 @@ def serve(connection: Connection) -> None:
             connection.send(answer(*task))
         except Exception as err:
             connection.send(
-                Answer("crashed", f"{type(err).__name__}: {err}", "", np.nan, None, False, True, {}, [])
+                Answer(
+                    "crashed", f"{type(err).__name__}: {err}", "", np.nan, None, None, False, True, {}, []
+                )
             )
 
 
@@ -207,7 +209,8 @@ class Seed:
         """One row."""
         row: dict[str, Any] = {
             "seed": self.seed, "mode": mode, "tol": self.tol, "status": own.status,
-            "message": own.message[:160], "method": own.method, "claimed": own.claimed, "met": own.met,
+            "message": own.message[:160], "method": own.method, "claimed": own.claimed,
+            "magnified": own.magnified, "met": own.met,
             "seconds": round(own.seconds, 3),
         }  # fmt: skip
         truth = self.reference(own.method)

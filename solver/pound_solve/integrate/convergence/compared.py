@@ -13,12 +13,13 @@ of the members that OUTPUT names are compared, too, relative to the largest of t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from pound_solve.integrate.convergence.replay import Replay
+from pound_solve.integrate.convergence.replay import Replay, Witness
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.elements.base import LawSpring
@@ -94,25 +95,27 @@ def hinges(laws: Sequence[LawSpring], peaks: Peaks, losses: Sequence[float]) -> 
     return Peak(np.array(values), np.array(scales), _all(RESPONSES, len(values)))
 
 
-def figures(system: ReducedSystem, peaks: Peaks, replay: Replay, asked: Collection[int] = ()) -> Peak:
+def figures(system: ReducedSystem, peaks: Peaks, witness: Witness, asked: Collection[int] = ()) -> Peak:
     """Return the peaks that are compared between runs: the responses, and others `asked` for."""
     laws = system.structure.laws
+    lasting = [c for c in peaks.collisions if not math.isnan(c.peak)]  # others are impacts, without a force
     contacts = [i for i, s in enumerate(laws) if s.role.collides]
-    force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contacts])
+    force = np.array([max((c.peak for c in lasting if c.law == i), default=0.0) for i in contacts])
     parts = [
         measured(peaks.monitored, ["drift"] * len(peaks.monitored)),
-        hinges(laws, peaks, replay.lost),
+        hinges(laws, peaks, witness.lost),
     ]
     if not peaks.monitored:
         springs = [(e, s.unit) for e, s in zip(peaks.deformation, laws) if not s.role.collides]
         parts.append(measured([e for e, _ in springs], [unit for _, unit in springs]))
         direction = np.array([d for _, d in system.dofs])
-        displacement = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
+        displacement = np.column_stack([np.ravel(witness.high), np.ravel(witness.low)])
         # hinges and uplift have directions of their own
         largest = _floored(np.abs(displacement).max(axis=1), direction, 1.0)
         parts.append(Peak(displacement.ravel(), np.repeat(largest, 2), _all(RESPONSES, displacement.size)))
     if ACCELERATIONS in asked or FORCES in asked:
-        values, units = replay.seen(system)
+        assert isinstance(witness, Replay)  # a run that is kept
+        values, units = witness.seen(system)
         kinds = np.array([ACCELERATIONS if unit == "acceleration" else FORCES for unit in units], int)
         wanted = np.isin(kinds, list(asked))
         scales = _floored(np.abs(values), np.array(units), 1.0)

@@ -1,4 +1,4 @@
-"""A run whose samples may not count: they are kept, and passed on if it is the final one."""
+"""What takes the samples of a run on the way to the recorder of a history."""
 
 from __future__ import annotations
 
@@ -11,25 +11,100 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 
-class Replay:
-    """Keeps the samples of a run, to pass them on if it is the final one; knows the extremes of u.
+class Witness:
+    """Sees the samples of a run that does not count, and nothing between them.
+
+    Attributes
+    ----------
+    high, low : ndarray, shape (n,)
+        Extremes of u at the samples.
+    lost : list of float
+        Energy that each law has lost in hysteresis at the last sample [F L].
+    """
+
+    def __init__(self, recorder: EnvelopeRecorder) -> None:
+        self.recorder = recorder
+        self.high: Array | float = -np.inf
+        self.low: Array | float = np.inf
+        self.lost = list[float]()
+
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `Recorder`)."""
+        self.see(u, laws)
+        self.trial(float(t[-1]))
+
+    def see(self, u: Array, laws: LawValues) -> None:
+        """Count in what some samples hold."""
+        self.high = np.maximum(self.high, u.max(axis=1))
+        self.low = np.minimum(self.low, u.min(axis=1))
+        self.lost = laws.lost[:, -1].tolist()
+
+    def between(self, course: Course) -> None:
+        """Look away (see `Recorder`)."""
+
+    @property
+    def shown(self) -> Flags:
+        """Which unknowns `between` needs (see `Recorder`)."""
+        return np.zeros_like(self.recorder.shown)
+
+    @property
+    def acting(self) -> Index:
+        """Laws whose forces `between` needs (see `Recorder`)."""
+        return self.recorder.acting[:0]
+
+    def trial(self, t: float, doing: str = "") -> None:
+        """Pass the progress of a trial on."""
+        self.recorder.trial(t, doing)
+
+
+class Watch(Witness):
+    """Sees the samples of a run that counts, and passes everything on at once."""
+
+    def __init__(self, recorder: EnvelopeRecorder) -> None:
+        super().__init__(recorder)
+        self.envelopes = recorder.envelopes
+
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `Recorder`)."""
+        self.see(u, laws)
+        self.recorder.sample(t, u, v, a, laws, works)
+
+    def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples whose progress was told before (see `EnvelopeRecorder`)."""
+        self.see(u, laws)
+        self.recorder.keep(t, u, v, a, laws, works)
+
+    def between(self, course: Course) -> None:
+        """Pass the motion between samples on (see `Recorder`)."""
+        self.recorder.between(course)
+
+    @property
+    def shown(self) -> Flags:
+        """Which unknowns `between` needs (see `Recorder`)."""
+        return self.recorder.shown
+
+    @property
+    def acting(self) -> Index:
+        """Laws whose forces `between` needs (see `Recorder`)."""
+        return self.recorder.acting
+
+
+class Replay(Witness):
+    """Keeps the samples of a run, to pass them on if it is the final one.
 
     Of the motion between the samples only the envelopes are kept; nothing where the run is not `enveloped`,
     as it will not be the final one.
     """
 
     def __init__(self, recorder: EnvelopeRecorder, enveloped: bool = True) -> None:
-        self.recorder, self.enveloped, self.samples = recorder, enveloped, list[tuple[Any, ...]]()
+        super().__init__(recorder)
+        self.enveloped, self.samples = enveloped, list[tuple[Any, ...]]()
         self.envelopes = recorder.envelopes.blank()
-        self.high: Array | float = -np.inf
-        self.low: Array | float = np.inf
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take some samples (see `Recorder`)."""
         self.samples.append((t, u, v, a, laws, works))
-        self.high = np.maximum(self.high, u.max(axis=1))
-        self.low = np.minimum(self.low, u.min(axis=1))
-        self.recorder.trial(float(t[-1]))
+        super().sample(t, u, v, a, laws, works)
 
     def between(self, course: Course) -> None:
         """Take the motion between samples (see `Recorder`)."""
@@ -45,16 +120,6 @@ class Replay:
     def acting(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
         return self.recorder.acting if self.enveloped else self.recorder.acting[:0]
-
-    def trial(self, t: float, doing: str = "") -> None:
-        """Pass the progress of a trial on."""
-        self.recorder.trial(t, doing)
-
-    @property
-    def lost(self) -> list[float]:
-        """Energy that each law has lost in hysteresis at the last sample [F L]."""
-        laws: LawValues = self.samples[-1][4]
-        return [float(x) for x in laws.lost[:, -1]]
 
     def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
         """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""

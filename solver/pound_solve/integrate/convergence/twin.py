@@ -1,0 +1,93 @@
+"""The twin of a run by a method without steps, whose excitation differs in the twelfth digit.
+
+EXACT and TAYLOR make rounding errors only.  Most motions leave them as small as they are.  Where contacts
+strike again and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
+left, and the balance of energies and every other check are still good.  A run of the same method whose
+excitation is larger by a share of `CHANGE`, some ten times the rounding of a run, tells: how far its peaks
+are from those of the run bounds what rounding does to them.  It takes a third to two thirds of the time of
+the run, since it keeps no history.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pound_solve.check import Check, Subject, at_most, beyond
+from pound_solve.integrate.closed_form import exact
+from pound_solve.integrate.convergence.compared import figures
+from pound_solve.integrate.convergence.replay import Watch, Witness
+from pound_solve.integrate.protocol import (
+    INTERRUPTED,
+    MonitoredOutputs,
+    Outcome,
+    Recorder,
+    Start,
+    Stop,
+    not_linear,
+)
+from pound_solve.structure.reduction import ReducedSystem
+
+CHANGE = 1e-12  #: of the excitation, as a share
+ABOUT = f"change of the peaks where the excitation changes by {CHANGE:g}"
+MAGNIFIED = "the motion magnifies rounding: no method finds these peaks to TOL, so compare several motions"
+
+
+def changed(system: ReducedSystem, start: Start) -> tuple[ReducedSystem, Start]:
+    """Return a reduced system and a start for the twin: inputs and velocities are larger by `CHANGE`, or
+    the displacements where there are neither.
+    """
+    factor = 1.0 + CHANGE
+    excitation = replace(system.excitation, coefs=factor * system.excitation.coefs)
+    if excitation.coefs.any() or start.v.any():
+        start = replace(start, v=factor * start.v)
+    else:
+        start = replace(start, u=factor * start.u)
+    return replace(system, excitation=excitation, decisions=[]), start
+
+
+def again(
+    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder, method: str
+) -> Outcome:
+    """Run EXACT or TAYLOR."""
+    if method == "EXACT":
+        return exact.integrate(system, start, monitored, {}, recorder)
+    from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
+
+    return taylor.integrate(system, start, monitored, {}, recorder)
+
+
+def checks(
+    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, run: Outcome, watch: Watch, tol: float
+) -> list[Check]:
+    """Repeat a `run` that makes rounding errors only, and return the check of how far it magnifies them.
+
+    Nothing is repeated where nothing happens that could: there are no events and all forces are linear.
+
+    Parameters
+    ----------
+    watch : Watch
+        What has seen the run.
+    tol : float
+        Change of the peaks that is allowed, over their scales (see `compared`).
+
+    Raises
+    ------
+    Stop
+        An interrupt; the run is over, and its outcome goes with it.
+    """
+    if run.figures["events"] == 0 and not not_linear(system):
+        return []
+    witness = Witness(watch.recorder)
+    method = next(own.decision for own in reversed(system.decisions) if own.subject == "method")
+    try:
+        twin = again(*changed(system, start), monitored, witness, method)
+    except Stop as stop:
+        if stop.code == "A506":
+            raise Stop("A506", float(start.times[-1]), INTERRUPTED, run) from None
+        told = f"it stops then: {stop.code} at t = {stop.t:.6g}; {MAGNIFIED}"
+        return [beyond(Subject.MAGNIFICATION, ABOUT, np.inf, tol, told)]
+    own, other = figures(system, run.peaks, watch), figures(system, twin.peaks, witness)
+    apart = np.abs(own.values - other.values) / np.where(own.scales > 0.0, own.scales, 1.0)
+    return [at_most(Subject.MAGNIFICATION, ABOUT, apart.max(initial=0.0), tol, MAGNIFIED)]
