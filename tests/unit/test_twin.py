@@ -78,12 +78,12 @@ def test_a_motion_that_magnifies_rounding_is_told(tmp_path: Path) -> None:
     assert not any(c.looks for c in found.checks if c.subject is Subject.ENERGY)
 
 
-@pytest.mark.parametrize("method", ["AUTO TOL=1e-4", "AUTO TOL=1e-9"])
+@pytest.mark.parametrize("method", ["AUTO TOL=1e-4", "AUTO TOL=1e-7"])
 def test_the_same_motion_is_right_for_a_while(tmp_path: Path, method: str) -> None:
     """What rounding does to it is no more than what the twin tells."""
     found = run(tmp_path, method, 5.0)
     (check,) = told(found)
-    assert not check.looks and apart(tmp_path, 5.0) <= check.value < 1e-9
+    assert not check.looks and apart(tmp_path, 5.0) <= check.value < 1e-8
 
 
 def test_a_method_that_is_asked_for_has_no_twin(tmp_path: Path) -> None:
@@ -116,7 +116,7 @@ def test_where_nothing_happens_there_is_no_twin(tmp_path: Path, monkeypatch: pyt
 def test_the_twin_moves_otherwise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moved: str, what: str
 ) -> None:
-    """Whatever moves the structure is changed, by a share of 1e-12."""
+    """Whatever moves the structure is changed, by a share of 1e-11."""
     seen = []
     for module in (exact, taylor):
         real = module.integrate
@@ -131,7 +131,7 @@ def test_the_twin_moves_otherwise(
     (check,) = told(run(tmp_path, "AUTO", 1.0, moved=moved))
     run_itself, other = seen
     assert run_itself[what].any()
-    assert other[what] == pytest.approx((1.0 + 1e-12) * run_itself[what], rel=1e-15)
+    assert other[what] == pytest.approx((1.0 + 1e-11) * run_itself[what], rel=1e-15)
     assert (other[what] != run_itself[what]).any()
     assert not check.looks and 0.0 < check.value < 1e-9
 

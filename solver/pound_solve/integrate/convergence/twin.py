@@ -1,11 +1,10 @@
-"""The twin of a run by a method without steps, whose excitation differs in the twelfth digit.
+"""The twin of a run by a method without steps, whose excitation differs in the eleventh digit.
 
 EXACT and TAYLOR make rounding errors only.  Most motions leave them as small as they are.  Where contacts
 strike again and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
 left, and the balance of energies and every other check are still good.  A run of the same method whose
-excitation is larger by a share of `CHANGE`, some ten times the rounding of a run, tells: how far its peaks
-are from those of the run bounds what rounding does to them.  It takes a third to two thirds of the time of
-the run, since it keeps no history.
+excitation is larger by a share of `CHANGE`, ten times the rounding of a run or more, tells: how far its
+peaks are from those of the run bounds what rounding does to them.  It keeps no histories and no envelopes.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.structure.reduction import ReducedSystem
 
-CHANGE = 1e-12  #: of the excitation, as a share
+CHANGE = 1e-11  #: of the excitation, as a share
 ABOUT = f"change of the peaks where the excitation changes by {CHANGE:g}"
 MAGNIFIED = "the motion magnifies rounding: no method finds these peaks to TOL, so compare several motions"
 
