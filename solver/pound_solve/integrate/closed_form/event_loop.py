@@ -5,6 +5,7 @@ tracker, and when a run stops.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -25,9 +26,14 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.release import falls, release
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.integrate.uniqueness import Uniqueness
-from pound_solve.laws.automaton import Branch
+from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
+
+
+def is_slack(branch: Branch) -> bool:
+    """Whether a law has neither stiffness nor force on a branch."""
+    return branch.stiffness == branch.force0 == 0.0
 
 
 class EventDrivenRun(ABC):
@@ -85,6 +91,7 @@ class EventDrivenRun(ABC):
         """Let a law leave its branch, look which others come to the end of theirs with it, and let joints
         without mass move where its force falls; `d` and `v` are those of all laws.
         """
+        law, event_index = self._before_slack(law, event_index, d, v)
         before, own = self.branches[law], float(d[law])
         self.transition(law, event_index, own, float(v[law]))
         fell = self._massless_laws[law] and falls(before, self.branches[law], own)
@@ -108,6 +115,35 @@ class EventDrivenRun(ABC):
         before = self.energy.array()
         self.energy.advance(np.array([before, before + works]))
 
+    def _arriving(self, law: int, d: Array, v: Array) -> Iterator[tuple[int, int, State, Branch]]:
+        """Other laws at unknowns without mass that come to an event now: the law, the event, and the state
+        and the branch after it.
+        """
+        from pound_solve.integrate.kernels.ties import event_arrives  # which most decks do not need
+
+        for i in np.flatnonzero(self._massless_laws).tolist():
+            if i == law or self.laws[i].role.collides:
+                continue
+            own, rate = float(d[i]), float(v[i])
+            for n, e in enumerate(self.branches[i].events):
+                if event_arrives(*e, own, rate, float(self.largest[0, i])):
+                    state = self.laws[i].law.transition(self.states[i], n, own, rate)
+                    yield i, n, state, self.laws[i].branch(state)
+                    break
+
+    def _before_slack(self, law: int, event_index: int, d: Array, v: Array) -> tuple[int, int]:
+        """The law and the event that go before one that becomes slack, or this (see `kernels.ties`)."""
+        before, own = self.branches[law], float(d[law])
+        if self.laws[law].role.collides or not self._massless_laws[law] or before.stiffness == 0.0:
+            return law, event_index
+        state = self.laws[law].law.transition(self.states[law], event_index, own, float(v[law]))
+        after = self.laws[law].branch(state)
+        if is_slack(after) and not falls(before, after, own):
+            for i, n, _, its in self._arriving(law, d, v):
+                if not is_slack(its):
+                    return i, n
+        return law, event_index
+
     def _look_for_ties(self, law: int, d: Array, v: Array, fell: bool) -> None:
         """Look which laws come to the end of their branches with one that is softer now, or whose force
         `fell`.
@@ -116,19 +152,11 @@ class EventDrivenRun(ABC):
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
         if self.laws[law].role.collides or not self._massless_laws[law]:
             return
-        from pound_solve.integrate.kernels.ties import event_arrives  # which most decks do not need
-
-        for i in np.flatnonzero(self._massless_laws & (np.arange(len(k)) != law)).tolist():
-            own, rate, before = float(d[i]), float(v[i]), self.branches[i]
-            for n, e in enumerate(() if self.laws[i].role.collides else before.events):
-                if event_arrives(*e, own, rate, float(self.largest[0, i])):
-                    state = self.laws[i].law.transition(self.states[i], n, own, rate)
-                    after = self.laws[i].branch(state)
-                    if fell and falls(before, after, own):
-                        k[i], c[i], rising[i] = -np.inf, state[0], rate
-                    elif not fell and after.stiffness < k[i]:
-                        k[i], rising[i] = after.stiffness, rate
-                    break
+        for i, _, state, after in self._arriving(law, d, v):
+            if fell and falls(self.branches[i], after, float(d[i])):
+                k[i], c[i], rising[i] = -np.inf, state[0], float(v[i])
+            elif not fell and after.stiffness < k[i]:
+                k[i], rising[i] = after.stiffness, float(v[i])
         if np.count_nonzero(rising) > 1:
             self.uniqueness.take(self.t, k, c, rising)
 

@@ -1,5 +1,9 @@
 """Laws that come to the end of their branches at one instant: where unknowns without mass stand between
 them, which of them goes on may hang on rounding (see `integrate.uniqueness`).
+
+One order is decided here.  Laws in series over a joint without mass lose their forces at one instant.  If
+one of them becomes slack then, the others stand still for as long as it is.  Those whose branches end where
+there is no force have come to their ends, as with a little mass at the joint: they go first.
 """
 
 from __future__ import annotations
@@ -8,7 +12,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.consistency import lets_go, touches_massless
 from pound_solve.integrate.kernels.laws import leave_branch, restore_state, save_state
-from pound_solve.integrate.kernels.state import Simulation
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation
 from pound_solve.laws.functions import Tables
 
 TIED = 1e-9  #: share of its largest terms that an event function may lack of an event at the same instant
@@ -20,6 +24,45 @@ def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: flo
     """
     near = abs(a * d + c) <= TIED * (abs(a) * largest + abs(c))
     return b == 0.0 and a * v > 0.0 and near
+
+
+def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
+    """Which event of a law comes to zero now, where the law holds an unknown without mass; -1 for none."""
+    if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
+        return -1
+    d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest_deformation[i]
+    for e in range(laws.n_events[i]):
+        if event_arrives(laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2], d, v, largest):
+            return e
+    return -1
+
+
+def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event: int) -> bool:
+    """Whether a law that holds an unknown without mass has neither stiffness nor force after an event, and
+    no force to lose by it.
+    """
+    d, v, k, f0 = laws.now.deformation[i], laws.now.rate[i], laws.stiffness[i], laws.offset[i]
+    if laws.contact[i] or laws.curved[i] or not touches_massless(linear, laws, i):
+        return False
+    save_state(laws, i)
+    leave_branch(laws, rules, i, event, d, v)
+    slack = laws.stiffness[i] == 0.0 and laws.offset[i] == 0.0 and not lets_go(linear, laws, i, k, f0, d)
+    restore_state(laws, rules, i)
+    laws.saved[i] = 0
+    return slack
+
+
+def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> tuple[int, int]:
+    """The law and its event that go before a law that becomes slack by an `event`: one that comes to no
+    force with it and keeps a stiffness (see the module's head); else these two.
+    """
+    linear, laws = sim.linear, sim.laws
+    if laws.stiffness[law] != 0.0 and becomes_slack(linear, laws, rules, law, event):
+        for i in range(len(laws.rule)):
+            e = arriving_event(linear, laws, i) if i != law else -1
+            if e >= 0 and not becomes_slack(linear, laws, rules, i, e):
+                return i, e
+    return law, event
 
 
 def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset: float) -> None:
@@ -40,25 +83,20 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
     rate = laws.now.rate
     for i in range(len(laws.rule)):
         row[0, i], row[1, i], row[2, i] = laws.stiffness[i], laws.damping[i], 0.0
-        if i == law or laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0:
+        e = arriving_event(linear, laws, i) if i != law else -1
+        if e < 0:
             continue
         d, v, k, f0 = laws.now.deformation[i], rate[i], laws.stiffness[i], laws.offset[i]
-        for e in range(laws.n_events[i]):
-            a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
-            if event_arrives(a, b, c, d, v, laws.largest_deformation[i]) and touches_massless(
-                linear, laws, i
-            ):
-                save_state(laws, i)
-                leave_branch(laws, rules, i, e, d, v)
-                if fell and lets_go(linear, laws, i, k, f0, d):
-                    row[0, i], row[1, i], row[2, i] = -np.inf, laws.branch[i], v
-                    found += 1
-                elif not fell and laws.stiffness[i] < k:
-                    row[0, i], row[2, i] = laws.stiffness[i], v
-                    found += 1
-                restore_state(laws, rules, i)
-                laws.saved[i] = 0
-                break
+        save_state(laws, i)
+        leave_branch(laws, rules, i, e, d, v)
+        if fell and lets_go(linear, laws, i, k, f0, d):
+            row[0, i], row[1, i], row[2, i] = -np.inf, laws.branch[i], v
+            found += 1
+        elif not fell and laws.stiffness[i] < k:
+            row[0, i], row[2, i] = laws.stiffness[i], v
+            found += 1
+        restore_state(laws, rules, i)
+        laws.saved[i] = 0
     if found > 0:
         row[2, law] = rate[law]
         buffers.tie_time[run.tied] = run.time

@@ -28,7 +28,7 @@ from pound_solve.integrate.kernels.state import (
     Simulation,
     Step,
 )
-from pound_solve.integrate.kernels.ties import note_ties
+from pound_solve.integrate.kernels.ties import event_before_slack, note_ties
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
 from pound_solve.integrate.series.curved import APART, change_phase
@@ -231,6 +231,8 @@ def change_branches(
     """Let a law leave its branch, and others whose events are at the same instant."""
     laws = sim.laws
     now, instant = sim.run.time, INSTANT * max(sim.run.time, h)
+    first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
+    event = LocatedEvent(first, its_event, event.time)
     stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
     change_branch(sim, rules, series, now, event)
     note_ties(sim, rules, event.law, stiffness, offset)

@@ -31,7 +31,7 @@ from pound_solve.integrate.kernels.state import (
     Scheme,
     Simulation,
 )
-from pound_solve.integrate.kernels.ties import note_ties
+from pound_solve.integrate.kernels.ties import event_before_slack, note_ties
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.step import (
     REFRESH,
@@ -123,6 +123,8 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
     has fallen: joints must move first.
     """
     laws, step, run = sim.laws, sim.step, sim.run
+    first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
+    event = LocatedEvent(first, its_event, event.time)
     laws.saved[event.law] = 1 + event.event_index
     for j in range(len(step.product)):
         step.product[j] = 0.0
