@@ -186,6 +186,34 @@ def no_branch_is_steeper_than_stated(law: Law, reach: float) -> None:
             assert law.force(state, d)[1] <= most, ("steeper than stated", state)
 
 
+def resting_at_its_strength_is_not_yielding(law: Law, reach: float) -> None:
+    """Where a motion turns as it comes to a line of yielding, a hair before or beyond, the same follows: in
+    series with a spring of the same strength that yields, rounding decides where it turns.
+    """
+    rng = np.random.default_rng(3)
+    kinds = [b.kind for b in law.rule.branches]
+    for seed in SEEDS:
+        start = law.start()
+        for since, goal in pairwise([0.0, *turning_points(seed, reach, 8)]):
+            way = [x for x in pieces(law, start, since, goal) if x[1] != x[2]]
+            then = [-math.copysign(abs(x), goal - since) for x in rng.uniform(0.0, reach, 1)]
+            then += rng.uniform(-reach, reach, 4).tolist()
+            for (before, _, end), (after, _, _) in pairwise(way):
+                if kinds[after[0]] is not BranchKind.YIELDING or kinds[before[0]] is BranchKind.YIELDING:
+                    continue
+                forces = []
+                for hair in (-1e-13, 0.0, 1e-13):
+                    d = end + math.copysign(reach, goal - since) * hair
+                    state, own = drive(law, start, since, d), []
+                    for a, b in pairwise([d, *then]):
+                        state = drive(law, state, a, b)
+                        own.append(law.force(state, b)[0])
+                    forces.append(own)
+                apart = np.ptp(forces, axis=0).max()
+                assert close(apart, 0.0, 1e-9 * law.p[0] * reach), ("rounding decides", before, after)
+            start = drive(law, start, since, goal)
+
+
 CLAUSES = (
     starts_empty,
     trying_changes_nothing,
@@ -197,6 +225,7 @@ CLAUSES = (
     closed_loops_dissipate,
     stopping_on_the_way_changes_nothing,
     no_branch_is_steeper_than_stated,
+    resting_at_its_strength_is_not_yielding,
 )
 
 

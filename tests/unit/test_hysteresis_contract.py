@@ -411,6 +411,21 @@ def less(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.99 * on_spring(p, at, m, d, f)
 
 
+def hardened(p: Numbers, m: Numbers) -> Numbers:
+    """A fifth more strength once it has yielded, by however little."""
+    return p if m[0] == 0.0 else (p[0], 1.2 * p[1], 1.2 * p[2], p[3])
+
+
+def hardened_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    return bilinear.branch(hardened(p, m), at, m)
+
+
+def hardened_transition(
+    p: Numbers, at: int, m: Numbers, way: int, d: float, v: float
+) -> tuple[int, Numbers]:
+    return bilinear.transition(hardened(p, m), at, m, way, d, v)
+
+
 def forgetful() -> Callable[[Numbers, int, Numbers], Numbers]:
     """A branch that softens a little with every question."""
     asked = count()
@@ -433,6 +448,11 @@ def forgetful() -> Callable[[Numbers, int, Numbers], Numbers]:
         (contract.work_is_the_area_below_the_force, {"curve": idle}, "the work"),
         (contract.stored_energy_comes_back, {"recoverable": more}, "more is stored"),
         (contract.stored_energy_comes_back, {"recoverable": less}, "less is stored"),
+        (
+            contract.resting_at_its_strength_is_not_yielding,
+            {"branch": hardened_branch, "transition": hardened_transition},
+            "rounding decides",
+        ),
     ],
 )
 def test_the_contract_tells_a_wrong_rule(

@@ -21,6 +21,7 @@ from typing import NamedTuple
 EVENTS = 3  #: most event functions of a branch
 GAP = 2  #: place of the gap among the parameters of a contact
 PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule has come to zero
+AT_END = 1e-9  #: share of a deformation by which a law must pass the end of a line to have gone on
 PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
 
 Numbers = tuple[float, ...]
@@ -51,6 +52,15 @@ def above(d: float) -> tuple[float, float, float]:
 def below(d: float) -> tuple[float, float, float]:
     """Event function of a deformation that falls below `d`."""
     return (-1.0, 0.0, d)
+
+
+def passes(x: float, end: float, size: float) -> bool:
+    """Whether a deformation passes the end of a line by more than the rounding of one of that `size`.
+
+    Where a spring in series has the same strength and yields, a law rests at the end of its line until the
+    motion reverses.  What it remembers must not hang on the last digit then: it has not gone on.
+    """
+    return x - end > AT_END * size
 
 
 def linear(

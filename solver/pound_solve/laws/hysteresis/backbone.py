@@ -24,8 +24,9 @@ the far side of the origin, and for large :math:`\alpha` run flatter than the ba
 Ours, too, because no source says it: the loss by ductility acts at once, the backbone itself falls; a yield
 of a side is a cycle of that side as soon as the other side yields; both losses are multiplied.
 
-Internal variables of each rule: the largest ductility of each side (1 before yield), a point (d, f), and
-how many times another side yielded than before, with the sign of the last one.
+Internal variables of each rule: the largest ductility of each side (1 before yield), a point (d, f), or on
+the backbone the ductility where the spring came to it, and how many times another side yielded than before,
+with the sign of the last one.  A spring that reverses where it has come to the backbone has not yielded.
 
 References
 ----------
@@ -40,7 +41,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import Numbers, linear
+from pound_solve.laws.automaton import Numbers, linear, passes
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 
 # branches of the positive side; those of the negative side are one more
@@ -50,7 +51,8 @@ BEFORE = -1e300  #: less than any ductility: on the other side of zero
 LEAST = 0.01  #: share of the yield force that is left in the end
 # numbers of a law: form of the loss, D3 (0: none), loss by a cycle
 FORM, GONE, BY_CYCLE, PARAMETERS = 8, 9, 10, 11
-CHANGES, VARIABLES = 4, 5  #: internal variable: changes of the yielding side, with its sign
+#: internal variables: where the backbone was met; changes of the yielding side, with its sign
+MET, CHANGES, VARIABLES = 2, 4, 5
 FORMS = {
     "NONE": 0,
     "EACH": 1,
@@ -267,15 +269,16 @@ def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
     return (max(m[0], x), m[1]) if s > 0.0 else (m[0], max(m[1], x))
 
 
-def changed(m: Numbers, s: float) -> float:
-    """Changes of the yielding side when side `s` yields."""
-    return m[CHANGES] if s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
+def changed(m: Numbers, s: float, x: float) -> float:
+    """Changes of the yielding side when side `s` has followed the backbone to the ductility `x`."""
+    rests = not passes(x, m[MET], max(m[0], m[1]))
+    return m[CHANGES] if rests or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
 
 
 def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of side `s`, met at ductility `x`."""
     plus, minus = grown(m, s, x)
-    m = (plus, minus, 0.0, 0.0, changed(m, s))
+    m = (plus, minus, x, 0.0, m[CHANGES])
     falls = piece(p, worst(p, m, s), x)[0] < 0.0
     return pair(WEAKENING if falls else YIELDING, s), m
 
@@ -302,7 +305,8 @@ def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
     """State after the end of a line of the backbone."""
-    return enter(p, m, side(at), yield_line(p, at, m)[2])
+    s, x = side(at), yield_line(p, at, m)[2]
+    return enter(p, (m[0], m[1], m[2], m[3], changed(m, s, x)), s, x)
 
 
 def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
@@ -311,7 +315,7 @@ def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[0] / yield_force(p, s)
     plus, minus = grown(m, s, x)
-    return (plus, minus, d, slope * d + s * f0, m[CHANGES])
+    return (plus, minus, d, slope * d + s * f0, changed(m, s, x))
 
 
 def meets(p: Numbers, m: Numbers, s: float, slope: float, d: float, f: float) -> float:

@@ -15,7 +15,7 @@ from dataclasses import replace
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import Numbers, above, below, linear
+from pound_solve.laws.automaton import Numbers, above, below, linear, passes
 from pound_solve.laws.hysteresis.backbone import R as SHARE_OF_INITIAL
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 
@@ -92,6 +92,12 @@ def largest(m: Numbers, s: float) -> float:
 def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
     """Largest deformations when side `s` has reached `x`."""
     return (max(m[0], x), m[1]) if s > 0.0 else (m[0], max(m[1], x))
+
+
+def has_yielded(p: Numbers, s: float, m: Numbers) -> bool:
+    """Whether a side has gone beyond its yield point."""
+    xy = of(p, s)[3]
+    return passes(largest(m, s), xy, xy)
 
 
 def peak(p: Numbers, s: float, m: Numbers) -> Point:

@@ -87,10 +87,10 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if at < UNLOADING:
         if event == 1:
             return next_branch(p, at, m)
-        plus, minus, d, f = turn(p, at, m, d)[:4]
+        plus, minus, d, f, changes = turn(p, at, m, d)
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return pair(UNLOADING, s), (plus, minus, d, f, m[CHANGES])
+        return pair(UNLOADING, s), (plus, minus, d, f, changes)
     plus, minus, d0, f0 = m[:4]
     if at < RELOADING:
         if event == 1:

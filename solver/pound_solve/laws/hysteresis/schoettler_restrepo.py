@@ -53,6 +53,7 @@ from pound_solve.laws.hysteresis.cracking import (
     enter,
     first_yield,
     grown,
+    has_yielded,
     largest,
     of,
     parameters,
@@ -95,7 +96,7 @@ def corner(s: float, m: Numbers) -> Point:
 def short(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
     """Whether a point lies before the pinch point."""
     xp, fp = pinch(p, s, m)
-    if m[0] > of(p, 1.0)[3] and m[1] > of(p, -1.0)[3]:
+    if has_yielded(p, 1.0, m) and has_yielded(p, -1.0, m):
         return x < xp
     return f < fp
 

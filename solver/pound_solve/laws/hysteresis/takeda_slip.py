@@ -44,7 +44,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear, passes
 from pound_solve.laws.hysteresis.backbone import ALFA
 from pound_solve.laws.hysteresis.cracking import (
     ELASTIC,
@@ -58,6 +58,7 @@ from pound_solve.laws.hysteresis.cracking import (
     enter,
     first_yield,
     grown,
+    has_yielded,
     largest,
     of,
     parameters,
@@ -93,7 +94,7 @@ def slip(p: Numbers, s: float, m: Numbers) -> float:
 def slips(p: Numbers, s: float, m: Numbers) -> bool:
     """Whether a side slips before it is loaded to its peak."""
     x, f = peak(p, s, m)
-    return m[ZERO] < 0.0 and x > of(p, s)[3] and slip(p, s, m) * (x - m[ZERO]) < f
+    return m[ZERO] < 0.0 and has_yielded(p, s, m) and slip(p, s, m) * (x - m[ZERO]) < f
 
 
 def end(p: Numbers, m: Numbers, at: int) -> float:
@@ -175,7 +176,8 @@ def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tupl
 def reverse(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
     """Internal variables after a reversal."""
     s = side(at)
-    if at >= UNLOADING:
+    most = largest(m, s)
+    if at >= UNLOADING and (at < TO_PEAK or passes(most, x, most)):
         return (*m[0:5], x, f, inner(p, m, at, x, f), float(at))
     plus, minus = grown(m, s, x)
     return (plus, minus, *m[2:5], x, f, unloading(p, s, x), float(at))
@@ -191,7 +193,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
             return int(m[LEFT]), m
         if largest(m, -s) > 0.0:
             return load(p, m, -s, -unloaded(p, m, s), 0.0, m[SLOPE])
-        if largest(m, s) <= of(p, s)[3]:
+        if not has_yielded(p, s, m):
             return crack(p, m, -s)
         return load(p, m, -s, -unloaded(p, m, s), of(p, -s)[2], m[SLOPE])
     now = branch(p, at, m)
