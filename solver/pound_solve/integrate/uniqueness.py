@@ -7,6 +7,9 @@ motion that it does not hold, in which some of these laws go on and others turn 
 alone, and rounding chooses.  Dashpots hold such a motion where the tangent is zero; where it is negative
 they only slow it down, and what rounding makes of it grows without the structure's doing.
 
+A law that hardens rests where its line of yielding begins as long as another in series yields at the same
+force.  Whether it would have yielded is open, and some rules never forget it (see `remembers_yield`).
+
 Laws may also come to lose a force together.  What one loses others take over, or are relieved: those that
 turn back then, and do not lose theirs, might as well have been the first.
 
@@ -23,15 +26,41 @@ import math
 import numpy as np
 
 from pound_solve.check import Check, Subject, beyond
+from pound_solve.laws.automaton import BranchKind, drive
 from pound_solve.numerics.matrices import dense, diagonal, scaled, used_columns, used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
 SOFT = 1e-9  #: share of the elastic stiffness below which a tangent holds nothing
 TAKES_PART = 1e-6  #: share of the largest deformation of the motion that is not held
 SHOWN = 4  #: elements that are named
+HAIR = 1e-6  #: share of its yield deformation by which a spring yields, or does not
+CYCLES = 12  #: that follow, in which the forces are compared
+DIFFERS = 1e-3  #: share of its elastic force at yield by which these differ where it remembers
 ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight between"
+
+
+def remembers_yield(spring: LawSpring) -> bool:
+    """Whether a spring behaves differently from then on if it comes to its first yield at all."""
+    law = spring.law
+    if law.curved or spring.yields is None or spring.strengths is None:
+        return False
+    ends = [y - spring.beside * f for y, f in zip(spring.yields, spring.strengths)]
+    for near, far in (ends, ends[::-1]) if np.isfinite(ends).all() else ():
+        way = [0.3 * near, 0.8 * near, 4.0 * far, 0.5 * near, 0.9 * near]
+        way += [x for n in range(CYCLES) for x in ((2.0 + n) * far, (2.5 + n) * near)]  # ever further
+        forces = []
+        for d in (near * (1.0 - HAIR), near * (1.0 + HAIR)):
+            state = drive(law, law.start(), 0.0, d)
+            for goal in way:
+                state, d = drive(law, state, d, goal), goal
+                forces.append(law.force(state, d)[0])
+        apart = np.abs(np.subtract(*np.reshape(forces, (2, -1))))
+        if (apart > DIFFERS * abs(law.p[0] * near)).any():
+            return True
+    return False
 
 
 class Uniqueness:
@@ -92,6 +121,13 @@ class Uniqueness:
         for since, first, others in self._falls:
             if t >= since and others.pop(law, branch) != branch:
                 self._tell(since, [first, law])
+
+    def rests(self, t: float, law: int, other: int, branch: int) -> None:
+        """Take in that a law turns while another, or itself, is where a branch begins, by number."""
+        spring = self.system.structure.laws[other]
+        yields = spring.law.rule.branches[branch].kind is BranchKind.YIELDING
+        if yields and not self.elements and remembers_yield(spring):
+            self._tell(t, [law, other])
 
     def _tell(self, t: float, laws: list[int]) -> None:
         """Note that any of some laws may go on."""

@@ -92,6 +92,7 @@ class EventDrivenRun(ABC):
         without mass move where its force falls; `d` and `v` are those of all laws.
         """
         law, event_index = self._before_slack(law, event_index, d, v)
+        self._look_for_rests(law, event_index, d, v)
         before, own = self.branches[law], float(d[law])
         self.transition(law, event_index, own, float(v[law]))
         fell = self._massless_laws[law] and falls(before, self.branches[law], own)
@@ -143,6 +144,31 @@ class EventDrivenRun(ABC):
                 if not is_slack(its):
                     return i, n
         return law, event_index
+
+    def _look_for_rests(self, law: int, event_index: int, d: Array, v: Array) -> None:
+        """Look which laws are at the beginning of a branch as one turns (see `kernels.ties.note_rests`)."""
+        event = self.branches[law].events[event_index]
+        turns = event.d_factor == 0.0 and event.v_factor != 0.0
+        if not turns or self.laws[law].role.collides or not self._massless_laws[law]:
+            return
+        for i in np.flatnonzero(self._massless_laws).tolist():
+            if not self.laws[i].role.collides:
+                branch = self._branch_begun(i, float(d[i]), float(v[i]), i == law)
+                if branch >= 0:
+                    self.uniqueness.rests(self.t, law, i, branch)
+
+    def _branch_begun(self, law: int, d: float, v: float, turns: bool) -> int:
+        """Branch at whose beginning a law `turns`, or else rests; -1 for none."""
+        from pound_solve.integrate.kernels.ties import RESTS, TIED, event_near  # as above
+
+        state, largest = self.states[law], self.largest[:, law].tolist()
+        entered = abs(d - state[1]) <= TIED * largest[0]
+        if not turns and (entered or abs(v) > RESTS * largest[1]):
+            return -1
+        for n, e in enumerate(self.branches[law].events):
+            if event_near(*e, d, largest[0]):
+                return self.laws[law].law.transition(state, n, d, v)[0]
+        return state[0] if entered else -1
 
     def _look_for_ties(self, law: int, d: Array, v: Array, fell: bool) -> None:
         """Look which laws come to the end of their branches with one that is softer now, or whose force

@@ -394,6 +394,7 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
         log=np.zeros((log, state.LOGGED)),
         ties=np.zeros((TIES, 3, n_laws)),
         tie_time=np.zeros(TIES),
+        rests=np.zeros((TIES, 4)),
         which=which,
         shown=np.zeros((shown, 3, len(which))),
         shown_time=np.zeros(shown),

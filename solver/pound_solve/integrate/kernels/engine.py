@@ -174,7 +174,9 @@ class KernelEngine(ABC):
         """Take in the transitions that were kept, and which laws came to theirs together."""
         for k in range(int(self.state.tied)):
             self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
-        self.state.tied = 0
+        for t, law, other, branch in self.buffers.rests[: self.state.rests].tolist():
+            self.uniqueness.rests(t, int(law), int(other), int(branch))
+        self.state.tied = self.state.rests = 0
         self.latest = self.buffers.log[: self.state.logged].tolist()
         for row in self.latest:
             law, before, after = (int(x) for x in row[:3])

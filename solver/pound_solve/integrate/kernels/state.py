@@ -43,6 +43,7 @@ class Run(Protocol):
     stale: int  #: whether what follows from the branches of the laws, as a factor, must be made anew
     falling: int  #: steps that are too long for a falling branch
     tied: int  #: instants at which laws give way together in the buffers
+    rests: int  #: laws that rest where a branch begins in the buffers
     fault: int  #: law or unknown at fault, -1 for none
     time: float
     factor_length: float  #: step that the factor at hand is for
@@ -402,6 +403,9 @@ class Buffers(NamedTuple):
         Of instants at which laws come to their events together: tangents and dashpots if these go on, and
         the rates at which they come; zero for all others (see `ties.note_ties`).
     tie_time : ndarray, shape (n_ties,)
+    rests : ndarray, shape (n_rests, 4)
+        Of laws that rest where a branch begins as a law turns: the time, that law, the one that rests, and
+        the number of its branch (see `ties.note_rests`).
     which : ndarray, shape (n_which,)
         Unknowns that the envelopes look at.
     shown : ndarray, shape (n_shown, 3, n_which)
@@ -425,6 +429,7 @@ class Buffers(NamedTuple):
     log: Array
     ties: Array
     tie_time: Array
+    rests: Array
     which: Index
     shown: Array
     shown_time: Array

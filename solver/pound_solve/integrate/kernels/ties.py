@@ -1,6 +1,9 @@
 """Laws that come to the end of their branches at one instant: where unknowns without mass stand between
 them, which of them goes on may hang on rounding (see `integrate.uniqueness`).
 
+A law may also rest where a branch begins, while another in series yields at the same force.  Whether it
+would have gone on is as open; it is looked at where one of the two turns.
+
 One order is decided here.  Laws in series over a joint without mass lose their forces at one instant.  If
 one of them becomes slack then, the others stand still for as long as it is.  Those whose branches end where
 there is no force have come to their ends, as with a little mass at the joint: they go first.
@@ -16,14 +19,19 @@ from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation
 from pound_solve.laws.functions import Tables
 
 TIED = 1e-9  #: share of its largest terms that an event function may lack of an event at the same instant
+RESTS = 1e-4  #: share of its largest rate up to which a law stands still
+
+
+def event_near(a: float, b: float, c: float, d: float, largest: float) -> bool:
+    """Whether the event function ``a d + b v + c`` is of a deformation alone and zero at `d`, where the
+    largest deformation so far is `largest`.
+    """
+    return b == 0.0 and a != 0.0 and abs(a * d + c) <= TIED * (abs(a) * largest + abs(c))
 
 
 def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
-    """Whether the event function ``a d + b v + c`` of a deformation alone comes to zero at `d` and the rate
-    `v`, where the largest deformation so far is `largest`.
-    """
-    near = abs(a * d + c) <= TIED * (abs(a) * largest + abs(c))
-    return b == 0.0 and a * v > 0.0 and near
+    """Whether such an event function comes to zero at `d` and the rate `v`."""
+    return a * v > 0.0 and event_near(a, b, c, d, largest)
 
 
 def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
@@ -63,6 +71,41 @@ def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> 
             if e >= 0 and not becomes_slack(linear, laws, rules, i, e):
                 return i, e
     return law, event
+
+
+def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns: bool) -> int:
+    """Branch at whose beginning a law that holds an unknown without mass `turns`, or else rests; -1 for
+    none.
+    """
+    if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
+        return -1
+    d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest_deformation[i]
+    entered = abs(d - laws.entry_deformation[i]) <= TIED * largest
+    if not turns and (entered or abs(v) > RESTS * laws.largest_rate[i]):
+        return -1
+    for e in range(laws.n_events[i]):
+        if event_near(laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2], d, largest):
+            save_state(laws, i)
+            leave_branch(laws, rules, i, e, d, v)
+            branch: int = laws.branch[i]
+            restore_state(laws, rules, i)
+            laws.saved[i] = 0
+            return branch
+    return laws.branch[i] if entered else -1
+
+
+def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
+    """Keep which laws are at the beginning of a branch as `law` turns by an `event`, itself included."""
+    laws, buffers, run = sim.laws, sim.buffers, sim.run
+    turns = laws.events[law, event, 0] == 0.0 and laws.events[law, event, 1] != 0.0
+    if not turns or laws.contact[law] or not touches_massless(sim.linear, laws, law):
+        return
+    for i in range(len(laws.rule)):
+        branch = branch_begun(sim.linear, laws, rules, i, i == law)
+        if branch >= 0 and run.rests < len(buffers.rests):
+            row = buffers.rests[run.rests]
+            row[0], row[1], row[2], row[3] = run.time, law, i, branch
+            run.rests += 1
 
 
 def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset: float) -> None:

@@ -28,7 +28,7 @@ from pound_solve.integrate.kernels.state import (
     Simulation,
     Step,
 )
-from pound_solve.integrate.kernels.ties import event_before_slack, note_ties
+from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
 from pound_solve.integrate.series.curved import APART, change_phase
@@ -205,6 +205,7 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
     laws, run = sim.laws, sim.run
     law = event.law
     before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
+    note_rests(sim, rules, law, event.event_index)
     leave_branch(laws, rules, law, event.event_index, d, v)
     take_over(laws, rules, series, law)
     # the rate of what has no mass jumps, and with it the force of its dashpot

@@ -31,7 +31,7 @@ from pound_solve.integrate.kernels.state import (
     Scheme,
     Simulation,
 )
-from pound_solve.integrate.kernels.ties import event_before_slack, note_ties
+from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.step import (
     REFRESH,
@@ -60,6 +60,7 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     if laws.normal[i] >= 0:
         couple_friction(laws, rules, sim.step.now.acceleration, i)
     d, v, f0 = laws.now.deformation[i], laws.now.rate[i], laws.offset[i]
+    note_rests(sim, rules, i, event)
     leave_branch(laws, rules, i, event, d, v)
     if laws.normal[i] < 0 and lets_go(linear, laws, i, k, f0, d):
         run.fell = i
