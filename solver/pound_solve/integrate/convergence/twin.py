@@ -4,7 +4,10 @@ EXACT and TAYLOR make rounding errors only.  Most motions leave them as small as
 strike again and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
 left, and the balance of energies and every other check are still good.  A run of the same method whose
 excitation is larger by a share of `CHANGE`, ten times the rounding of a run or more, tells: how far its
-peaks are from those of the run bounds what rounding does to them.  It keeps no histories and no envelopes.
+peaks are from those of the run is what rounding may do to them.  It keeps no histories and no envelopes.
+
+It does not see what both runs decide alike, as which of two springs of equal strength yields: `uniqueness`
+looks for that.
 """
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ from pound_solve.structure.reduction import ReducedSystem
 
 CHANGE = 1e-11  #: of the excitation, as a share
 ABOUT = f"change of the peaks where the excitation changes by {CHANGE:g}"
-MAGNIFIED = "the motion magnifies rounding: no method finds these peaks to TOL, so compare several motions"
+MAGNIFIED = "the motion magnifies rounding beyond TOL: these peaks are chance, so compare several motions"
 
 
 def changed(system: ReducedSystem, start: Start) -> tuple[ReducedSystem, Start]:
