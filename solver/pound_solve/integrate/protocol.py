@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from pound_solve.check import Check, Subject, at_most, beyond
+from pound_solve.check import Check, Subject, at_most, beyond, looked
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import used_rows
@@ -233,6 +233,12 @@ class Outcome:
     states: tuple[State, ...]
     checks: list[Check] = field(default_factory=list)
     exact: bool = False
+
+    @property
+    def one_of_several(self) -> bool:
+        """Whether a check tells that rounding, or a convention, has chosen among several motions."""
+        chosen = (Subject.MAGNIFICATION, Subject.UNIQUENESS)
+        return any(check.subject in chosen for check in looked(self.checks))
 
 
 class Stop(Exception):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from pound_solve.check import Subject, looked
 from pound_solve.results.record import RunRecord
 
 SIGNS: Final = (
@@ -16,8 +15,8 @@ SIGNS: Final = (
 def how_found(run: RunRecord) -> str:
     """Tell whether the peaks that the method tracks are exact."""
     returned = run.history.returned
-    if any(check.subject is Subject.MAGNIFICATION for check in looked(returned.checks)):
-        return "Peaks are those of one of several motions that only rounding tells apart."
+    if returned.one_of_several:
+        return "Peaks are those of one of several motions: see the checks."
     if returned.exact:
         return "Peaks are exact."
     if run.history.recorder.envelopes.searched:

@@ -119,14 +119,13 @@ def response(run: RunRecord) -> Iterator[Row]:
 
 def error_of(outcome: Outcome) -> str:
     """What is known about the error of a method in time."""
+    if outcome.one_of_several:
+        return "not known: the motion is one of several, see the checks"
     if outcome.exact:
-        magnified = [check for check in outcome.checks if check.subject is Subject.MAGNIFICATION]
-        if not magnified:
-            return "rounding only: it makes no error from one instant to the next"
-        (check,) = magnified
-        if check.looks:
-            return f"rounding, which the motion magnifies: {check.value:.1e}, TOL {check.allowed:g}"
-        return f"rounding only: {check.value:.1e}, {check.name}"
+        for check in outcome.checks:
+            if check.subject is Subject.MAGNIFICATION:
+                return f"rounding only; {check.name}: {check.value:.1e}"
+        return "rounding only: it makes no error from one instant to the next"
     estimates = [check for check in outcome.checks if check.subject is Subject.ERROR]
     if estimates:
         worst = next(iter(looked(estimates)), estimates[0])
