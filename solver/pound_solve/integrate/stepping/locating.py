@@ -337,6 +337,8 @@ def step_in_parts(
             part = event.time
             if part > 1e-9 * h:
                 run.same_instant = 0
+            elif part == 0.0 and curved:  # else what follows takes forces and tangents of the last trial
+                start_again(laws, rules)
         else:
             run.longest_part *= 2.0
         if part > 0.0:
