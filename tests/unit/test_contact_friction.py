@@ -355,3 +355,38 @@ def test_a_ball_that_hardly_slides_when_it_touches_a_curved_contact(tmp_path, la
         )
         after.append((vn, vt))
     assert np.ptp(np.array(after)[6:], axis=0) == pytest.approx([0.0, 0.0], abs=2e-5)
+
+
+PULLED = """UNITS kN m s
+NODES
+  1 0 0 FIX=XYR
+  2 0 0 FIX=R
+  3 1 0 FIX=XYR
+ELEMENTS
+  1 HOLD 1 2
+  2 HIT 2 3
+PROPS
+  HOLD SPRING KX=2000 KY={ky}
+  HIT CONTACT GAP=0.005 ANGLE=0 LAW=POWER_LAW_DAMPED K=2E7 E=0.5 TENSION=YES MU=0.25 KT=2E5
+WEIGHTS
+  2 200 200
+INITIAL
+  2 VX=0.4 VY={vy}
+ANALYSIS
+  HISTORY 2 METHOD={method}
+"""
+
+
+@pytest.mark.parametrize(("ky", "vy"), [(500, 0.02), (4000, 0.05)])
+def test_a_contact_that_pulls_does_not_press(tmp_path, ky, vy):
+    """It presses with no force, which does not grow either: else it sticks and slips without end (A503)."""
+    found = []
+    for method in ("TAYLOR", "NEWMARK DT=4e-4", "NEWMARK DT=1e-4"):
+        deck = tmp_path / "pulled.inp"
+        deck.write_text(PULLED.format(ky=ky, vy=vy, method=method))
+        with results_of(deck) as results:
+            assert results.status == "done", results.message
+            found.append(results.history("node/u")[:, 1, 1])
+    series, coarse, fine = found
+    errors = [np.abs(x - series).max() / np.abs(series).max() for x in (coarse, fine)]
+    assert errors[1] < 2e-3 and errors[1] < errors[0] / 4.0
