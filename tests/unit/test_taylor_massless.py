@@ -11,7 +11,9 @@ import pytest
 
 from pound_solve.integrate.events.functions import EventFunctions
 from pound_solve.integrate.events.protocol import LocatedEvent
-from pound_solve.laws.automaton import Branch, BranchKind, EventFunction
+from pound_solve.integrate.kernels.engine import KernelEngine
+from pound_solve.laws.automaton import Branch, BranchKind, EventFunction, Law, drive
+from pound_solve.laws.hysteresis import bilinear
 from pound_solve.structure.dofs import label
 from pound_solve.structure.reduction import ReducedSystem
 from tiers import at_night, each_once
@@ -265,6 +267,31 @@ def test_a_joint_that_snaps_through_is_named(method: str) -> None:
     told = "node 3 ux has no mass, and its stiffness has become negative: it snaps through; give it weight"
     assert r.message.endswith(told)
     assert len(r.time) > 2
+
+
+@pytest.mark.parametrize(("hardening", "snaps"), [(-0.5, True), (-0.2, False), (0.1, False)])
+def test_only_a_stiffness_below_zero_snaps_through(hardening: float, snaps: bool) -> None:
+    """A spring of 30 that softens beside one of 10; changes without end alone do not tell."""
+    law = Law(bilinear.RULE, (30.0, 2.0, -2.0, hardening))
+    yielding = drive(law, law.start(), 0.0, 0.2)
+    for state in (yielding, law.transition(yielding, 0, 0.2)):
+        stub = SimpleNamespace(
+            system=SimpleNamespace(
+                mass=np.zeros((1, 1)),
+                stiffness=np.array([[10.0]]),
+                law_rows=np.array([[1.0]]),
+                structure=SimpleNamespace(corotational=()),
+            ),
+            laws=SimpleNamespace(
+                stiffness=np.array([law.branch(state).stiffness]),
+                now=SimpleNamespace(deformation=np.array([0.2])),
+            ),
+            springs=[SimpleNamespace(law=law)],
+            law_state=lambda i, state=state: state,
+            latest=[[0, 0, 1, 5.0]],
+            state=SimpleNamespace(time=5.0),
+        )
+        assert KernelEngine._softens(stub) is snaps
 
 
 @pytest.mark.parametrize("method", ["TAYLOR", "NEWMARK"])

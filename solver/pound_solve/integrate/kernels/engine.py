@@ -42,6 +42,8 @@ from pound_solve.laws import functions
 from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics.jit import Function
+from pound_solve.numerics.matrices import MOST_DENSE, dense
+from pound_solve.numerics.modes import massless
 from pound_solve.numerics.providers import provider
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -251,7 +253,24 @@ class KernelEngine(ABC):
         held = own[~np.asarray(has_mass, bool)[own]]
         rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.state.time]
         turns = min(rates, default=0.0) < 0.0 < max(rates, default=0.0)
-        return int(self.order[held[0]]) if turns and len(held) else None
+        return int(self.order[held[0]]) if turns and len(held) and self._softens() else None
+
+    def _softens(self) -> bool:
+        """Whether the stiffness of the unknowns without mass is not positive where all laws that change at
+        this instant are on the softest of their branches.
+        """
+        light = np.flatnonzero(massless(self.system.mass))
+        if self.system.structure.corotational or len(light) > MOST_DENSE:
+            return True  # it takes too long to find out
+        stiffness = self.laws.stiffness.copy()
+        for i in {int(row[0]) for row in self.latest if row[3] == self.state.time}:
+            law, now, d = self.springs[i].law, self.law_state(i), float(self.laws.now.deformation[i])
+            after = [law.transition(now, n, d) for n in range(len(law.branch(now).events))]
+            if not law.curved:
+                stiffness[i] = min(law.branch(state).stiffness for state in (now, *after))
+        rows = dense(self.system.law_rows[:, light])
+        own = dense(self.system.stiffness[np.ix_(light, light)])
+        return bool(np.linalg.eigvalsh(own + (rows.T * stiffness) @ rows)[0] <= 0.0)
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
