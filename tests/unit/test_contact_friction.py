@@ -21,7 +21,7 @@ NODES
 ELEMENTS
  1 HIT 1
 PROPS
- HIT CONTACT GAP=0.02 ANGLE={angle} {law} {friction}
+ HIT CONTACT GAP={gap} ANGLE={angle} {law} {friction}
 WEIGHTS
  1 2
 INITIAL
@@ -33,15 +33,21 @@ OUTPUT
 """
 
 
-def ball(folder, friction, vn=1.0, vt=1.0, angle=0.0, law="LAW=LINEAR K=5000", method="NEWMARK DT=1e-4"):
+def ball(
+    folder,
+    friction,
+    vn=1.0,
+    vt=1.0,
+    angle=0.0,
+    law="LAW=LINEAR K=5000",
+    method="NEWMARK DT=1e-4",
+    gap=0.02,
+):
     """A mass of 2 that meets a wall at `vn`, sliding at `vt`; both speeds afterwards, and the results."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    own = {"angle": angle, "law": law, "friction": friction, "method": method, "gap": gap}
     deck = folder / "ball.inp"
-    deck.write_text(
-        BALL.format(
-            angle=angle, law=law, friction=friction, method=method, vx=c * vn - s * vt, vy=s * vn + c * vt
-        )
-    )
+    deck.write_text(BALL.format(vx=c * vn - s * vt, vy=s * vn + c * vt, **own))
     results = results_of(deck)
     assert results.status == "done", results.message
     vx, vy = results.history("node/v")[-1][0, :2]
@@ -88,6 +94,15 @@ def test_a_ball_that_sticks_goes_back_the_way_it_came(tmp_path, vt):
     # a hair above mu it slips all the way
     _, after, _ = ball(tmp_path, "MU=0.49 KT=5000", vt=vt)
     assert after == pytest.approx(vt * (1.0 - 2.0 * 0.49 / 0.5), rel=1e-6)
+
+
+def test_rounding_does_not_decide_at_touch(tmp_path):
+    """The force there is none, but for rounding: below zero it does not pull, and the ball sticks."""
+    for n in range(12):
+        gap = 0.02 + 0.003 * math.sin(7.0 * n)
+        *_, results = ball(tmp_path, "MU=0.51 KT=5000", vt=0.5, gap=gap, method="NEWMARK DT=1e-3")
+        (row,) = results.table("spring_envelope")
+        assert abs(row["plastic_work"]) < 1e-12, gap
 
 
 BLOCK = """UNITS N m s
@@ -281,7 +296,9 @@ def test_all_methods_that_locate_events_take_it(tmp_path):
 def test_methods_that_do_not(tmp_path, method, words):
     deck = tmp_path / "ball.inp"
     deck.write_text(
-        BALL.format(angle=0, law="LAW=LINEAR K=5000", friction="MU=0.3 KT=1E6", method=method, vx=1, vy=1)
+        BALL.format(
+            gap=0.02, angle=0, law="LAW=LINEAR K=5000", friction="MU=0.3 KT=1E6", method=method, vx=1, vy=1
+        )
     )
     results = results_of(deck)
     assert results.status != "done" and words in results.message

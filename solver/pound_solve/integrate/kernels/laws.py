@@ -131,10 +131,13 @@ def leave_branch(laws: Laws, rules: Tables, i: int, event: int, d: float, v: flo
     enter_branch(laws, rules, i)
 
 
-def press_friction(laws: Laws, i: int, force: float, rate: float) -> None:
-    """Press coupled law `i` with the force of its contact and the rate of that: not while it pulls."""
+def press_friction(laws: Laws, i: int, force: float, rate: float, v: float) -> None:
+    """Press coupled law `i` with the force of its contact and the rate of that, but not while it pulls.
+
+    It pulls only as the bodies part, at a rate `v` below zero: a force below zero at touch is rounding.
+    """
     laws.internal[i, PUSH] = max(force, 0.0)
-    laws.internal[i, PUSH_RATE] = rate if force >= 0.0 else 0.0
+    laws.internal[i, PUSH_RATE] = rate if force >= 0.0 or v > 0.0 else 0.0
 
 
 def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
@@ -142,7 +145,7 @@ def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
     it.
     """
     j = laws.normal[i]
-    press_friction(laws, i, linear_force(laws, j, d, v), laws.stiffness[j] * v + laws.damping[j] * a)
+    press_friction(laws, i, linear_force(laws, j, d, v), laws.stiffness[j] * v + laws.damping[j] * a, v)
 
 
 def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> None:
@@ -180,7 +183,7 @@ def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> N
     set_normal_force(laws, i, d, v, a)
     if laws.curved[j]:  # its tangent may be that of the end of a step that was tried
         c = curved_force(laws, rules, j, d, v)
-        press_friction(laws, i, c[0], c[1] * v + c[2] * a)
+        press_friction(laws, i, c[0], c[1] * v + c[2] * a, v)
     pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
     if pressed != (laws.branch[i] != 0):
         leave_branch(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
