@@ -62,7 +62,7 @@ def solved(
         return peaks, unique, dict(results.table("overview").tolist())["error of the method"]
 
 
-@each_once(("rule", [SLIPS, PINCHES, CYCLES]), ("seed", [2, 4, 5]), at_most=2)
+@each_once(("rule", [SLIPS, CYCLES]), ("seed", [2, 4, 5]), at_most=2)
 def test_where_steps_end_does_not_matter(tmp_path: Path, rule: str, seed: int) -> None:
     """Rounding decided whether the beam's hinge had yielded: peaks were up to 15 % apart."""
     series = solved(tmp_path, "TAYLOR", 0.02, rule, seed)[0]

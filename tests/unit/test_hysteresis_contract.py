@@ -37,7 +37,7 @@ from pound_solve.laws.automaton import (
     on_spring,
 )
 from pound_solve.laws.condensed import without
-from pound_solve.laws.hysteresis import bilinear, takeda_slip
+from pound_solve.laws.hysteresis import bilinear, takeda_slip, wayne_stewart
 from samples import values
 
 pytestmark = pytest.mark.full
@@ -184,6 +184,16 @@ UNEQUAL, EQUAL = list(cases(MINUS)), list(cases(-PLUS))
 every = pytest.mark.parametrize(("law", "sample"), UNEQUAL)
 
 
+def kept_by(law: Law) -> list[Callable[[Law, float], None]]:
+    """The clauses that a rule keeps.
+
+    A virgin WAYNE_STEWART spring unloads along another line than one that has yielded by however little:
+    where a tiny mass swings about its strength, that must not be left out.
+    """
+    but = [contract.resting_at_its_strength_is_not_yielding] * (law.rule is wayne_stewart.RULE)
+    return [clause for clause in CLAUSES if clause not in but]
+
+
 CURVED = [case for case in UNEQUAL if case.values[0].curved]  # these take seconds
 
 
@@ -191,7 +201,7 @@ CURVED = [case for case in UNEQUAL if case.values[0].curved]  # these take secon
     ("law", "sample"), [*(case for case in UNEQUAL if case not in CURVED), *one_of_each(CURVED)]
 )
 def test_contract(law: Law, sample: dict[str, Any]) -> None:
-    for clause in CLAUSES:
+    for clause in kept_by(law):
         clause(law, REACH)
 
 
@@ -210,7 +220,7 @@ def test_contract_without_a_share_of_the_elastic_deformation(law: Law, share: fl
     between differs), and the same forces at deformations that are smaller by that share of f / k.
     """
     less = without(law, share)
-    for clause in CLAUSES:
+    for clause in kept_by(law):
         if clause is not contract.trying_changes_nothing:
             clause(less, REACH)
     for seed in range(3):

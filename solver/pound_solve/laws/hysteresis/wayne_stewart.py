@@ -49,7 +49,6 @@ from pound_solve.laws.automaton import (
     above,
     below,
     linear,
-    passes,
 )
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 
@@ -193,19 +192,16 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         back = SLACK if is_slack(p) else pair(ELASTIC, -s)
         return (pair(YIELDING, s) if event == 0 else back), m
     if at < PINCHED:
-        if event > 0:
-            return (pair(BEYOND, s) if at < BEYOND else FAILED), m
-        came = reloading(p, s, m)[0]
-        if at >= BEYOND or passes(s * d, came, came):
+        if event == 0:
             most = s * d - backbone(p, s)[0]
             if s > 0.0:
                 m = (max(most, m[0]), m[1], 0.0, 0.0, 0.0, 0.0, 0.0)
             else:
                 m = (m[0], max(most, m[1]), 0.0, 0.0, 0.0, 0.0, 0.0)
-        elif m[0] == m[1] == 0.0:
-            return pair(ELASTIC, s), m
+        elif at < BEYOND:
+            return pair(BEYOND, s), m
         else:
-            at = pair(RELOADING, s)
+            return FAILED, m
     elif event == 1:
         if at < RELOADING:
             return pair(RELOADING if pinch_end(p, s, m)[0] else BEYOND, s), m
