@@ -440,13 +440,16 @@ def test_a_contact_that_opens_and_closes_again_late_in_a_coarse_step(tmp_path):
 
 
 def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, monkeypatch):
-    """With an interpolation from where the contact has just opened it would close there again and again."""
+    """With an interpolation from where the contact has just opened it would close there again and again,
+    but for shorter parts of the step.
+    """
 
     def at_start(laws, step, i, e):
         return within_step.event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
 
     monkeypatch.setattr(locating, "value_at_start", at_start)
     monkeypatch.setattr(within_step, "ALIKE", 1.0)  # else that counts as rounding
+    monkeypatch.setattr(locating, "SHORTEST", 1.0)
     with interpreted():
         told = bar(tmp_path, 0.05).message
     assert told.startswith("A503 at t = 0.703") and "at one instant" in told

@@ -294,6 +294,32 @@ def test_only_a_stiffness_below_zero_snaps_through(hardening: float, snaps: bool
         assert KernelEngine._softens(stub) is snaps
 
 
+@pytest.mark.parametrize("falls", [True, False])
+def test_a_falling_branch_counts_where_the_law_has_been_on_it_at_this_instant(falls: bool) -> None:
+    """Branch 2, two changes away from branch 0, falls; a law of three branches has met it or not."""
+    stiffness, follows = (10.0, 10.0, -15.0), (1, 2, 0)
+    law = SimpleNamespace(
+        curved=False,
+        branch=lambda state: SimpleNamespace(stiffness=stiffness[state[0]], events=[None]),
+        transition=lambda state, n, d: (follows[state[0]],),
+    )
+    changes = [(0, 1), (1, 2), (2, 0)] if falls else [(0, 1), (1, 0)]
+    stub = SimpleNamespace(
+        system=SimpleNamespace(
+            mass=np.zeros((1, 1)),
+            stiffness=np.array([[10.0]]),
+            law_rows=np.array([[1.0]]),
+            structure=SimpleNamespace(corotational=()),
+        ),
+        laws=SimpleNamespace(stiffness=np.array([10.0]), now=SimpleNamespace(deformation=np.array([0.2]))),
+        springs=[SimpleNamespace(law=law)],
+        law_state=lambda i: (0,),
+        latest=[[0, *change, 5.0] for change in changes],
+        state=SimpleNamespace(time=5.0),
+    )
+    assert KernelEngine._softens(stub) is falls
+
+
 @pytest.mark.parametrize("method", ["TAYLOR", "NEWMARK"])
 def test_a_joint_of_a_large_structure_that_snaps_through_is_named(method: str) -> None:
     """Its matrices are sparse."""

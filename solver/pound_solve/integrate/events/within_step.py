@@ -13,6 +13,7 @@ from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 #: times `STILL`: share of their displacements within which bodies stay that move alike in steps; each of
 #: their events is met to `STILL`
 ALIKE = 1e3
+EVEN = 1e-9  #: share of its terms below which a slope is rounding
 BACK = 1e-6  #: share of its largest rate that a law must move back with before that counts as a reversal
 
 
@@ -38,11 +39,31 @@ def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
     A law that has just come through an event and moves on stands next to zero there: an interpolation would
     take the way back to that event, late in the step, for one at once.
     """
-    on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
-    slope = on_d * laws.now.rate[i]
+    return np.nan if all_slopes(laws, step, i, e)[0] < 0.0 else start_value(laws, i, e)
+
+
+def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
+    """Slopes of event function `e` of law `i` at both ends of the step that was tried, but for what
+    accelerations add; how fast the limit of a rate changes is left out.
+    """
+    on_d = laws.events[i, e, 0]
+    s0, s1 = on_d * laws.now.rate[i], on_d * laws.trial.rate[i]
+    if laws.normal[i] < 0 or on_d == 0.0:
+        return s0, s1
+    grows = laws.limit_rates_at_start[i, e]
+    even = EVEN * (abs(s0) + abs(grows))
+    s0 += grows
+    return 0.0 if abs(s0) <= even else s0, s1 + laws.limit_rates[i, e]
+
+
+def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
+    """Those with what accelerations add."""
+    s0, s1 = slopes(laws, i, e)
+    on_v = laws.events[i, e, 1]
     if on_v != 0.0:
-        slope += on_v * row_product(laws.rows, i, step.now.acceleration)
-    return np.nan if slope < 0.0 else start_value(laws, i, e)
+        s0 += on_v * row_product(laws.rows, i, step.now.acceleration)
+        s1 += on_v * row_product(laws.rows, i, step.trial.acceleration)
+    return s0, s1
 
 
 def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
@@ -71,12 +92,8 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
     """Whether the cubic of event function `e` of law `i` in the step of length `h` is above rounding up to
     the time `t`.
     """
-    on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
-    s0, s1 = on_d * laws.now.rate[i], on_d * laws.trial.rate[i]
-    if on_v != 0.0:
-        s0 += on_v * row_product(laws.rows, i, step.now.acceleration)
-        s1 += on_v * row_product(laws.rows, i, step.trial.acceleration)
+    s0, s1 = all_slopes(laws, step, i, e)
     g0 = min(start_value(laws, i, e), 0.0)
     for k in range(1, LOOKS):
         if cubic_value(g0, g1, s0, s1, h, t * k / (LOOKS - 1)) > ALIKE * STILL * size:
@@ -89,19 +106,15 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
     if on_d == 0.0 and on_v == 0.0:
         return np.inf
-    v, d1, v1 = laws.now.rate[i], laws.trial.deformation[i], laws.trial.rate[i]
-    g1, size = event_value(laws, i, e, d1, v1)
-    s0, s1 = on_d * v, on_d * v1
-    turns = s0 > 0.0 and s1 < 0.0
+    g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
     tol = STILL * max(ALIKE * size if laws.contact[i] else size, abs(g1))
-    if g1 <= tol and not turns:
+    s0, s1 = slopes(laws, i, e)
+    if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
         return np.inf
-    if on_v != 0.0:
-        s0 += on_v * row_product(laws.rows, i, step.now.acceleration)
-        s1 += on_v * row_product(laws.rows, i, step.trial.acceleration)
+    s0, s1 = all_slopes(laws, step, i, e)
     g0 = min(start_value(laws, i, e), 0.0)  # a branch holds when it is entered
-    # accelerations of massless unknowns would mislead, as do limits that change
-    if g1 > tol and g0 < 0.0 and (on_d == 0.0 or laws.normal[i] >= 0):
+    # accelerations of massless unknowns would mislead
+    if g1 > tol and g0 < 0.0 and on_d == 0.0:
         return h * g0 / (g0 - g1)
     if g1 > tol:
         return cubic_rise(g0, g1, s0, s1, h)

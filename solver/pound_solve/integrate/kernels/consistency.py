@@ -122,8 +122,9 @@ def force_rates(
             change += linear.inputs[j, i] * input_rates[j]
         out[i] = change - out[i]
     for i in range(len(laws.rule)):
+        change = laws.stiffness[i] * rate[i] + laws.offset_rate[i]
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            out[laws.rows.columns[q]] -= laws.rows.values[q] * laws.stiffness[i] * rate[i]
+            out[laws.rows.columns[q]] -= laws.rows.values[q] * change
     members = laws.members
     if linear.massless_vary:
         form_quantities(members, velocity, input_rates, members.predicted)

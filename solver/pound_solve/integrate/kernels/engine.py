@@ -263,11 +263,15 @@ class KernelEngine(ABC):
         if self.system.structure.corotational or len(light) > MOST_DENSE:
             return True  # it takes too long to find out
         stiffness = self.laws.stiffness.copy()
-        for i in {int(row[0]) for row in self.latest if row[3] == self.state.time}:
-            law, now, d = self.springs[i].law, self.law_state(i), float(self.laws.now.deformation[i])
-            after = [law.transition(now, n, d) for n in range(len(law.branch(now).events))]
+        changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.state.time}
+        for i in {change[0] for change in changes}:
+            law, d, states = self.springs[i].law, float(self.laws.now.deformation[i]), [self.law_state(i)]
+            for state in states:  # it grows by those that follow
+                after = [law.transition(state, n, d) for n in range(len(law.branch(state).events))]
+                seen = {other[0] for other in states}
+                states += [x for x in after if (i, state[0], x[0]) in changes and x[0] not in seen]
             if not law.curved:
-                stiffness[i] = min(law.branch(state).stiffness for state in (now, *after))
+                stiffness[i] = min(law.branch(state).stiffness for state in states)
         rows = dense(self.system.law_rows[:, light])
         own = dense(self.system.stiffness[np.ix_(light, light)])
         return bool(np.linalg.eigvalsh(own + (rows.T * stiffness) @ rows)[0] <= 0.0)

@@ -148,20 +148,38 @@ def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
     press_friction(laws, i, linear_force(laws, j, d, v), laws.stiffness[j] * v + laws.damping[j] * a, v)
 
 
+def enter_coupled(laws: Laws, rules: Tables, i: int) -> None:
+    """Take over the branch that coupled law `i` is on and its event functions, and the rates at which its
+    force and their limits grow with the normal force, in which they are linear.
+    """
+    push = laws.internal[i, PUSH]
+    laws.internal[i, PUSH] = push + laws.internal[i, PUSH_RATE]
+    enter_branch(laws, rules, i)
+    laws.offset_rate[i] = laws.offset[i]
+    for e in range(laws.events.shape[1]):
+        laws.limit_rates[i, e] = laws.events[i, e, 2]
+    laws.internal[i, PUSH] = push
+    enter_branch(laws, rules, i)
+    laws.offset_rate[i] -= laws.offset[i]
+    for e in range(laws.events.shape[1]):
+        laws.limit_rates[i, e] -= laws.events[i, e, 2]
+
+
 def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> None:
     """Strengths of the coupled laws at the end of a step."""
     for i in laws.coupled:
         j = laws.normal[i]
         a = row_product(laws.rows, j, acceleration)
         set_normal_force(laws, i, laws.trial.deformation[j], laws.trial.rate[j], a)
-        enter_branch(laws, rules, i)
+        enter_coupled(laws, rules, i)
 
 
 def hold_friction_limits(laws: Laws) -> None:
-    """Keep the limits of the coupled laws as those of the start of the coming step."""
+    """Keep the limits of the coupled laws and their rates as those of the start of the coming step."""
     for i in laws.coupled:
         for e in range(laws.events.shape[1]):
             laws.limits_at_start[i, e] = laws.events[i, e, 2]
+            laws.limit_rates_at_start[i, e] = laws.limit_rates[i, e]
 
 
 def add_slip_work(laws: Laws, h: float) -> None:
@@ -183,11 +201,14 @@ def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> N
     set_normal_force(laws, i, d, v, a)
     if laws.curved[j]:  # its tangent may be that of the end of a step that was tried
         c = curved_force(laws, rules, j, d, v)
-        press_friction(laws, i, c[0], c[1] * v + c[2] * a, v)
+        force = c[0]
+        if force == 0.0 == c[1]:  # outside by rounding: the rate is that from inside
+            c = curved_force(laws, rules, j, d + STILL * laws.largest_deformation[j], v)
+        press_friction(laws, i, force, c[1] * v + c[2] * a, v)
     pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
     if pressed != (laws.branch[i] != 0):
         leave_branch(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
-    enter_branch(laws, rules, i)
+    enter_coupled(laws, rules, i)
     laws.friction_force[i] = laws.stiffness[i] * laws.now.deformation[i] + laws.offset[i]
 
 

@@ -264,11 +264,15 @@ class Laws(NamedTuple):
         Where the branch was entered, and the work done up to there.
     stiffness, damping, offset : ndarray
         The linear branch, or the tangent of a curved one: ``f = k d + c v + f0``.
+    offset_rate : ndarray
+        Of a coupled law, the rate of f0 with the normal force.
     n_events : ndarray of int
     events : ndarray, shape (n_laws, EVENTS, 3)
         Event functions of the branch, ``a d + b v + c``.
     limits_at_start : ndarray, shape (n_laws, EVENTS)
         Of a coupled law, c at the start of the step: its limits change with the normal force.
+    limit_rates, limit_rates_at_start : ndarray, shape (n_laws, EVENTS)
+        Rates of c with that force, at the end of the step that was tried and at its start.
     now, trial : LawMotion
     largest_deformation, largest_rate : ndarray
     largest_terms : ndarray
@@ -310,9 +314,12 @@ class Laws(NamedTuple):
     stiffness: Array
     damping: Array
     offset: Array
+    offset_rate: Array
     n_events: Index
     events: Array
     limits_at_start: Array
+    limit_rates: Array
+    limit_rates_at_start: Array
     now: LawMotion
     trial: LawMotion
     largest_deformation: Array

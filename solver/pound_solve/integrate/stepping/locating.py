@@ -49,6 +49,7 @@ from pound_solve.numerics.types import Array
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 MOST_HALVINGS = 25
+SHORTEST = 3e-8  #: part of a step that what follows is shortened to where laws turn to and fro
 GO_ON, MET, NONE = range(3)
 PATIENCE = 12  #: trials by interpolation; bisection follows
 
@@ -357,6 +358,8 @@ def step_in_parts(
         run.same_instant += 1
         if run.same_instant > most:
             return CHATTER
+        if run.same_instant > len(laws.rule):  # a law may turn to and fro: what follows is tried nearer by
+            run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST * h)
         if run.fell >= 0:
             run.rest = left
             return FALL
