@@ -111,6 +111,47 @@ def test_a_free_impact_gives_back_what_is_asked(law: str, e: float) -> None:
     assert r.check() < 1e-11
 
 
+GRAZE = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=YR
+ELEMENTS
+ 1 K 1
+ 2 HIT 1
+PROPS
+ K SPRING KX=4
+ HIT CONTACT GAP={gap!r} ANGLE=0 {card}
+WEIGHTS
+ 1 1
+INITIAL
+ 1 UX=-0.1
+OUTPUT
+ EVERY=0.05
+ANALYSIS
+ HISTORY 2 METHOD=TAYLOR
+"""
+
+
+@full
+@pytest.mark.parametrize("name", POWERS)
+@pytest.mark.parametrize("off", [1e-8, 1e-9])
+def test_a_graze_presses_as_far_as_the_free_swing_goes(name: str, off: float) -> None:
+    """The contact hardly moves the body: the force follows from u = -0.1 cos 2t, however shallow."""
+    items = ["K=300"] if name == "HERTZ" else ["K=300", "E=0.5"]
+    law = specimen(catalog().family("contact")[name], items)[0].law  # its masses make one of 1
+    swing, omega = 0.1, 2.0
+    r = run_text(GRAZE.format(gap=swing * (1.0 - off), card=" ".join([f"LAW={name}", *items])))
+    (c,) = r.tables["collisions"]
+    touch = math.acos(1.0 - off) / omega  # before the crest
+    before = np.linspace(touch, 0.0, 20001)
+    overlap = swing * (off - 2.0 * np.sin(0.5 * omega * before) ** 2)
+    rate = swing * omega * np.sin(omega * before)
+    at, _, _, m = law.transition(law.start(), 0, 0.0, rate[0])
+    forces = [law.rule.curve(law.p, at, m, 0.0, max(x, 0.0), v)[0] for x, v in zip(overlap, rate)]
+    assert c["peak_force"] == pytest.approx(max(forces), rel=1e-5)
+    assert 0.5 * (c["t_start"] + c["t_end"]) == pytest.approx(0.5 * math.pi, abs=0.01 * touch)
+
+
 @full
 @pytest.mark.parametrize("law", ["HERTZ", "JANKOWSKI", "HUNT_CROSSLEY"])
 def test_a_contact_without_a_gap(law: str) -> None:

@@ -16,6 +16,8 @@ from pound_solve.assess.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject, beyond, looked
 from pound_solve.cli.main import main
+from pound_solve.integrate.events import within_step
+from pound_solve.integrate.protocol import STILL
 
 pytestmark = pytest.mark.full
 
@@ -187,6 +189,41 @@ def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
     assert parted.end == stability.RIGHT and parted.says == stability.PARTLY
 
 
+def test_springs_are_not_judged_where_a_body_turns_unless_the_reference_has_no_steps():
+    """A reference by steps does not see that a law turns which moves back at 1e-6 of its largest rate."""
+    turning = RIGHT_RUN._replace(v=np.where(LINE > 0.95, 1e-9, 1.0)[:, None])
+    late, early = 1.0 * LINE, 1.0 * LINE
+    late[-1], early[-2] = 1.2, 1.2
+    case = scene_case.Case("hysteresis", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+
+    def end(f, by):
+        def run(case, deck, method):
+            if method == "TAYLOR":
+                return RIGHT_RUN._replace(f=f[:, None])
+            return turning if by in method else stability.NOTHING._replace(stop="A505 at t = 0 s: curved")
+
+        row = stability.judge(run, case, "TAYLOR")
+        assert (row.says == stability.PARTLY) is (row.end == stability.RIGHT)
+        return row.end
+
+    assert [end(late, "NEWMARK"), end(early, "NEWMARK")] == [stability.RIGHT, stability.FAULT]
+    assert end(late, "REFINE") == stability.FAULT
+
+
+def test_other_masses_show_a_touch_that_steps_take_for_rounding(monkeypatch):
+    asked = []
+    monkeypatch.setattr(stability, "nudged", lambda deck, share: asked.append(share) or deck)
+    case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+
+    def run(case, deck, method):
+        if "REFINE" in method:
+            return stability.NOTHING._replace(stop="A505 at t = 0 s: curved")
+        return RIGHT_RUN if "NEWMARK" in method else RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
+
+    stability.judge(run, case, "TAYLOR")
+    assert asked == [stability.BLIND] and 5.0 * within_step.ALIKE * STILL < stability.BLIND < 1e-6
+
+
 def test_masses_are_nudged_by_their_share():
     deck = stability.nudged(linear.one(""), 1e-3)
     assert "\nGRAVITY 0.999000999" in deck and stability.nudged("NODES\n", 1e-3) == "NODES\n"
@@ -317,6 +354,8 @@ def test_a_thousand_seconds_of_record(tmp_path):
 
 BITS = """import hashlib, sys
 from pound_solve.cli.main import main
+from pound_solve.integrate.events import within_step
+from pound_solve.integrate.protocol import STILL
 assert main([sys.argv[1], "-o", sys.argv[2], "--quiet"]) == 0
 from pound_solve.results import Results
 with Results.open(sys.argv[2] + "/row.h5") as r:
