@@ -243,6 +243,44 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     assert check.value > 1e-2 and found.status == "done"
 
 
+EQUAL_STRENGTHS = """UNITS kN m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 0 2 FIX=YR
+ELEMENTS
+ 1 LOWER 1 2
+ 2 UPPER 2 3
+PROPS
+ LOWER SPRING KX=300 FX=1 RULE=ELASTO_PLASTIC
+ UPPER SPRING KX=700 FX=1 RULE=ELASTO_PLASTIC
+WEIGHTS
+ 3 1
+INITIAL
+ 3 VX=1
+EQUAKE
+ SINE AMPLITUDE=4 PERIOD=1 DURATION=3
+ANALYSIS
+ HISTORY 3 METHOD=AUTO TOL=1e-3
+OUTPUT
+ EVERY=0.01
+"""
+
+
+def test_auto_gives_up_early_where_each_step_finds_another_motion(tmp_path, monkeypatch):
+    """Two springs of one strength over a node without mass: rounding decides at each step which yields."""
+    steps_alone(monkeypatch)
+    deck = tmp_path / "equal.inp"
+    deck.write_text(EQUAL_STRENGTHS)
+    with results_of(deck, out=tmp_path) as found:
+        looks = {check.subject: check for check in found.checks if check.looks}
+        runs = int(dict(found.table("run").tolist())["runs"])
+    assert "not unique" in looks[Subject.UNIQUENESS].remark
+    assert "nor nearer" in looks[Subject.ERROR].remark and looks[Subject.ERROR].value > 0.1
+    assert runs < 2 + step_refinement.MAX_STALE_RUNS
+
+
 def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypatch):
     steps_alone(monkeypatch)
     runs = []

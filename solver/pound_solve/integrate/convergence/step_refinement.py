@@ -30,6 +30,7 @@ from pound_solve.structure.reduction import ReducedSystem
 MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
 MAX_STALE_RUNS = 6  #: runs in a row that do not halve the error, after which shorter steps are given up
+MAX_STALE_OF_SEVERAL = 2  #: the same where the motion is one of several: each step may find another one
 AIM = 0.6  #: share of the tolerance that the next step aims at
 FEWEST = 3  #: runs that a tolerance is met with: two may agree by chance
 RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
@@ -123,7 +124,9 @@ class StepRefinement:
         self.lasts = hardest(outcome.peaks)
         self._compare(outcome, replay)
         self.spent += self.cost_of_run(self.h)
-        if self.met or self.stale == MAX_STALE_RUNS or self._longest():
+        several = any(check.subject is Subject.UNIQUENESS for check in outcome.checks)
+        stale = self.stale >= (MAX_STALE_OF_SEVERAL if several else MAX_STALE_RUNS)
+        if self.met or stale or self._longest():
             return self._end(MOST if self._longest() else STALE)
         self._choose()
         return None
