@@ -26,7 +26,9 @@ from unit import test_damper_contract
 
 ROOT = Path(__file__).parents[2]
 MANUAL = ROOT / "manual"
-GUIDE = (MANUAL / "developer-guide.md").read_text("utf-8")
+GUIDE, ARCHITECTURE, GLOSSARY = (
+    (MANUAL / page).read_text("utf-8") for page in ("developer-guide.md", "architecture.md", "glossary.md")
+)
 PAGES = sorted([*MANUAL.glob("*.md"), ROOT / "README.md", *(ROOT / "examples").rglob("README.md")])
 
 # ---------------------------------------------------------------- links
@@ -72,11 +74,53 @@ def test_every_path_that_the_developer_guide_names_is_there():
 
 
 @pytest.mark.parametrize("package", ["parser/pound_deck", "parser/pound_legacy", "solver/pound_solve"])
-def test_every_module_is_on_the_map_of_the_developer_guide(package):
-    table_of_places = GUIDE.split("## 2.")[0]
+def test_every_module_is_on_the_map_of_the_architecture(package):
+    table_of_places = ARCHITECTURE.split("## Three walks")[0]
     here = (ROOT / package).iterdir()
     names = {p.stem for p in here if p.suffix == ".py" or (p / "__init__.py").exists()}
     assert not [x for x in names if not x.startswith("__") and f"`{x}`" not in table_of_places]
+
+
+def rows_of(page):
+    """Cells of the rows of all tables of a page, but for their heads."""
+    rows = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")]
+    return [row for row in rows if row[0] not in ("file", "room", "term")]
+
+
+def text_of(path):
+    """Text of a file that a page names: below the solver, unless it begins with the parser."""
+    return (ROOT / ("" if path.startswith("parser/") else "solver/pound_solve") / path).read_text("utf-8")
+
+
+def defines(text, name):
+    """Whether a module defines a function, class or constant."""
+    return re.search(rf"^ *(?:def|class) {name}\b|^{name}\b.*?(?:=|:)", text, re.M) is not None
+
+
+def test_the_walks_lead_along_functions_that_are_there():
+    walks = [row for row in rows_of(ARCHITECTURE) if row[0].strip("`").endswith(".py")]
+    assert len(walks) > 25
+    assert not [w for w in walks if not defines(text_of(w[0].strip("`")), w[1].strip("`"))]
+
+
+def test_the_glossary_is_in_order_and_its_places_are_there():
+    named = set()
+    for group in GLOSSARY.split("\n## ")[1:]:
+        rows = rows_of(group)
+        terms = [row[0].lower() for row in rows]
+        assert len(terms) > 10 and terms == sorted(terms)
+        for _, _, places in rows:
+            path = ""
+            for place in re.findall(r"`([^`]+)`", places):
+                if place.endswith(".py"):
+                    path = place
+                    text = text_of(path)
+                else:
+                    assert defines(text, place), (path, place)
+                    named.add((path, place))
+    for path in ("integrate/kernels/state.py", "integrate/series/state.py"):
+        classes = re.findall(r"^class (\w+)", text_of(path), re.M)
+        assert not [name for name in classes if (path, name) not in named]
 
 
 #: what plain English says otherwise; regular expressions of phrases that the pages got rid of
