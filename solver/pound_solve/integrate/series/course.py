@@ -47,13 +47,13 @@ class ShownSteps:
         coefs = x.coefs[first:last] if last - first == len(steps) else x.coefs[steps]
         h, table = x.length[steps, None], _powers(places, coefs.shape[2])
         values = coefs[:, :n] @ table.reshape(-1, coefs.shape[2]).T
-        out = np.zeros((3, self.size, len(steps), count))
-        out[:, self.unknowns] = values.reshape(len(steps), n, 3, count).transpose(2, 1, 0, 3)
-        out[1] /= h
-        out[2] /= h**2
+        motion = np.zeros((3, self.size, len(steps), count))
+        motion[:, self.unknowns] = values.reshape(len(steps), n, 3, count).transpose(2, 1, 0, 3)
+        motion[1] /= h
+        motion[2] /= h**2
         forces = (coefs[:, n:] @ table[0].T).transpose(1, 0, 2)
         t = (x.begin[steps, None] + places * h).ravel()
-        u, v, a = out.reshape(3, self.size, len(t))
+        u, v, a = motion.reshape(3, self.size, len(t))
         return Motion(t, u, v, a, forces.reshape(coefs.shape[1] - n, len(t)))
 
     def _within(self, cells: Index, shares: Array) -> Motion:
@@ -75,12 +75,12 @@ class ShownSteps:
         inputs[:, :, :top] = (about * x.length[:count, None, None] ** np.arange(top)[:, None]).swapaxes(
             1, 2
         )
-        on_motion, (row, given) = peaks.rows, np.nonzero(peaks.on_inputs[:, :-1])
+        on_motion, (row, column) = peaks.rows, np.nonzero(peaks.on_inputs[:, :-1])
         number = np.concatenate([on_motion.number, row])
         order = np.argsort(number, kind="stable")
-        source = [self.rows[on_motion.columns], x.coefs.shape[1] + given % n_inputs]
-        derivative = [self.derivatives[on_motion.columns], given // n_inputs]
-        factors = [on_motion.factors, peaks.on_inputs[row, given]]
+        source = [self.rows[on_motion.columns], x.coefs.shape[1] + column % n_inputs]
+        derivative = [self.derivatives[on_motion.columns], column // n_inputs]
+        factors = [on_motion.factors, peaks.on_inputs[row, column]]
         bounds = x.coefs.shape[1] + n_inputs, 3
         provider().ready(find_extremes)(
             x,
@@ -109,11 +109,11 @@ class ShownSteps:
 def _powers(places: Array, count: int) -> Array:
     """Powers up to so many and their first two derivatives at places, shape (3, n_places, count)."""
     k = np.arange(count)
-    out = np.zeros((3, len(places), count))
-    out[0] = places[:, None] ** k
-    out[1, :, 1:] = out[0, :, :-1] * k[1:]
-    out[2, :, 2:] = out[0, :, :-2] * (k * (k - 1))[2:]
-    return out
+    powers = np.zeros((3, len(places), count))
+    powers[0] = places[:, None] ** k
+    powers[1, :, 1:] = powers[0, :, :-1] * k[1:]
+    powers[2, :, 2:] = powers[0, :, :-2] * (k * (k - 1))[2:]
+    return powers
 
 
 def _of_cells(x: Array, chosen: Index, count: int) -> Array:
@@ -176,14 +176,14 @@ class ShownIntervals:
         """The motion from the rows of all parts."""
         shown, modal = self.shown, self.modal
         t = shown.start[intervals, None] + places * modal.length[0]
-        u, v, a = out = np.zeros((3, self.size, t.size))
+        u, v, a = motions = np.zeros((3, self.size, t.size))
         forces = np.repeat(shown.held[intervals].T, t.shape[1], axis=1)
         for b, (moved, (_, q, _, seen)) in enumerate(zip(parts, modal.counts.tolist())):
-            own = self.unknowns[modal.shown[b, :seen]]
-            for k, motion in enumerate(out):
-                motion[own] = moved[k * seen : (k + 1) * seen].reshape(seen, t.size)
+            unknowns = self.unknowns[modal.shown[b, :seen]]
+            for k, motion in enumerate(motions):
+                motion[unknowns] = moved[k * seen : (k + 1) * seen].reshape(seen, t.size)
             still = self.rows[b][:seen, : 2 * q] @ shown.rest[intervals, b, : 2 * q].T
-            u[own] += np.repeat(still, t.shape[1], axis=1)
+            u[unknowns] += np.repeat(still, t.shape[1], axis=1)
             forces += moved[3 * seen :].reshape(len(forces), t.size)
         return Motion(t.ravel(), u, v, a, forces)
 
@@ -194,8 +194,8 @@ class ShownIntervals:
         motion = self._motion(np.arange(count), places, [self._on_grid(b, count) for b in parts])
 
         def within(cells: Index, shares: Array) -> Motion:
-            own, cell = np.divmod(cells, self.cells)
+            intervals, cell = np.divmod(cells, self.cells)
             at = (cell[:, None] + shares) / self.cells
-            return self._motion(own, at, [self._at(b, own, at) for b in parts])
+            return self._motion(intervals, at, [self._at(b, intervals, at) for b in parts])
 
         return Course(motion, np.full(count * self.cells, float(self.modal.length[0]) / self.cells), within)

@@ -71,16 +71,16 @@ def touch_overlap(laws: Laws, i: int) -> float:
 def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     """Take over the branch that curved law `i` is on."""
     r = curved.number[i]
-    found = powers_of(
+    powers = powers_of(
         rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
     )
-    own = curved.numbers[r]
-    own[K], own[N], own[C], own[Q], own[PULLS], own[SHIFT] = found
+    numbers = curved.numbers[r]
+    numbers[K], numbers[N], numbers[C], numbers[Q], numbers[PULLS], numbers[SHIFT] = powers
     x, v = overlap(laws, i), laws.now.rate[i]
-    y = max(x - own[SHIFT], 0.0)
-    if own[K] == 0.0 or x <= touch_overlap(laws, i):
+    y = max(x - numbers[SHIFT], 0.0)
+    if numbers[K] == 0.0 or x <= touch_overlap(laws, i):
         curved.phase[r] = APART
-    elif own[PULLS] > 0.0 or own[K] * y ** own[N] + own[C] * y ** own[Q] * v >= 0.0:
+    elif numbers[PULLS] > 0.0 or numbers[K] * y ** numbers[N] + numbers[C] * y ** numbers[Q] * v >= 0.0:
         curved.phase[r] = PRESSED
     else:
         curved.phase[r] = RELEASED
@@ -95,8 +95,8 @@ def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
         first: float = x**n
         return first
     if n == 1.0:
-        own: float = d[k]
-        return own
+        term: float = d[k]
+        return term
     total = 0.0
     for j in range(1, k + 1):
         total += (n * j - (k - j)) * d[j] * w[k - j]

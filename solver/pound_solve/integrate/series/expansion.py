@@ -191,7 +191,7 @@ def expand_series(
     top = len(coefs)
     begin_series(sim, series, coefs, begin, h)
     lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
-    most, k, own, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, CHECK
+    most, k, tail, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, CHECK
     while k + 2 <= TERMS:
         while True:
             next_term(sim, series, k, h, top)
@@ -199,24 +199,24 @@ def expand_series(
             if (k + 1) % CHECK == 0:
                 break
         terms = k + 1
-        own, last = energy_of_term(linear, series, terms, h), energy_of_term(linear, series, terms - 1, h)
+        tail, last = energy_of_term(linear, series, terms, h), energy_of_term(linear, series, terms - 1, h)
         if most == 0.0:  # from rest
-            most = max(energy_of_term(linear, series, 2, h), last, own)
-        if own + last > QUIET * most:
+            most = max(energy_of_term(linear, series, 2, h), last, tail)
+        if tail + last > QUIET * most:
             lengths.carried = terms + CHECK
-        enough = terms > top and own + last <= SMALL * SMALL * most
+        enough = terms > top and tail + last <= SMALL * SMALL * most
         if enough and right_up_to(series, terms, 1.0) == 1.0:
             break
     # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
     others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
     if any_overlap(series.curved) or others:
         lengths.carried = terms + CHECK
-    if not own + last < np.inf:
+    if not tail + last < np.inf:
         return terms, np.nan
     expand_deformations(sim.laws, series, terms, top)
     end = GROW
-    if own > 0.0:
-        end = min(end, (SMALL * SMALL * most / own) ** (0.5 / terms))
+    if tail > 0.0:
+        end = min(end, (SMALL * SMALL * most / tail) ** (0.5 / terms))
     if last > 0.0:
         end = min(end, (SMALL * SMALL * most / last) ** (0.5 / (terms - 1)))
     return terms, right_up_to(series, terms, end)
@@ -224,10 +224,10 @@ def expand_series(
 
 def derivative_factor(k: int, order: int, h: float) -> float:
     """What a derivative makes of the power `k`."""
-    out = 1.0
+    factor = 1.0
     for j in range(order):
-        out *= (k - j) / h
-    return out
+        factor *= (k - j) / h
+    return factor
 
 
 def evaluate_motion(c: Array, terms: int, s: float, h: float, order: int, out: Array) -> None:

@@ -24,8 +24,8 @@ def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
 
 def has_series(series: Series, i: int) -> bool:
     """Whether the force of law `i` is a series of its own."""
-    own = is_held(series.rigid, i) or has_force(series.curved, i) or is_sliding(series.friction, i)
-    return own or series.smooth.number[i] >= 0 or is_fast(series.viscous, i)
+    contact = is_held(series.rigid, i) or has_force(series.curved, i) or is_sliding(series.friction, i)
+    return contact or series.smooth.number[i] >= 0 or is_fast(series.viscous, i)
 
 
 def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
@@ -68,10 +68,10 @@ def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: A
 
 def force_at(force: Array, terms: int, s: float) -> float:
     """Force at the place `s` of a step with so many `terms`."""
-    out = 0.0
+    value = 0.0
     for k in range(terms - 2, -1, -1):
-        out = out * s + force[k]
-    return out
+        value = value * s + force[k]
+    return value
 
 
 def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:

@@ -60,9 +60,9 @@ def is_sliding(friction: Friction, i: int) -> bool:
 def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
     """Coefficient `k` of the normal force of friction `r`; the inputs have `top` coefficients."""
     j, curved = series.friction.normal[r], series.curved
-    own = curved.number[j]
-    if own >= 0:
-        force: float = curved.force[own, k] if curved.phase[own] == PRESSED else 0.0
+    number = curved.number[j]
+    if number >= 0:
+        force: float = curved.force[number, k] if curved.phase[number] == PRESSED else 0.0
         return force
     linear: float = laws.stiffness[j] * deformation_term(laws, series, k, top, j)
     if laws.damping[j] != 0.0:
@@ -114,8 +114,8 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
     d, v = laws.now.deformation[j], laws.now.rate[j]
     push, rate = linear_force(laws, j, d, v), laws.stiffness[j] * v
     if laws.curved[j]:
-        found = curved_force(laws, rules, j, d, v)
-        push, rate = found[0], found[1] * v
+        response = curved_force(laws, rules, j, d, v)
+        push, rate = response[0], response[1] * v
     friction.pressing[r] = push >= 0.0
     laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(push, 0.0), rate
     return 0 if pressed else RELEASED

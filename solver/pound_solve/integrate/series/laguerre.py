@@ -42,14 +42,14 @@ class Laguerre(Taylor):
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
-        own = self.lengths
+        lengths = self.lengths
         return {
             "method": self.name,
-            "steps": int(self.state.steps - own.in_modes),
-            **({"intervals in modes": in_modes} if (in_modes := int(own.in_modes)) else {}),
-            **({"shortest step": f"{own.shortest:.4g}"} if np.isfinite(own.shortest) else {}),
-            "steps taken again": int(own.rejected),
-            "factorisations": int(own.factored),
+            "steps": int(self.state.steps - lengths.in_modes),
+            **({"intervals in modes": in_modes} if (in_modes := int(lengths.in_modes)) else {}),
+            **({"shortest step": f"{lengths.shortest:.4g}"} if np.isfinite(lengths.shortest) else {}),
+            "steps taken again": int(lengths.rejected),
+            "factorisations": int(lengths.factored),
             "events": int(self.state.events),
         }
 

@@ -112,11 +112,11 @@ def work_put_in(linear: LinearSystem, series: Series, terms: int, end: float, to
         power *= end
         put += power * dot(linear.constant, series.motion[k])
         for j in range(series.inputs.shape[1]):
-            share, own, further = dot(linear.inputs[j], series.motion[k]), 0.0, power
+            share, integral, further = dot(linear.inputs[j], series.motion[k]), 0.0, power
             for m in range(min(top, terms)):
-                own += series.inputs[m, j] * further * k / (k + m)
+                integral += series.inputs[m, j] * further * k / (k + m)
                 further *= end
-            put += share * own
+            put += share * integral
     return put
 
 
@@ -150,16 +150,16 @@ def add_works(
         put += weight * string_power(laws, series, terms, s, h)
         if moved:
             for order in range(3):
-                out = (
+                motion = (
                     trial.displacement
                     if order == 0
                     else trial.velocity
                     if order == 1
                     else trial.acceleration
                 )
-                evaluate_motion(series.motion, terms, s, h, order, out)
-            given, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
-            put += weight * given
+                evaluate_motion(series.motion, terms, s, h, order, motion)
+            supplied, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
+            put += weight * supplied
             works.damping += weight * lost
             for i in range(len(trial.velocity)):
                 put += weight * load_on_nodes(linear, trial.inputs, i) * trial.velocity[i]
@@ -241,9 +241,9 @@ def change_branches(
         len(laws.rule) if len(series.massless.unknown) == 0 else 0
     ):  # else `settle_state` decides
         if i != event.law and series.rigid.number[i] < 0:
-            own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
-            if own.law >= 0 and own.event_index >= 0 and own.time <= event.time + instant / h:
-                change_branch(sim, rules, series, now, own)
+            other = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
+            if other.law >= 0 and other.event_index >= 0 and other.time <= event.time + instant / h:
+                change_branch(sim, rules, series, now, other)
     change_friction(sim, rules, series)
 
 

@@ -73,10 +73,10 @@ def allocate(
     among = [a[np.ix_(first, first)] for a in (damping, stiffness)]
     linked = [*(entries(a)[:2] for a in among), coupled_pairs(columns for columns, _ in by_rows(touched))]
     one, other = (np.concatenate(part) for part in zip(*linked))
-    own = laid_out(len(first), one, other, np.ones(len(laws), bool))
-    order, pattern, column, unknown = own.order, own.pattern, own.column, first[own.order]
+    layout = laid_out(len(first), one, other, np.ones(len(laws), bool))
+    order, pattern, column, unknown = layout.order, layout.pattern, layout.column, first[layout.order]
     rows = sparse_rows(touched[:, order])
-    pointers, pairs, values = places_in_pattern(rows, own)
+    pointers, pairs, values = places_in_pattern(rows, layout)
     lower = pattern.ai.astype(np.int64)
     springs = weighted(touched[:, order], elastic[laws])
     return Massless(
@@ -111,9 +111,9 @@ def form_matrix(laws: Laws, held: Massless, which: int) -> None:
         held.matrix[q] = held.on_pattern[which, q]
     for n in range(len(held.laws)):
         i = held.laws[n]
-        own = laws.damping[i] if which == DAMPING else laws.stiffness[i]
+        coefficient = laws.damping[i] if which == DAMPING else laws.stiffness[i]
         for q in range(held.pair_pointers[n], held.pair_pointers[n + 1]):
-            held.matrix[held.pair_places[q]] += own * held.pair_values[q]
+            held.matrix[held.pair_places[q]] += coefficient * held.pair_values[q]
 
 
 def factorise_orders(laws: Laws, held: Massless) -> int:

@@ -93,10 +93,10 @@ def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
     for b in range(len(modal.counts)):
         n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
         for kind in range(2):
-            out = now.displacement if kind == DISPLACEMENT else now.velocity
+            motion = now.displacement if kind == DISPLACEMENT else now.velocity
             multiply_dense(modal.from_modes[b, kind], modal.modes[b], n, twice, modal.x[b, 0], 0.0)
             for i in range(n):
-                out[modal.unknowns[b, i]] = modal.x[b, 0, i]
+                motion[modal.unknowns[b, i]] = modal.x[b, 0, i]
     for i in range(len(laws.rule)):
         d, v = row_product(laws.rows, i, now.displacement), row_product(laws.rows, i, now.velocity)
         laws.now.deformation[i], laws.now.rate[i] = d, v
@@ -297,12 +297,12 @@ def add_interval_works(modal: Modal, n_inputs: int, works: Works) -> None:
 def advance_modes(modal: Modal, n_inputs: int) -> None:
     """Take the modes to the end of the interval."""
     for b in range(len(modal.counts)):
-        twice, out = 2 * modal.counts[b, MODES], modal.modes[b]
+        twice, modes = 2 * modal.counts[b, MODES], modal.modes[b]
         x = modal.x[b, modal.growth.shape[1] - 1]
         for i in range(twice):
-            out[i] = x[i] + modal.rest[b, i]
+            modes[i] = x[i] + modal.rest[b, i]
             for j in range(2 * n_inputs):
-                out[i] += modal.steady[b, i, j] * x[twice + j]
+                modes[i] += modal.steady[b, i, j] * x[twice + j]
 
 
 def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, goal: float) -> bool:

@@ -136,14 +136,14 @@ def parts_of(
     def part(unknowns: Index) -> Part:
         block = np.ix_(unknowns, unknowns)
         mass, damping, k = (dense(a[block]) for a in (system.mass, system.damping, system.stiffness))
-        own, outputs = (dense(rows[:, unknowns]) for rows in (laws, monitored))
+        law_rows, outputs = (dense(rows[:, unknowns]) for rows in (laws, monitored))
         return shared_part(
             mass,
             damping,
-            k + (own.T * stiffness) @ own,
+            k + (law_rows.T * stiffness) @ law_rows,
             dense(system.inputs[unknowns]),
             system.constant[unknowns],
-            np.vstack([own, outputs]),
+            np.vstack([law_rows, outputs]),
             length,
         )
 
@@ -186,7 +186,7 @@ def allocate(
     fastest = max((float(np.abs(p.rate).max()) for _, p in parts), default=0.0)
     cells = max(FEWEST, int(np.ceil(fastest * length / STRIDE)))
     places = 2 * cells + 1
-    out = Modal(
+    modal = Modal(
         length=np.array([length if parts else 0.0]),
         is_present=np.zeros(1, np.int64),
         serves=np.zeros(1, np.int64),
@@ -218,9 +218,9 @@ def allocate(
         values=np.zeros((cells + 1, n_followed)),
         apart=np.zeros(n_followed),
     )
-    for i, ((unknowns, p), own) in enumerate(zip(parts, seen)):
-        fill_tables(out, i, p, own, place[unknowns], shown[own])
-    return out
+    for i, ((unknowns, p), numbers) in enumerate(zip(parts, seen)):
+        fill_tables(modal, i, p, numbers, place[unknowns], shown[numbers])
+    return modal
 
 
 def fill_tables(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: Index) -> None:
@@ -252,6 +252,6 @@ def fill_tables(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, sh
         put(array, values)
     put(out.shown, seen)
     order = np.argsort(unknowns)
-    own = order[np.searchsorted(unknowns, shown, sorter=order)]
-    motion = (modes.u_q[own], 0), (modes.v_q[own], 0), (modes.v_q[own], 1)
+    places = order[np.searchsorted(unknowns, shown, sorter=order)]
+    motion = (modes.u_q[places], 0), (modes.v_q[places], 0), (modes.v_q[places], 1)
     put(out.motion, np.concatenate([part.table(rows, START, order) for rows, order in motion]))

@@ -32,14 +32,14 @@ class Present(KernelPresent):
 
     def law_forces(self, d: Array, v: Array) -> Array:
         """Forces of all laws at deformations and rates (see `RigidRun`)."""
-        laws, rules, out = self.engine.laws, self.engine.rules, np.zeros(len(d))
+        laws, rules, forces = self.engine.laws, self.engine.rules, np.zeros(len(d))
         coupled = self.series.friction.laws.tolist()
         for i in [i for i in range(len(d)) if i not in coupled] + coupled:  # the forces that press first
             if i in coupled:
-                laws.internal[i, PUSH] = max(out[laws.normal[i]], 0.0)
+                laws.internal[i, PUSH] = max(forces[laws.normal[i]], 0.0)
             if self.series.rigid.number[i] < 0:
-                out[i] = law_kernels.law_force(laws, rules, i, d[i], v[i])
-        return out
+                forces[i] = law_kernels.law_force(laws, rules, i, d[i], v[i])
+        return forces
 
     def enter(self, law: int) -> None:
         """Take over the branch that a law has gone to, where its force is a series."""

@@ -52,9 +52,9 @@ def keep_step(laws: Laws, series: Series, terms: int, h: float, end: float, t: f
         return
     at, n = shown.kept[STEPS], len(shown.which)
     for i in range(n):
-        own, which = shown.coefs[at, i], shown.which[i]
+        coefs, which = shown.coefs[at, i], shown.which[i]
         for k in range(terms + 1):
-            own[k] = series.motion[k, which]
+            coefs[k] = series.motion[k, which]
     for i in range(len(shown.acting)):
         whole_force(laws, series, terms, h, shown.acting[i], shown.coefs[at, n + i])
     for i in range(shown.coefs.shape[1]):

@@ -63,24 +63,24 @@ def pole(last: int, root: int) -> float:
 
 def basis(last: int, gamma: float) -> Array:
     r"""Powers of :math:`\theta` in :math:`L_n^{(-1)}(\theta/\gamma)`, shape (last + 1, last + 1)."""
-    out = np.zeros((last + 1, last + 1))
-    out[0, 0] = 1.0
+    powers = np.zeros((last + 1, last + 1))
+    powers[0, 0] = 1.0
     for n in range(1, last + 1):
         for k in range(1, n + 1):
-            out[n, k] = math.comb(n - 1, k - 1) * (-1.0 / gamma) ** k / math.factorial(k)
-    return out
+            powers[n, k] = math.comb(n - 1, k - 1) * (-1.0 / gamma) ** k / math.factorial(k)
+    return powers
 
 
 def monomials(last: int, gamma: float) -> Array:
     r""":math:`\theta^k` in :math:`L_n^{(-1)}(\theta/\gamma)`, shape (last + 1, last + 1): the inverse of
     `basis`.
     """
-    out = np.zeros((last + 1, last + 1))
-    out[0, 0] = 1.0
+    inverse = np.zeros((last + 1, last + 1))
+    inverse[0, 0] = 1.0
     for k in range(1, last + 1):
         for n in range(1, k + 1):
-            out[k, n] = math.factorial(k) * gamma**k * (-1.0) ** n * math.comb(k - 1, n - 1)
-    return out
+            inverse[k, n] = math.factorial(k) * gamma**k * (-1.0) ** n * math.comb(k - 1, n - 1)
+    return inverse
 
 
 def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
@@ -122,34 +122,34 @@ def elastic_force(linear: LinearSystem, series: Series, u: Array, out: Array) ->
 
 def expand_loads(series: Series, top: int) -> None:
     """Coefficients of the inputs in Laguerre's polynomials; they have `top` powers."""
-    own = series.single_pole
-    for j in range(own.inputs.shape[1]):
-        for n in range(len(own.inputs)):
-            own.inputs[n, j] = 0.0
-        for k in range(min(top, len(own.monomials))):
+    laguerre = series.single_pole
+    for j in range(laguerre.inputs.shape[1]):
+        for n in range(len(laguerre.inputs)):
+            laguerre.inputs[n, j] = 0.0
+        for k in range(min(top, len(laguerre.monomials))):
             for n in range(k + 1):
-                own.inputs[n, j] += own.monomials[k, n] * series.inputs[k, j]
+                laguerre.inputs[n, j] += laguerre.monomials[k, n] * series.inputs[k, j]
 
 
 def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array) -> None:
     """Add the coefficient `n` of the loads, less the next one, times gamma h."""
-    own, springs = series.single_pole, series.springs
-    scale = own.gamma * h
+    laguerre, springs = series.single_pole, series.springs
+    scale = laguerre.gamma * h
     if n == 0:
         for i in range(len(out)):
             out[i] += scale * springs.constant[i]
     if n >= top:
         return
-    for j in range(own.inputs.shape[1]):
-        push = scale * (own.inputs[n, j] - own.inputs[n + 1, j])
+    for j in range(laguerre.inputs.shape[1]):
+        push = scale * (laguerre.inputs[n, j] - laguerre.inputs[n + 1, j])
         if push != 0.0:
             for i in range(len(out)):
                 out[i] += springs.inputs[j, i] * push
     for q in range(springs.n_dashpots[0]):  # rates of moved supports: the coefficients k + 1 of a power k
         law, rate = springs.dashpots[q], 0.0
-        for k in range(min(top - 1, len(own.monomials))):
-            change = own.monomials[k, n] - (own.monomials[k, n + 1] if n + 1 <= k else 0.0)
-            for j in range(own.inputs.shape[1]):
+        for k in range(min(top - 1, len(laguerre.monomials))):
+            change = laguerre.monomials[k, n] - (laguerre.monomials[k, n + 1] if n + 1 <= k else 0.0)
+            for j in range(laguerre.inputs.shape[1]):
                 rate += change * (k + 1) / h * laws.inputs[law, j] * series.inputs[k + 1, j]
         if rate != 0.0:
             add_row(laws.rows, law, -scale * laws.damping[law] * rate, out)
@@ -157,11 +157,11 @@ def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array
 
 def energy(linear: LinearSystem, series: Series, n: int) -> float:
     """Twice the kinetic energy and twice the elastic one of a term."""
-    own, work = series.single_pole, series.damping_product
-    multiply(linear.mass, own.velocity[n], work)
-    total: float = abs(dot(own.velocity[n], work))
-    elastic_force(linear, series, own.displacement[n], work)
-    total += abs(dot(own.displacement[n], work))
+    laguerre, work = series.single_pole, series.damping_product
+    multiply(linear.mass, laguerre.velocity[n], work)
+    total: float = abs(dot(laguerre.velocity[n], work))
+    elastic_force(linear, series, laguerre.displacement[n], work)
+    total += abs(dot(laguerre.displacement[n], work))
     return total
 
 
@@ -169,24 +169,24 @@ def match_initial_velocity(series: Series, velocity: Array, h: float) -> None:
     """Let the motion begin with the present velocities, from which its truncated series deviates by the
     terms that are left out; its end remains as it is.
     """
-    own, last = series.single_pole, len(series.single_pole.basis) - 1
+    laguerre, last = series.single_pole, len(series.single_pole.basis) - 1
     for i in range(len(velocity)):
-        own.force[i] = h * velocity[i] - series.motion[1, i]
+        laguerre.force[i] = h * velocity[i] - series.motion[1, i]
     for k in range(1, last + 1):
-        out, share = series.motion[k], own.initial_slope[k]
+        term, share = series.motion[k], laguerre.initial_slope[k]
         for i in range(len(velocity)):
-            out[i] += share * own.force[i]
+            term[i] += share * laguerre.force[i]
 
 
 def find_terms(sim: Simulation, series: Series, h: float, top: int) -> float:
     """Find the terms of the series from the present state on; return twice the energy of that state."""
     linear, step = sim.linear, sim.step
-    own, now, present = series.single_pole, step.now, 0.0
-    u, v, delta, force = own.displacement, own.velocity, own.force, series.stiffness_product
-    scale = own.gamma * h
+    laguerre, now, present = series.single_pole, step.now, 0.0
+    u, v, delta, force = laguerre.displacement, laguerre.velocity, laguerre.force, series.stiffness_product
+    scale = laguerre.gamma * h
     for i in range(len(delta)):
         u[0, i], v[0, i] = now.displacement[i], now.velocity[i]
-    for n in range(len(own.basis) - 1):
+    for n in range(len(laguerre.basis) - 1):
         multiply(linear.mass, v[n], delta)
         elastic_force(linear, series, u[n], force)
         if n == 0:
@@ -205,15 +205,15 @@ def find_terms(sim: Simulation, series: Series, h: float, top: int) -> float:
 
 def write_in_powers(series: Series) -> None:
     """Write the series in powers of the place, as TAYLOR has them."""
-    own = series.single_pole
-    for k in range(len(own.basis)):
-        out = series.motion[k]
-        for i in range(len(out)):
-            out[i] = 0.0
-        for n in range(k, len(own.basis)):
-            share = own.basis[n, k]
-            for i in range(len(out)):
-                out[i] += share * own.displacement[n, i]
+    laguerre = series.single_pole
+    for k in range(len(laguerre.basis)):
+        term = series.motion[k]
+        for i in range(len(term)):
+            term[i] = 0.0
+        for n in range(k, len(laguerre.basis)):
+            share = laguerre.basis[n, k]
+            for i in range(len(term)):
+                term[i] += share * laguerre.displacement[n, i]
 
 
 def expand_implicit(
@@ -231,11 +231,11 @@ def expand_implicit(
     """
     lengths = series.lengths
     run = sim.run
-    own, top = series.single_pole, len(coefs)
-    last = len(own.basis) - 1
+    laguerre, top = series.single_pole, len(coefs)
+    last = len(laguerre.basis) - 1
     if run.factor_length != h:
         run.factor_length = -1.0
-        scale = own.gamma * h
+        scale = laguerre.gamma * h
         if factorise_effective_mass(sim, 1.0, scale, scale * scale, WHOLE) >= 0:
             return last, np.nan
         run.factor_length = h
@@ -255,6 +255,6 @@ def expand_implicit(
         return last, np.nan
     fit = GROW
     if left_out > 0.0:
-        allowed = max(own.allowed * most, NOISE * present)
+        allowed = max(laguerre.allowed * most, NOISE * present)
         fit = min(fit, (allowed / left_out) ** (0.5 / last))
     return last, fit

@@ -83,10 +83,10 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
     hold.
     """
     for r in range(len(smooth.laws)):
-        i, own = smooth.laws[r], smooth.numbers[r]
+        i, numbers = smooth.laws[r], smooth.numbers[r]
         d = laws.now.deformation[i]
         force, tangent, _, _ = curved_force(laws, rules, i, d, 0.0)
-        own[W], own[Y], own[N], own[A], own[B], k, own[Q] = smooth_of(
+        numbers[W], numbers[Y], numbers[N], numbers[A], numbers[B], k, numbers[Q] = smooth_of(
             rules,
             laws.rule[i],
             parameters(laws.parameters, i),
@@ -95,15 +95,15 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
             d,
             force,
         )
-        x, n, most = own[W] / own[Y], own[N], max(abs(own[A]), abs(own[B]))
+        x, n, most = numbers[W] / numbers[Y], numbers[N], max(abs(numbers[A]), abs(numbers[B]))
         smooth.low[r], smooth.high[r], smooth.bent[r] = 0.0 if x > ZERO else -np.inf, np.inf, most > 0.0
         if most > 0.0 and not is_product(n):
             near = (UNSEEN * (n + 1.0) / most) ** (1.0 / (n + 1.0))
             smooth.bent[r] = x > 0.75 * near
             smooth.low[r] = 0.5 * near if smooth.bent[r] else -near
             smooth.high[r] = np.inf if smooth.bent[r] else near
-        own[SLOPE] = (tangent - k) / own[Q] if smooth.bent[r] else 1.0
-        laws.stiffness[i] = k + own[Q] * own[SLOPE]
+        numbers[SLOPE] = (tangent - k) / numbers[Q] if smooth.bent[r] else 1.0
+        laws.stiffness[i] = k + numbers[Q] * numbers[SLOPE]
         laws.damping[i] = proportional_damping(laws, i, laws.stiffness[i])
         laws.offset[i] = force - laws.stiffness[i] * d
 
@@ -137,20 +137,20 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
 def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
     """Take in the coefficient `k` of the motion: that of the force of smooth law `r`, and of the power."""
     smooth, i = series.smooth, series.smooth.laws[r]
-    own, share, d = smooth.numbers[r], smooth.share[r], deformation_term(laws, series, k, top, i)
+    numbers, share, d = smooth.numbers[r], smooth.share[r], deformation_term(laws, series, k, top, i)
     series.deformation[i, k] = d
-    smooth.force[r, k] = laws.stiffness[i] * d + own[Q] * smooth.rest[r, k]
-    smooth.part[r, k] = own[SLOPE] * d + smooth.rest[r, k]
+    smooth.force[r, k] = laws.stiffness[i] * d + numbers[Q] * smooth.rest[r, k]
+    smooth.part[r, k] = numbers[SLOPE] * d + smooth.rest[r, k]
     if k == 0:
         smooth.force[r, 0] += laws.offset[i]
-        smooth.part[r, 0] = own[W] + own[SLOPE] * (d - laws.now.deformation[i])
-    share[0, k] = smooth.part[r, k] / own[Y]
+        smooth.part[r, 0] = numbers[W] + numbers[SLOPE] * (d - laws.now.deformation[i])
+    share[0, k] = smooth.part[r, k] / numbers[Y]
     if not smooth.bent[r]:
         smooth.power[r, k] = 0.0
-    elif is_product(own[N]):
-        smooth.power[r, k] = whole_power_term(share, int(own[N]), k)
+    elif is_product(numbers[N]):
+        smooth.power[r, k] = whole_power_term(share, int(numbers[N]), k)
     else:
-        smooth.power[r, k] = power_term(own[N], share[0, 0], share[0], smooth.power[r], k)
+        smooth.power[r, k] = power_term(numbers[N], share[0, 0], share[0], smooth.power[r], k)
 
 
 def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
@@ -163,12 +163,12 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
         if k == 0:
             continue
         take_term(laws, series, r, k - 1, top)
-        own, d = smooth.numbers[r], series.deformation[smooth.laws[r]]
+        numbers, d = smooth.numbers[r], series.deformation[smooth.laws[r]]
         power, part = smooth.power[r], smooth.part[r]
         total = 0.0
         for j in range(1, k):
-            total += (k - j) * power[j] * (own[A] * d[k - j] - own[B] * part[k - j])
-        smooth.rest[r, k] = total / (k * (1.0 + own[B] * power[0]))
+            total += (k - j) * power[j] * (numbers[A] * d[k - j] - numbers[B] * part[k - j])
+        smooth.rest[r, k] = total / (k * (1.0 + numbers[B] * power[0]))
 
 
 def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
@@ -187,13 +187,13 @@ def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
 
 def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     """What w/y lacks at the place `s` for the power's series, which is cut off, as a share of it."""
-    own, share = smooth.numbers[r], smooth.share[r, 0]
+    numbers, share = smooth.numbers[r], smooth.share[r, 0]
     x, power = 0.0, 0.0
     for k in range(terms - 1, -1, -1):
         x = x * s + share[k]
         power = power * s + smooth.power[r, k]
-    whole = (x if is_product(own[N]) else max(x, 0.0)) ** own[N]
-    lacks: float = max(abs(own[A]), abs(own[B])) * abs(whole - power) * abs(x - share[0])
+    whole = (x if is_product(numbers[N]) else max(x, 0.0)) ** numbers[N]
+    lacks: float = max(abs(numbers[A]), abs(numbers[B])) * abs(whole - power) * abs(x - share[0])
     return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
 
 

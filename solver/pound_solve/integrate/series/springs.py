@@ -35,13 +35,13 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
     """
     i, j, values = entries(np.zeros((0, 0)) if stiffness is None else stiffness)
     every = np.arange(0 if stiffness is None else n)  # free bodies have a row, too
-    own = [slice(a, b) for a, b in pairwise(rows.pointers.tolist())]
-    one, other = coupled_pairs(rows.columns[x].astype(np.int64) for x in own)
+    slices = [slice(a, b) for a, b in pairwise(rows.pointers.tolist())]
+    one, other = coupled_pairs(rows.columns[x].astype(np.int64) for x in slices)
     keys = np.unique(np.concatenate([one * n + other, i * n + j, every * n + every]))
     place, fixed = np.searchsorted(keys, one * n + other), np.zeros(len(keys))
     fixed[np.searchsorted(keys, i * n + j)] = values
     row, first = np.unique(keys // n, return_index=True)
-    squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in own]
+    squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in slices]
     return Springs(
         row=row.astype(np.uint32),
         number=places(row, n),
@@ -54,7 +54,7 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
         pair_values=np.concatenate([np.zeros(0), *squares]),
         constant=np.zeros(n),
         inputs=np.zeros_like(inputs),
-        dashpots=np.zeros(len(own), np.int64),
+        dashpots=np.zeros(len(slices), np.int64),
         n_dashpots=np.zeros(1, np.int64),
     )
 
@@ -97,11 +97,11 @@ def add_product(springs: Springs, x: Array, out: Array) -> None:
 
 def load_term(springs: Springs, series: Series, k: int, top: int, i: int) -> float:
     """Coefficient `k` of the load on an unknown less the constant forces of laws; the inputs have `top`."""
-    out: float = springs.constant[i] if k == 0 else 0.0
+    load: float = springs.constant[i] if k == 0 else 0.0
     if k < top:
         for j in range(series.inputs.shape[1]):
-            out += springs.inputs[j, i] * series.inputs[k, j]
-    return out
+            load += springs.inputs[j, i] * series.inputs[k, j]
+    return load
 
 
 def deformation_term(laws: Laws, series: Series, k: int, top: int, i: int) -> float:

@@ -189,9 +189,9 @@ class Taylor(KernelEngine):
     def _damped(self, terms: int) -> state.Damped:
         """The unknowns that dashpots act on, in the order of elimination."""
         unknown = np.flatnonzero(used_rows(self.system.damping[self.order]))
-        own = self.order[unknown]
+        damped = self.order[unknown]
         n = len(unknown)
-        matrix = allocation.product(self.system.damping[np.ix_(own, own)])
+        matrix = allocation.product(self.system.damping[np.ix_(damped, damped)])
         return state.Damped(unknown, matrix, np.zeros((terms, n)), np.zeros(n), np.zeros(n))
 
     def _intervals(self) -> Array:
@@ -269,12 +269,12 @@ class Taylor(KernelEngine):
 
     def fetch_shown(self) -> None:
         """Show the recorder the series and the modes that were kept."""
-        own = self.series.shown
-        if own.kept[shown.STEPS]:
-            self.recorder.between(ShownSteps(own, self.order, self.system.excitation).course())
-        if own.kept[shown.INTERVALS]:
-            self.recorder.between(ShownIntervals(own, self.series.modal, self.order).course())
-        own.kept[:] = 0
+        store = self.series.shown
+        if store.kept[shown.STEPS]:
+            self.recorder.between(ShownSteps(store, self.order, self.system.excitation).course())
+        if store.kept[shown.INTERVALS]:
+            self.recorder.between(ShownIntervals(store, self.series.modal, self.order).course())
+        store.kept[:] = 0
 
     def fetch(self) -> None:
         """Take in what was kept; stop where steps are too short for the length of the run."""

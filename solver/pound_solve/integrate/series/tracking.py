@@ -96,9 +96,9 @@ def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) ->
     for late in range(2):
         for i in range(len(laws.rule)):
             if laws.contact[i] == (late == 1):
-                own = event_of(laws, series, terms, h, first.time, i)
-                if own.law >= 0 and (first.law < 0 or own.time < first.time):
-                    first = own
+                event = event_of(laws, series, terms, h, first.time, i)
+                if event.law >= 0 and (first.law < 0 or event.time < first.time):
+                    first = event
     return first
 
 
@@ -149,25 +149,25 @@ def track_law(
         for k in range(terms + 1):
             p[k] = d[i, k]
         count_crest(laws, step, series, terms, h, end, t, first + i, -1)
-    own = first + len(laws.rule) + i
+    peak = first + len(laws.rule) + i
     stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
     if has_series(series, i):
         copy_force(series, terms, i, 1.0, p)
-        count_crest(laws, step, series, terms, h, end, t, own, i)
+        count_crest(laws, step, series, terms, h, end, t, peak, i)
         return
     far *= abs(stiffness)
-    high = extremes.high[own]
+    high = extremes.high[peak]
     if laws.contact[i]:
         high = min(high, laws.peak_force[i])
     force = laws.offset[i] + stiffness * begin
-    if damping != 0.0 or force + far > high or force - far < extremes.low[own]:
+    if damping != 0.0 or force + far > high or force - far < extremes.low[peak]:
         for k in range(terms + 1):
             p[k] = stiffness * d[i, k]
         p[0] += laws.offset[i]
         if damping != 0.0:
             for k in range(terms):
                 p[k] += damping * (k + 1) / h * d[i, k + 1]
-        count_crest(laws, step, series, terms, h, end, t, own, i)
+        count_crest(laws, step, series, terms, h, end, t, peak, i)
 
 
 def track_laws(

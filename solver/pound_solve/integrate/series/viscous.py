@@ -61,22 +61,22 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
 def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
     """Put the present tangents in the place of the dampers' branches."""
     for r in range(len(viscous.laws)):
-        i, own = viscous.laws[r], viscous.numbers[r]
-        own[K], own[N], _, _, _, _ = powers_of(
+        i, numbers = viscous.laws[r], viscous.numbers[r]
+        numbers[K], numbers[N], _, _, _, _ = powers_of(
             rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
         )
-        viscous.fast[r], own[RATE] = False, laws.now.rate[i]
-        if own[K] == 0.0:  # the branch is linear
+        viscous.fast[r], numbers[RATE] = False, laws.now.rate[i]
+        if numbers[K] == 0.0:  # the branch is linear
             continue
-        c, n, x = abs(own[K]), own[N], own[RATE] if own[K] > 0.0 else -own[RATE]
+        c, n, x = abs(numbers[K]), numbers[N], numbers[RATE] if numbers[K] > 0.0 else -numbers[RATE]
         share = 1.0 / max(n, 1.0)
-        own[LIMIT] = max(STOPPED**share, SLOW**share * laws.largest_rate[i]) if n != 1.0 else np.inf
-        viscous.fast[r] = x > own[LIMIT]
+        numbers[LIMIT] = max(STOPPED**share, SLOW**share * laws.largest_rate[i]) if n != 1.0 else np.inf
+        viscous.fast[r] = x > numbers[LIMIT]
         if viscous.fast[r]:
             laws.damping[i] = n * c * x ** (n - 1.0)
-            laws.offset[i] = (1.0 - n) * own[K] * x**n
+            laws.offset[i] = (1.0 - n) * numbers[K] * x**n
         else:
-            laws.damping[i] = c if n == 1.0 else c * own[LIMIT] ** (n - 1.0)
+            laws.damping[i] = c if n == 1.0 else c * numbers[LIMIT] ** (n - 1.0)
             laws.offset[i] = 0.0
 
 
@@ -88,11 +88,11 @@ def is_fast(viscous: Viscous, i: int) -> bool:
 def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> None:
     """Take in the coefficient `k` of the rate of damper `r`: that of its force."""
     viscous, i = series.viscous, series.viscous.laws[r]
-    own, sign = viscous.numbers[r], 1.0 if viscous.numbers[r, K] > 0.0 else -1.0
+    numbers, sign = viscous.numbers[r], 1.0 if viscous.numbers[r, K] > 0.0 else -1.0
     x = sign * (k + 1) / h * deformation_term(laws, series, k + 1, top, i)
     if k == 0:
-        x = max(x, own[LIMIT])
-        viscous.force[r, 0] = own[K] * x ** own[N]
+        x = max(x, numbers[LIMIT])
+        viscous.force[r, 0] = numbers[K] * x ** numbers[N]
     else:
         viscous.force[r, k] = sign * laws.damping[i] * x + viscous.rest[r, k]
     viscous.rate[r, k] = x
@@ -154,11 +154,11 @@ def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
     Newton's iteration needs and rounding of the `velocity` of the unknowns lets them be.
     """
     for r in viscous.light:
-        i, own = viscous.laws[r], viscous.numbers[r]
-        if own[K] != 0.0 and own[N] != 1.0:
+        i, numbers = viscous.laws[r], viscous.numbers[r]
+        if numbers[K] != 0.0 and numbers[N] != 1.0:
             v, size = laws.now.rate[i], 0.0
             for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
                 size += abs(laws.rows.values[q] * velocity[laws.rows.columns[q]])
-            if abs(v - own[RATE]) > SETTLED * max(abs(v), own[LIMIT]) + ROUNDING * size:
+            if abs(v - numbers[RATE]) > SETTLED * max(abs(v), numbers[LIMIT]) + ROUNDING * size:
                 return False
     return True
