@@ -76,12 +76,12 @@ def product(a: Matrix) -> Product:
     n = a.shape[0]
     rows, columns, values = entries(a)
     off = columns - rows
-    found, number = np.unique(off, return_counts=True)
-    full = (number >= FULL_DIAGONAL * n) & (found != 0)
-    offsets = np.concatenate([[0], found[full]]).astype(np.int64)
+    distinct, number = np.unique(off, return_counts=True)
+    full = (number >= FULL_DIAGONAL * n) & (distinct != 0)
+    offsets = np.concatenate([[0], distinct[full]]).astype(np.int64)
     diagonals = np.zeros((len(offsets), n))
-    for z, own in enumerate(offsets.tolist()):
-        diagonals[z, rows[off == own] - max(0, -own)] = values[off == own]
+    for z, offset in enumerate(offsets.tolist()):
+        diagonals[z, rows[off == offset] - max(0, -offset)] = values[off == offset]
     rest = ~np.isin(off, offsets)
     row = np.unique(rows[rest])
     return Product(
@@ -106,7 +106,7 @@ def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
     solved = [system.mass, *[system.damping] * in_damping, *[system.stiffness] * in_stiffness]
     linked = [entries(a)[:2] for a in solved]
     joins = damps & in_damping | in_stiffness
-    touched = [row for (row, _), own in zip(by_rows(system.law_rows), joins) if own]
+    touched = [row for (row, _), joined in zip(by_rows(system.law_rows), joins) if joined]
     if in_stiffness:
         touched += [columns for columns, _ in system.corotational.touched()]
     linked.append(coupled_pairs(touched))
@@ -173,9 +173,9 @@ def linear_system(
 
 def places(chosen: Index, count: int) -> Index:
     """Place of each of `count` things among the `chosen` ones, -1 for others."""
-    out = np.full(count, -1)
-    out[chosen] = np.arange(len(chosen))
-    return out
+    place = np.full(count, -1)
+    place[chosen] = np.arange(len(chosen))
+    return place
 
 
 def places_in_pattern(rows: Rows, own: Layout) -> tuple[ldl.Place, ldl.Place, Array]:
@@ -301,8 +301,8 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
     members = system.corotational
     count = len(members)
     supports = system.structure.corotational.rows[:, system.structure.n_free :]
-    found = members.on(own.order.tolist()).touched()
-    touched = [x for x, _ in found]
+    by_member = members.on(own.order.tolist()).touched()
+    touched = [x for x, _ in by_member]
     first = ldl.pointers(touched)
     position = own.position if scheme.beta > 0.0 else {}
     pairs = [
@@ -322,7 +322,7 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
         parameters=members.p,
         pointers=first,
         unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
-        rows=np.concatenate([*(rows.T for _, rows in found), np.zeros((0, 6))]),
+        rows=np.concatenate([*(rows.T for _, rows in by_member), np.zeros((0, 6))]),
         pair_pointers=ldl.pointers(pairs),
         pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
         inputs=np.ascontiguousarray(system.corotational_inputs),
@@ -349,7 +349,7 @@ def step_arrays(
     def motion() -> state.MotionState:
         return state.MotionState(*np.zeros((6, n)), *np.zeros((2, inputs)))
 
-    out = state.Step(
+    step = state.Step(
         now=motion(),
         trial=motion(),
         residual=np.zeros(n),
@@ -361,17 +361,17 @@ def step_arrays(
         pivots=np.zeros((4, n)),
         extremes=extremes,
     )
-    out.now.displacement[:], out.now.velocity[:] = start.u[o], start.v[o]
-    out.now.damping_force[:] = system.damping[np.ix_(o, o)] @ start.v[o]
-    out.now.load[:] = system.inputs[o] @ value(t) + linear.constant
-    out.now.inputs[:], out.now.input_rates[:] = value(t), value(t, 1)
+    step.now.displacement[:], step.now.velocity[:] = start.u[o], start.v[o]
+    step.now.damping_force[:] = system.damping[np.ix_(o, o)] @ start.v[o]
+    step.now.load[:] = system.inputs[o] @ value(t) + linear.constant
+    step.now.inputs[:], step.now.input_rates[:] = value(t), value(t, 1)
     diagonal = own.pattern.ai == own.column
     mass = np.where(diagonal & ~linear.has_mass[own.column], 1.0, linear.on_pattern[0])
     if linear.diagonal:
-        out.pivots[state.MASS] = mass[own.pattern.ap[:-1]]
+        step.pivots[state.MASS] = mass[own.pattern.ap[:-1]]
     else:
-        ldl.factor(own.pattern, mass, out.factors[state.MASS], out.pivots[state.MASS], out.row)
-    return out
+        ldl.factor(own.pattern, mass, step.factors[state.MASS], step.pivots[state.MASS], step.row)
+    return step
 
 
 def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
@@ -408,9 +408,9 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
 
 def run_record(t: float, initial_energy: float) -> state.Run:
     """Counters and clocks at the start of a run."""
-    out: state.Run = record(state.Run)
-    out.time, out.factor_length, out.initial_energy = t, -1.0, initial_energy
-    out.longest_part = np.inf
-    out.fault = out.fell = -1
-    out.rest = out.jumped = -1.0
-    return out
+    run: state.Run = record(state.Run)
+    run.time, run.factor_length, run.initial_energy = t, -1.0, initial_energy
+    run.longest_part = np.inf
+    run.fault = run.fell = -1
+    run.rest = run.jumped = -1.0
+    return run

@@ -47,8 +47,8 @@ def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: 
     """
     if laws.contact[i] or laws.curved[i]:
         return False
-    own, now, after = laws.largest_deformation[i], laws.stiffness[i], laws.offset[i]
-    size = (abs(stiffness) + abs(now)) * own + abs(offset) + abs(after)
+    largest, now, after = laws.largest_deformation[i], laws.stiffness[i], laws.offset[i]
+    size = (abs(stiffness) + abs(now)) * largest + abs(offset) + abs(after)
     lost = abs((stiffness - now) * d + offset - after) > LOST * size
     return lost and touches_massless(linear, laws, i)
 
@@ -181,8 +181,8 @@ def jump_massless_rates(sim: Simulation) -> None:
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
         force[i] = now.load[i] - force[i] - now.damping_force[i]
-        own = abs(linear.stiffness.diagonals[0, i] * now.displacement[i])
-        size[i] = abs(now.load[i]) + own + abs(now.damping_force[i])
+        elastic = abs(linear.stiffness.diagonals[0, i] * now.displacement[i])
+        size[i] = abs(now.load[i]) + elastic + abs(now.damping_force[i])
     for i in range(len(laws.rule)):
         f = (
             laws.stiffness[i] * laws.now.deformation[i]

@@ -81,14 +81,14 @@ class KernelEngine(ABC):
         self.accumulator = EnergyAccumulator(system, start)
         rules = list(dict.fromkeys(s.law.rule for s in self.springs))
         self.rules = functions.tables(rules or [bilinear.RULE])  # never empty, which compiles to nothing
-        own = allocation.layout(system, scheme)
-        self.order = own.order
-        self.linear = allocation.linear_system(system, monitored, own, scheme, dt)
+        layout = allocation.layout(system, scheme)
+        self.order = layout.order
+        self.linear = allocation.linear_system(system, monitored, layout, scheme, dt)
         losses = self.accumulator.dashpot_losses
-        self.laws = allocation.law_arrays(system, start, own, scheme, rules, losses, dt)
-        self.step = allocation.step_arrays(system, start, own, self.linear, self.tracker.extremes)
-        self.place = own.place
-        seen = own.place[np.flatnonzero(recorder.shown)], recorder.acting
+        self.laws = allocation.law_arrays(system, start, layout, scheme, rules, losses, dt)
+        self.step = allocation.step_arrays(system, start, layout, self.linear, self.tracker.extremes)
+        self.place = layout.place
+        seen = layout.place[np.flatnonzero(recorder.shown)], recorder.acting
         which, acting = seen if self.shows_steps else np.zeros((2, 0), np.int64)
         self.buffers = allocation.buffers(system.size, len(self.springs), which, acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
@@ -249,8 +249,8 @@ class KernelEngine(ABC):
         a rate of that sign leads to.
         """
         rows, has_mass = self.laws.rows, self.linear.has_mass
-        own = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
-        held = own[~np.asarray(has_mass, bool)[own]]
+        unknowns = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
+        held = unknowns[~np.asarray(has_mass, bool)[unknowns]]
         rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.state.time]
         turns = min(rates, default=0.0) < 0.0 < max(rates, default=0.0)
         return int(self.order[held[0]]) if turns and len(held) and self._softens() else None
@@ -273,8 +273,8 @@ class KernelEngine(ABC):
             if not law.curved:
                 stiffness[i] = min(law.branch(state).stiffness for state in states)
         rows = dense(self.system.law_rows[:, light])
-        own = dense(self.system.stiffness[np.ix_(light, light)])
-        return bool(np.linalg.eigvalsh(own + (rows.T * stiffness) @ rows)[0] <= 0.0)
+        elastic = dense(self.system.stiffness[np.ix_(light, light)])
+        return bool(np.linalg.eigvalsh(elastic + (rows.T * stiffness) @ rows)[0] <= 0.0)
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

@@ -27,7 +27,7 @@ def curved_force(
     laws: Laws, rules: Tables, i: int, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
-    found: tuple[float, float, float, float] = curve_of(
+    response: tuple[float, float, float, float] = curve_of(
         rules,
         laws.rule[i],
         parameters(laws.parameters, i),
@@ -37,7 +37,7 @@ def curved_force(
         d,
         v,
     )
-    return found
+    return response
 
 
 def linear_force(laws: Laws, i: int, d: float, v: float) -> float:
@@ -215,8 +215,8 @@ def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> N
 def linearise_law(laws: Laws, rules: Tables, i: int, d: float, v: float) -> None:
     """Put the tangent of a curved law at deformation `d` and rate `v` in the place of its branch."""
     c = curved_force(laws, rules, i, d, v)
-    k, own = c[1], proportional_damping(laws, i, c[1])
-    laws.stiffness[i], laws.damping[i] = k, c[2] + own
+    k, proportional = c[1], proportional_damping(laws, i, c[1])
+    laws.stiffness[i], laws.damping[i] = k, c[2] + proportional
     laws.offset[i] = c[0] - k * d - c[2] * v
 
 

@@ -36,14 +36,14 @@ class KernelPresent:
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
-        own, laws = self.engine, self.engine.laws
+        engine, laws = self.engine, self.engine.laws
         before = int(laws.branch[law])
         laws.now.deformation[law], laws.now.rate[law] = d, v
-        law_kernels.leave_branch(laws, own.rules, law, event_index, d, v)
+        law_kernels.leave_branch(laws, engine.rules, law, event_index, d, v)
         self.enter(law)
-        log_transition(own.sim, law, before, self.t, 0.0)
-        own.fetch_transitions()
-        self._branches[law] = own.springs[law].branch(own.law_state(law))
+        log_transition(engine.sim, law, before, self.t, 0.0)
+        engine.fetch_transitions()
+        self._branches[law] = engine.springs[law].branch(engine.law_state(law))
 
     def enter(self, law: int) -> None:
         """Take over the branch that a law has gone to, where that is not a straight line."""

@@ -122,7 +122,7 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
     softer = plain and laws.stiffness[law] < stiffness and touches_massless(linear, laws, law)
     if not (fell or softer) or run.tied == len(buffers.ties):
         return
-    row, found = buffers.ties[run.tied], 0
+    row, count = buffers.ties[run.tied], 0
     rate = laws.now.rate
     for i in range(len(laws.rule)):
         row[0, i], row[1, i], row[2, i] = laws.stiffness[i], laws.damping[i], 0.0
@@ -134,13 +134,13 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
         leave_branch(laws, rules, i, e, d, v)
         if fell and lets_go(linear, laws, i, k, f0, d):
             row[0, i], row[1, i], row[2, i] = -np.inf, laws.branch[i], v
-            found += 1
+            count += 1
         elif not fell and laws.stiffness[i] < k:
             row[0, i], row[2, i] = laws.stiffness[i], v
-            found += 1
+            count += 1
         restore_state(laws, rules, i)
         laws.saved[i] = 0
-    if found > 0:
+    if count > 0:
         row[2, law] = rate[law]
         buffers.tie_time[run.tied] = run.time
         run.tied += 1
