@@ -257,20 +257,20 @@ def locate_event(
             b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
             continue
         tried = tau
-        found = first_event(laws, step, tau)
-        passed = found.law >= 0
-        if passed and (found.law != law or found.event_index != index):
-            law, index = found.law, found.event_index
+        first = first_event(laws, step, tau)
+        passed = first.law >= 0
+        if passed and (first.law != law or first.event_index != index):
+            law, index = first.law, first.event_index
             at_start = value_at_start(laws, step, law, index) if b.low == 0.0 else np.nan
             b = Bracket(b.low, b.high, b.third, at_start, np.nan, b.g_third)
         g, size = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])
-        ends = search_verdict(b, g, size, tau, found.time, passed, last, h)
+        ends = search_verdict(b, g, size, tau, first.time, passed, last, h)
         if ends != GO_ON:
             met = LocatedEvent(law if ends == MET else -1, index, tau)
             mark_others(sim, met, tried, h)
             return DONE, met
         b = narrowed_bracket(b, tau, g, passed)
-        tau = next_time(b, passed, found.time, h)
+        tau = next_time(b, passed, first.time, h)
     return NEWTON, event
 
 

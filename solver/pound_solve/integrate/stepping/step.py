@@ -163,8 +163,8 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         a = row_product(laws.rows, i, acceleration)
         d, v = laws.trial.deformation[i] + bk * a, laws.trial.rate[i] + gk * a
         c = curved_force(laws, rules, i, d, v)
-        k, own = c[1], proportional_damping(laws, i, c[1])
-        damp, force = c[2] + own, c[0] + own * v
+        k, proportional = c[1], proportional_damping(laws, i, c[1])
+        damp, force = c[2] + proportional, c[0] + proportional * v
         guess = linear_force(laws, i, d, v)
         size = max(abs(force), abs(k * laws.largest_deformation[i]), 1e-300)
         if abs(force - guess) > worst * size:

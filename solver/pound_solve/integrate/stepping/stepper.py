@@ -134,22 +134,22 @@ class Stepper(KernelEngine):
         """
         speed, rush = self.speed.tolist()
         moves = speed > QUIET * (self.accumulator.initial + self.accumulator.works.gross_input)
-        out = list[Check]()
+        checks = list[Check]()
         if moves and rush > 0.0:
             count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
-            out.append(_resolved("steps in a period of the motion, about", count))
+            checks.append(_resolved("steps in a period of the motion, about", count))
         if falls := int(self.state.falling):
             told = "a DT that follows how it gives way, or EXACT"
-            out.append(beyond(Subject.STEPS, "steps too long for a branch that falls", falls, 0, told))
-        out += [between_check(peaks), *self._springs(peaks), *rounding_check(self.springs, peaks)]
+            checks.append(beyond(Subject.STEPS, "steps too long for a branch that falls", falls, 0, told))
+        checks += [between_check(peaks), *self._springs(peaks), *rounding_check(self.springs, peaks)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
         ]
         if hardest:
             count = min(c.t_end - c.t_start for c in hardest) / self.dt
-            out.append(_resolved("steps in the hardest collision of a contact", count))
-        return out
+            checks.append(_resolved("steps in the hardest collision of a contact", count))
+        return checks
 
     def _springs(self, peaks: Peaks) -> list[Check]:
         """Whether the steps follow the springs' forces."""
