@@ -64,8 +64,8 @@ class ExpandingRecorder:
             u, v, a = self._expanded(x.t, x.u, x.v, x.a)
             return Motion(x.t, u, v, a, x.law_forces)
 
-        own = course.within
-        within = None if own is None else lambda cells, shares: whole(own(cells, shares))
+        inner = course.within
+        within = None if inner is None else lambda cells, shares: whole(inner(cells, shares))
         self.recorder.between(Course(whole(course.motion), course.lengths, within))
 
     def trial(self, t: float, doing: str = "") -> None:

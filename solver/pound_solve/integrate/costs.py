@@ -80,12 +80,12 @@ def fastest_decay(k: Matrix, c: Matrix) -> float:
         rates = np.linalg.solve(c, k) if factor is None else k
     except np.linalg.LinAlgError:
         return np.inf
-    x, found = np.cos(np.arange(c.shape[0]) ** 2.0), 0.0
+    x, largest = np.cos(np.arange(c.shape[0]) ** 2.0), 0.0
     for _ in range(POWERS):
         x /= np.linalg.norm(x)
         x = rates @ x if factor is None else factor.solve(k @ x)
-        found = max(found, float(np.linalg.norm(x)))
-    return found
+        largest = max(largest, float(np.linalg.norm(x)))
+    return largest
 
 
 class CostlyError(Exception):

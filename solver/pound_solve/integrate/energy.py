@@ -86,10 +86,10 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
     force = still + c * rate * np.array([[s.role.viscous] for s in system.structure.laws])
     for i, s in enumerate(system.structure.laws):
         if s.law.curved:
-            own = d[i].tolist()
-            still[i] = [s.law.force(states[i], x)[0] for x in own]
-            done[i] = [s.law.work(states[i], x) for x in own]
-            force[i] = [s.force(states[i], x, y) for x, y in zip(own, rate[i].tolist())]
+            deformations = d[i].tolist()
+            still[i] = [s.law.force(states[i], x)[0] for x in deformations]
+            done[i] = [s.law.work(states[i], x) for x in deformations]
+            force[i] = [s.force(states[i], x, y) for x, y in zip(deformations, rate[i].tolist())]
     stored = np.array(
         [
             [x.rule.recoverable(x.p, s[0], s[3], y, f) for y, f in zip(*pair)]
@@ -133,14 +133,14 @@ def energies(
         v = system.expanded(v.T, system.excitation.values(t, 1).T, 1).T
     contact = np.array([s.role.contact_energy for s in system.structure.laws], bool)
     damper = np.array([s.role.damping_energy for s in system.structure.laws], bool)
-    out = np.zeros((len(t), len(ENERGIES)))
-    out[:, 0], out[:, 3], out[:, 5] = works.T
-    out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
-    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1) + turning
-    out[:, 3] += lost[:, damper].sum(axis=1)
-    out[:, 4] = lost[:, ~(contact | damper)].sum(axis=1)
-    out[:, 5] += lost[:, contact].sum(axis=1)
-    return out
+    table = np.zeros((len(t), len(ENERGIES)))
+    table[:, 0], table[:, 3], table[:, 5] = works.T
+    table[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
+    table[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1) + turning
+    table[:, 3] += lost[:, damper].sum(axis=1)
+    table[:, 4] = lost[:, ~(contact | damper)].sum(axis=1)
+    table[:, 5] += lost[:, contact].sum(axis=1)
+    return table
 
 
 def energy_at_start(system: ReducedSystem, start: Start) -> float:

@@ -24,5 +24,5 @@ def usual(times: Array) -> float:
     ends = np.flatnonzero(np.diff(lengths, append=np.inf) > SAME * lengths) + 1
     counts = np.diff(ends, prepend=0)
     most = int(np.argmax(counts))
-    own = lengths[ends[most] - counts[most] : ends[most]]
-    return float(own.mean()) if len(own) > FEW else 0.0
+    alike = lengths[ends[most] - counts[most] : ends[most]]
+    return float(alike.mean()) if len(alike) > FEW else 0.0

@@ -277,8 +277,8 @@ def not_in_series(system: ReducedSystem) -> str:
     rigid = rigid_contact(system) is not None
     if system.structure.corotational and (rigid or not has_strings(system)):
         return not_linear(system)
-    if own := light_string(system):
-        return f"the P-Delta force of element {own} acts on a node without mass"
+    if element := light_string(system):
+        return f"the P-Delta force of element {element} acts on a node without mass"
     laws, without_mass = system.structure.laws, light(system)
     pressing = {s.element for s in laws if s.law.rigid}
     for s, massless_end in zip(laws, without_mass):
@@ -381,5 +381,5 @@ def goals(system: ReducedSystem, times: Array) -> tuple[Array, Flags]:
     inner = breaks[(breaks > times[0]) & (breaks < end)]
     near = np.clip(np.searchsorted(times, inner), 1, len(times) - 1)
     apart = np.minimum(np.abs(inner - times[near]), np.abs(inner - times[near - 1])) > 1e-12 * end
-    out = np.unique(np.concatenate([inner[apart], times[1:]]))
-    return out, np.isin(out, times[1:])
+    instants = np.unique(np.concatenate([inner[apart], times[1:]]))
+    return instants, np.isin(instants, times[1:])

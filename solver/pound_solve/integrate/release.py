@@ -123,9 +123,9 @@ def release(run: JumpingRun, law: int) -> None:
         Nothing holds one of them on the way, or the changes of branch do not end.
     """
     system, members = run.system, run.system.structure.corotational
-    rows, own = system.law_rows, system.excitation.about(np.array([run.t]))[0]
+    rows, coefs = system.law_rows, system.excitation.about(np.array([run.t]))[0]
     columns = np.array(system.columns)
-    s = polynomial.value(own, 0.0, 0)
+    s = polynomial.value(coefs, 0.0, 0)
     for _ in range(CHANGES + CHANGES_PER_LAW * len(run.branches)):
         z = quick(system, run.branches)
         if not len(z):

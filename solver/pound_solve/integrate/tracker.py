@@ -267,12 +267,12 @@ class ResponseTracker:
         """
         x, n, first = self.extremes, len(self.laws), self.n_monitored
         four = zip(*(a.tolist() for a in (x.high, x.t_high, x.low, x.t_low)))
-        found = [Extreme(*own) for own in four]
+        extremes = [Extreme(*numbers) for numbers in four]
         collisions = [*self._ended, *(self.open[law] for law in sorted(self.open))]
         return Peaks(
-            found[:first],
-            found[first : first + n],
-            found[first + n :],
+            extremes[:first],
+            extremes[first : first + n],
+            extremes[first + n :],
             list(self._yields),
             dashpot_losses.tolist(),
             collisions,
@@ -289,6 +289,6 @@ class ResponseTracker:
         size = np.maximum(np.maximum(x.high, -x.low), 0.0)
         share = np.divide(size - x.reached, size, out=np.zeros(len(size)), where=size > 0.0)
         for kind in np.unique(kinds):
-            own = kinds == kind
-            share[own & (size < SMALL * size[own].max())] = 0.0
+            alike = kinds == kind
+            share[alike & (size < SMALL * size[alike].max())] = 0.0
         return float(share.max(initial=0.0))

@@ -141,10 +141,10 @@ class Uniqueness:
         """
         system, at = self.system, np.flatnonzero(among)
         rows = dense(system.law_rows[:, at])
-        own = dense(system.stiffness[np.ix_(at, at)])
-        elastic = diagonal(own) + (np.maximum(self._k0, stiffness)[:, None] * rows**2).sum(axis=0)
+        linear = dense(system.stiffness[np.ix_(at, at)])
+        elastic = diagonal(linear) + (np.maximum(self._k0, stiffness)[:, None] * rows**2).sum(axis=0)
         factors = 1.0 / np.sqrt(np.where(elastic > 0.0, elastic, 1.0))
-        values, motions = np.linalg.eigh(scaled(own + (rows.T * stiffness) @ rows, factors))
+        values, motions = np.linalg.eigh(scaled(linear + (rows.T * stiffness) @ rows, factors))
         for stretch in (rows @ (factors[:, None] * motions[:, values < least])).T:
             share = np.sign(rising) * stretch / np.abs(stretch).max()
             on, back = share > TAKES_PART, share < -TAKES_PART

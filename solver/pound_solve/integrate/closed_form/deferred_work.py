@@ -50,8 +50,8 @@ class DeferredWork:
             loads = None if subsystem.loads is None else subsystem.loads[chosen]
             for part in subsystem.decomposition.parts:
                 qs, gs = subsystem.states[part.q, chosen].T, subsystem.forcing[chosen, :, part.q]
-                own = qs, gs, lengths, dense.input_coefs[chosen], place, loads
-                self._deferred.setdefault(id(part.work), (part, []))[1].append(own)
+                entry = qs, gs, lengths, dense.input_coefs[chosen], place, loads
+                self._deferred.setdefault(id(part.work), (part, []))[1].append(entry)
         self.entries += last - first
 
     def evaluated(self) -> tuple[Array, dict[int, float]]:
@@ -67,10 +67,10 @@ class DeferredWork:
             *arrays, loads = zip(*entries)
             qs, gs, lengths, input_coefs, place = (np.concatenate(x) for x in arrays)
             forces = None if loads[0] is None else np.concatenate(loads)
-            found = part.work.over(qs.T, gs, lengths, input_coefs, self.constant[part.unknowns], forces)
-            new[place + 1, 0] += found.input
-            new[place + 1, 1] += found.damping
-            for law, loss in found.laws:
+            works = part.work.over(qs.T, gs, lengths, input_coefs, self.constant[part.unknowns], forces)
+            new[place + 1, 0] += works.input
+            new[place + 1, 1] += works.damping
+            for law, loss in works.laws:
                 losses[law] = losses.get(law, 0.0) + float(loss.sum())
                 new[place + 1, 2 if self.contact[law] else 1] += loss
         return np.cumsum(new, axis=0), losses

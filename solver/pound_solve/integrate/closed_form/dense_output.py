@@ -80,12 +80,12 @@ class DenseOutput:
 
     def kept(self) -> DenseOutput:
         """One that stays as it is when the run goes on."""
-        out = copy.copy(self)
-        out.__dict__.pop("end", None)  # nobody asks for it then
-        out.branches = list(self.branches)
-        out.subsystems = copy.copy(self.subsystems)
-        out.subsystems.present = [copy.copy(x) for x in self.subsystems.present]
-        return out
+        snapshot = copy.copy(self)
+        snapshot.__dict__.pop("end", None)  # nobody asks for it then
+        snapshot.branches = list(self.branches)
+        snapshot.subsystems = copy.copy(self.subsystems)
+        snapshot.subsystems.present = [copy.copy(x) for x in self.subsystems.present]
+        return snapshot
 
     @property
     def intervals(self) -> int:
@@ -107,27 +107,27 @@ class DenseOutput:
         interval, shape (2, n_rows, n): no mode exceeds its start, apart from its forcing.
         """
         subsystems = self.subsystems
-        out = np.zeros((2, len(subsystems.rows.rows), self.intervals))
+        limits = np.zeros((2, len(subsystems.rows.rows), self.intervals))
         if subsystems.rows_have_inputs:
             e = np.abs(self.input_coefs @ subsystems.rows.inputs.T)
             for order in (0, 1):
-                out[order] += polynomial.values(e, self.lengths, order + 2).T
+                limits[order] += polynomial.values(e, self.lengths, order + 2).T
         for subsystem in subsystems.present:
             x = subsystem.decomposition
             bounds = x.propagator.derivative_bounds(
                 subsystem.states[:, :-1], subsystem.forcing, self.lengths
             )
             if x.reactions is not None:
-                out[:, x.reactions.place] = np.inf
+                limits[:, x.reactions.place] = np.inf
             if not np.isfinite(bounds).all():
-                out[:, x.monitored] = np.inf
+                limits[:, x.monitored] = np.inf
                 continue
             for order in (0, 1):
-                out[order, x.monitored] += x.rows_q_size @ bounds[order]
+                limits[order, x.monitored] += x.rows_q_size @ bounds[order]
                 if subsystem.loads is not None and x.propagator.u_p is not None:
                     p = polynomial.values(np.abs(subsystem.loads), self.lengths, order + 2)
-                    out[order, x.monitored] += np.abs(x.rows @ x.propagator.u_p) @ p.T
-        return out
+                    limits[order, x.monitored] += np.abs(x.rows @ x.propagator.u_p) @ p.T
+        return limits
 
     def motion(self, interval: int, tau: float) -> Kinematics:
         """Return the motion at `tau` within an interval, shape (n,) each."""
@@ -157,13 +157,13 @@ class DenseOutput:
             columns = np.flatnonzero(interval == i)
             shares = np.round(local[columns] / self.lengths[i] / ALIKE)
             alike.setdefault(shares.tobytes() + self.lengths[i].tobytes(), []).append(columns)
-        out = np.zeros((3, self.subsystems.system.size, len(times)))
+        motions = np.zeros((3, self.subsystems.system.size, len(times)))
         for some in map(np.array, alike.values()):
             chosen, t = interval[some[:, 0]], local[some[0]]
             states = partial(_trajectories, chosen, t)
             motion = self._motions(chosen, np.tile(t, (len(chosen), 1)), states, enveloped=True)
-            out[:, :, some.ravel()] = motion
-        u, v, a = out
+            motions[:, :, some.ravel()] = motion
+        u, v, a = motions
         return u, v, a
 
     def motions_at_ends(self, chosen: Index) -> Kinematics:
@@ -211,7 +211,7 @@ class DenseOutput:
 
         `states` returns a subsystem's q there, shape (n_q, n_intervals, n_times).
         """
-        out = np.zeros((3, self.subsystems.system.size, t.size))
+        motion = np.zeros((3, self.subsystems.system.size, t.size))
         for subsystem in self.subsystems.present:
             x = subsystem.decomposition
             unknowns, motion_q = (
@@ -227,8 +227,8 @@ class DenseOutput:
                 if enveloped:
                     u_p, v_p = u_p[x.enveloped], v_p[x.enveloped]
                 own += direct_response(u_p, v_p, subsystem.loads[intervals], t)
-            out[:, unknowns] = own.reshape(3, n, t.size)
-        u, v, a = out
+            motion[:, unknowns] = own.reshape(3, n, t.size)
+        u, v, a = motion
         return u, v, a
 
     def state(self, subsystem: Subsystem, interval: int, tau: float) -> NDArray[Any]:
@@ -290,8 +290,8 @@ def _trajectories(chosen: Index, t: Array, subsystem: Subsystem) -> NDArray[Any]
 
 def _integral(coefs: Array, tau: float) -> Array:
     """Integral over (0, tau) of polynomials, shape (degree + 1, ...)."""
-    out: Array = sum(coefs[k] * tau ** (k + 1) / (k + 1) for k in range(len(coefs)))
-    return out
+    integral: Array = sum(coefs[k] * tau ** (k + 1) / (k + 1) for k in range(len(coefs)))
+    return integral
 
 
 def direct_response(u_p: Array, v_p: Array, loads: Array, t: Array) -> Array:

@@ -93,9 +93,9 @@ class EventDrivenRun(ABC):
         """
         law, event_index = self._before_slack(law, event_index, d, v)
         self._look_for_rests(law, event_index, d, v)
-        before, own = self.branches[law], float(d[law])
-        self.transition(law, event_index, own, float(v[law]))
-        fell = self._massless_laws[law] and falls(before, self.branches[law], own)
+        before, deformation = self.branches[law], float(d[law])
+        self.transition(law, event_index, deformation, float(v[law]))
+        fell = self._massless_laws[law] and falls(before, self.branches[law], deformation)
         if fell or self.branches[law].stiffness < before.stiffness:
             self._look_for_ties(law, d, v, fell)
         if fell:
@@ -125,21 +125,21 @@ class EventDrivenRun(ABC):
         for i in np.flatnonzero(self._massless_laws).tolist():
             if i == law or self.laws[i].role.collides:
                 continue
-            own, rate = float(d[i]), float(v[i])
+            deformation, rate = float(d[i]), float(v[i])
             for n, e in enumerate(self.branches[i].events):
-                if event_arrives(*e, own, rate, float(self.largest[0, i])):
-                    state = self.laws[i].law.transition(self.states[i], n, own, rate)
+                if event_arrives(*e, deformation, rate, float(self.largest[0, i])):
+                    state = self.laws[i].law.transition(self.states[i], n, deformation, rate)
                     yield i, n, state, self.laws[i].branch(state)
                     break
 
     def _before_slack(self, law: int, event_index: int, d: Array, v: Array) -> tuple[int, int]:
         """The law and the event that go before one that becomes slack, or this (see `kernels.ties`)."""
-        before, own = self.branches[law], float(d[law])
+        before, deformation = self.branches[law], float(d[law])
         if self.laws[law].role.collides or not self._massless_laws[law] or before.stiffness == 0.0:
             return law, event_index
-        state = self.laws[law].law.transition(self.states[law], event_index, own, float(v[law]))
+        state = self.laws[law].law.transition(self.states[law], event_index, deformation, float(v[law]))
         after = self.laws[law].branch(state)
-        if is_slack(after) and not falls(before, after, own):
+        if is_slack(after) and not falls(before, after, deformation):
             for i, n, _, its in self._arriving(law, d, v):
                 if not is_slack(its):
                     return i, n
@@ -216,10 +216,10 @@ class EventDrivenRun(ABC):
         displacements `u`: to these their deformations are rounded, and those of bodies that move alike are
         nothing else.
         """
-        out = self.largest.copy()
+        largest = self.largest.copy()
         far = np.abs(self.rows.rows[self.contacts]) @ np.abs(u)
-        out[0, self.contacts] = np.maximum(out[0, self.contacts], far)
-        return out
+        largest[0, self.contacts] = np.maximum(largest[0, self.contacts], far)
+        return largest
 
     def count_magnitudes(self, value: Array, rate: Array) -> None:
         """Count values and rates of the first rows, shape (n_rows, n_times), into the largest."""

@@ -175,16 +175,16 @@ class Exact(EventDrivenRun):
         if self.contacts:  # the end of the window is not reached if there is an event before
             self.largest = self.reaching(self.u)
             largest = self.reaching(dense.end[0])
-        found = self.search.events.first_event(fine, largest, STILL, self.contacts)
-        if found is None:
+        earliest = self.search.events.first_event(fine, largest, STILL, self.contacts)
+        if earliest is None:
             self._count_peaks(coarse, fine, dense.length)
             self.envelopes.add(dense, self.t, window.h, dense.length)
             return self._accept_window(window, dense, cursor)
-        end = GridSamples.at_time(dense, found.event.time)
-        fine.cut(found.segment, found.cell, found.event.time, end)
-        self._count_peaks(coarse, fine, found.event.time)
-        self.envelopes.add(dense, self.t, window.h, found.event.time)
-        return self._accept_event(window, dense, found, end, cursor)
+        end = GridSamples.at_time(dense, earliest.event.time)
+        fine.cut(earliest.segment, earliest.cell, earliest.event.time, end)
+        self._count_peaks(coarse, fine, earliest.event.time)
+        self.envelopes.add(dense, self.t, window.h, earliest.event.time)
+        return self._accept_event(window, dense, earliest, end, cursor)
 
     def _charge_window(self, dense: DenseOutput, h: float, points: int) -> None:
         self._charge(costs.WINDOW + costs.GRID_POINT * points * len(self.u))
@@ -290,10 +290,10 @@ class Exact(EventDrivenRun):
         """Add the work of the first `count` intervals and the samples at their ends."""
         before = self.work.entries
         self._add_work(dense, 0, dense.lengths[:count])
-        out = np.flatnonzero(self.is_output[cursor : cursor + count])
-        if len(out):
-            motion, entries = dense.motions_at_ends(out), before + out + 1
-            self.samples.add(self.goals[cursor + out], motion, entries, self.states, self.branches)
+        outputs = np.flatnonzero(self.is_output[cursor : cursor + count])
+        if len(outputs):
+            motion, entries = dense.motions_at_ends(outputs), before + outputs + 1
+            self.samples.add(self.goals[cursor + outputs], motion, entries, self.states, self.branches)
         ends = cursor + count == len(self.goals)
         grows = count == dense.intervals and self.runs_away(dense.end[1])
         if self.work.entries > MAX_DEFERRED or ends or grows:
@@ -329,7 +329,7 @@ class Exact(EventDrivenRun):
 
     def _add_total_work(self, dense: DenseOutput, interval: int, tau: float) -> None:
         """Add the work over the first `tau` of an interval in the total form."""
-        found = work_integrals.total_work(
+        work = work_integrals.total_work(
             self.system,
             tau,
             self.subsystems.spectral_radius,
@@ -337,8 +337,8 @@ class Exact(EventDrivenRun):
             lambda x: dense.motions(interval, x),
             self.branches,
         )
-        entry = np.array([found.input, found.damping, 0.0])
-        for law, loss in found.laws:
+        entry = np.array([work.input, work.damping, 0.0])
+        for law, loss in work.laws:
             self.energy.dashpot_losses[law] += loss
             entry[2 if self.laws[law].role.contact_energy else 1] += loss
         self.work.add(entry)

@@ -70,8 +70,8 @@ class GridSamples:
         self.forcing: list[NDArray[Any]] = []
         self.input_coefs = self._about_starts(dense.input_coefs)
         if subsystems.rows_have_inputs:
-            for order, out in enumerate((self.value, self.rate, self.second)):
-                out += polynomial.on(self.input_coefs @ rows.inputs.T, self.local, order)
+            for order, samples in enumerate((self.value, self.rate, self.second)):
+                samples += polynomial.on(self.input_coefs @ rows.inputs.T, self.local, order)
         beyond = self.local[:, :-1] >= span[:, None]
         for subsystem, (first, last) in zip(subsystems.present, ends):
             forcing, end = self._about_starts(subsystem.forcing), last[:, :, None]
@@ -114,10 +114,10 @@ class GridSamples:
 
     def _about_starts(self, coefs: NDArray[Any]) -> NDArray[Any]:
         """Polynomials of the intervals about the segments' starts."""
-        own = coefs[self.interval]
+        pieces = coefs[self.interval]
         if not self.offset.any():
-            return own
-        return polynomial.shift(own.swapaxes(0, 1), self.offset[:, None]).swapaxes(0, 1)
+            return pieces
+        return polynomial.shift(pieces.swapaxes(0, 1), self.offset[:, None]).swapaxes(0, 1)
 
     def _add(
         self, subsystem: Subsystem, states: NDArray[Any], forcing: NDArray[Any], second_rates: bool
@@ -142,8 +142,8 @@ class GridSamples:
             self.second[x.monitored] += moved[2] + polynomial.on(forced, self.local)
         if loads is not None and propagator.u_p is not None and propagator.v_p is not None:
             direct = direct_response(x.rows @ propagator.u_p, x.rows @ propagator.v_p, loads, self.local)
-            for out, own in zip((self.value, self.rate, self.second), direct):
-                out[x.monitored] += own
+            for samples, response in zip((self.value, self.rate, self.second), direct):
+                samples[x.monitored] += response
 
     def _add_reactions(
         self, subsystem: Subsystem, reals: Array, forcing: NDArray[Any], loads: Array
@@ -171,9 +171,9 @@ class GridSamples:
         """End the samples at local time `tau` within a cell of a segment, with the single point `end`."""
         self.t[segment, cell + 1 :] = tau
         self.t[segment + 1 :] = tau
-        for x, own in zip((self.value, self.rate, self.second), (end.value, end.rate, end.second)):
-            x[:, segment, cell + 1 :] = own[:, 0]
-            x[:, segment + 1 :] = own
+        for x, point in zip((self.value, self.rate, self.second), (end.value, end.rate, end.second)):
+            x[:, segment, cell + 1 :] = point[:, 0]
+            x[:, segment + 1 :] = point
 
     def at(self, row: int, segment: int, cell: int, tau: float) -> tuple[float, float, float]:
         """Value, rate and second rate of one row at local time `tau` in a cell, by its Taylor series
@@ -193,26 +193,26 @@ class GridSamples:
     def _expand(self, row: int, segment: int, cell: int) -> Array:
         """Taylor series of one row about a point, in powers of h, the highest power first."""
         subsystems, h, t = self.dense.subsystems, self.h, float(self.local[segment, cell])
-        out = np.zeros(TERMS)
-        out[0] = subsystems.rows.constants[row]
+        series = np.zeros(TERMS)
+        series[0] = subsystems.rows.constants[row]
         known = self.input_coefs[segment] @ subsystems.rows.inputs[row]
         for subsystem, states, forcing in zip(subsystems.present, self.states, self.forcing):
             x = subsystem.decomposition
-            own, reactions = x.place[row], x.reactions
+            place, reactions = x.place[row], x.reactions
             if reactions is not None and row in reactions.place:
                 assert subsystem.loads is not None
                 n = int(np.argmax(reactions.place == row))
                 row_q, p = reactions.on_q[n], self._about_starts(subsystem.loads)[segment]
                 known = p @ reactions.on_p[n]
                 known[:-1] += (p[1:] @ reactions.on_rate[n]) * np.arange(1, len(p))
-            elif own >= 0:
-                row_q = x.rows_q[own]
+            elif place >= 0:
+                row_q = x.rows_q[place]
                 if subsystem.loads is not None and x.propagator.u_p is not None:
                     p = self._about_starts(subsystem.loads)[segment]
-                    known = known + p @ (x.rows[own] @ x.propagator.u_p)
+                    known = known + p @ (x.rows[place] @ x.propagator.u_p)
             else:
                 continue
             g = polynomial.shift(forcing[segment], t)
-            out += x.propagator.taylor(row_q, states[:, segment, cell], g, h)
-        out[: len(known)] += polynomial.shift(known, t) * h ** np.arange(len(known))
-        return out[::-1]
+            series += x.propagator.taylor(row_q, states[:, segment, cell], g, h)
+        series[: len(known)] += polynomial.shift(known, t) * h ** np.arange(len(known))
+        return series[::-1]

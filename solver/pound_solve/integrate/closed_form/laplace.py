@@ -96,29 +96,29 @@ class Laplace(EventDrivenRun):
             k = np.array([x.stiffness for x in self.branches])
             c = np.array([x.damping for x in self.branches])
             try:
-                found = self.transform.dynamic_stiffness(
+                dynamic = self.transform.dynamic_stiffness(
                     system.damping + (b.T * c) @ b, system.stiffness + (b.T * k) @ b
                 )
             except Mechanism as err:
                 worst = int(np.argmax(np.abs(err.shape)))
                 raise self.stop("A501", system.loose(worst, err.softens)) from None
-            fastest = found.spectral_radius
+            fastest = dynamic.spectral_radius
             if fastest * self.dt > 1.0:
                 why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"
                 raise self.stop("A502", why.format(self.dt, fastest, 0.5 / fastest))
-            while self._stiffnesses and (1 + len(self._stiffnesses)) * found.inverse.size > MOST_NUMBERS:
+            while self._stiffnesses and (1 + len(self._stiffnesses)) * dynamic.inverse.size > MOST_NUMBERS:
                 del self._stiffnesses[next(iter(self._stiffnesses))]  # the oldest
-            self._stiffnesses[key] = found
+            self._stiffnesses[key] = dynamic
             self.combinations += 1
         return self._stiffnesses[key]
 
     def _accelerations(self, u: Array, v: Array, s: Array) -> Array:
         """Accelerations from the equations of motion, at instants that are columns."""
         x, h = self._stiffness(), self.with_mass
-        out = np.zeros_like(u)
+        accelerations = np.zeros_like(u)
         force = (self.system.inputs @ s - x.damping @ v - x.stiffness @ u) + self._constant()[:, None]
-        out[h] = np.linalg.solve(self.system.mass[np.ix_(h, h)], force[h])
-        return out
+        accelerations[h] = np.linalg.solve(self.system.mass[np.ix_(h, h)], force[h])
+        return accelerations
 
     def _transformed(self, end: float) -> tuple[SampledMotion, SampledRows]:
         """Motion and rows at the samples up to the middle of the window, or to the first beyond `end`."""
@@ -142,8 +142,8 @@ class Laplace(EventDrivenRun):
         functions = EventFunctions(self.branches, {})
         self.largest = self.reaching(self.u)
         largest = self.reaching(np.abs(motion.u).max(axis=1))
-        found = functions.first_event(rows, largest, STILL, self.contacts)
-        event = None if found is None or found.event.time >= span else found.event
+        earliest = functions.first_event(rows, largest, STILL, self.contacts)
+        event = None if earliest is None or earliest.event.time >= span else earliest.event
         event = functions.violated(rows, self.largest, SURE * STILL, self._massless_laws) or event
         tau = span if event is None else event.time
         if first:

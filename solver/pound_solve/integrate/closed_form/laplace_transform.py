@@ -95,15 +95,15 @@ class LaplaceTransform:
         """
         mass, space = self.system.mass, state_space(self.system.mass, c, k)
         values = np.linalg.eigvals(space.a)
-        own = self.s + values.real.max(initial=0.0)
-        s = own[:, None, None]
+        frequencies = self.s + values.real.max(initial=0.0)
+        s = frequencies[:, None, None]
         inverse = np.linalg.inv(s * s * mass + s * c + k)
-        return DynamicStiffness(c, k, space, float(np.abs(values).max(initial=0.0)), own, inverse)
+        return DynamicStiffness(c, k, space, float(np.abs(values).max(initial=0.0)), frequencies, inverse)
 
     def inputs(self, begin: float, s: Complex) -> Complex:
         """Return the transform of the inputs from time `begin` on, shape (n_frequencies, n_inputs)."""
         excitation = self.system.excitation
-        out = np.zeros((len(s), excitation.coefs.shape[2]), complex)
+        transform = np.zeros((len(s), excitation.coefs.shape[2]), complex)
         end = begin + self.points * self.dt
         first = excitation.piece(begin + 1e-13 * max(1.0, begin))
         stop = int(np.searchsorted(excitation.breaks[:-1], end))
@@ -127,12 +127,12 @@ class LaplaceTransform:
                 own = coefs[run[i : i + TOGETHER]]
                 sums = (delays[:, : len(own)] @ own.reshape(len(own), -1)).reshape(len(s), *own.shape[1:])
                 later = np.exp(-s * (left[run[i]] - begin))[:, None]
-                out += later * np.einsum("js,sjn->sn", kernels, sums)
+                transform += later * np.einsum("js,sjn->sn", kernels, sums)
         # beyond its end the excitation keeps its last value: a jump there would affect the time before it
         last = float(excitation.breaks[-1])
         if last < end:
-            out += (np.exp(-s * (last - begin)) / s)[:, None] * excitation.value(last)
-        return out
+            transform += (np.exp(-s * (last - begin)) / s)[:, None] * excitation.value(last)
+        return transform
 
     def _start_derivatives(
         self, x: DynamicStiffness, constant: Array, t: float, u: Array, v: Array
@@ -141,14 +141,14 @@ class LaplaceTransform:
         system, excitation = self.system, self.system.excitation
         coefs = excitation.local(excitation.piece(t + 1e-13 * max(1.0, t)), t)
         z = x.space.z_u @ u + x.space.z_v @ v
-        out, force = [], np.zeros(system.size)
+        derivatives, force = [], np.zeros(system.size)
         for j in range(STARTS + 1):
             force = math.factorial(j) * system.inputs @ coefs[j] if j < len(coefs) else 0.0 * force
             force = force + constant * (j == 0)
             static = 0.0 if x.space.u_p is None else x.space.u_p @ force
-            out.append(x.space.u_z @ z + static)
+            derivatives.append(x.space.u_z @ z + static)
             z = x.space.a @ z + x.space.b @ force
-        return out
+        return derivatives
 
     def response(
         self, x: DynamicStiffness, constant: Array, t: float, u: Array, v: Array

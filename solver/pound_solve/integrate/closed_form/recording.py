@@ -31,13 +31,13 @@ def forces_of(
     s = np.stack([system.excitation.values_after(t, order).T for order in range(3)])
     d = system.law_rows[chosen] @ u + system.law_inputs[chosen] @ s[0]
     rate = system.law_rows[chosen] @ v + system.law_inputs[chosen] @ s[1]
-    out = linear_forces([branches[i] for i in chosen])(d, rate)
+    forces = linear_forces([branches[i] for i in chosen])(d, rate)
     held = np.array([branches[i].held for i in rigid.laws], bool)
     if held.any():
         held &= np.isin(rigid.laws, chosen)
         of_rigid = rigid.forces(held, linear_forces(branches), u, v, s)
-        out[np.searchsorted(chosen, np.array(rigid.laws)[held])] = of_rigid[held]
-    return out
+        forces[np.searchsorted(chosen, np.array(rigid.laws)[held])] = of_rigid[held]
+    return forces
 
 
 class DeferredSamples:
@@ -121,13 +121,13 @@ class EnvelopeSamples:
         first = np.cumsum([0, *map(len, lengths)])
 
         def within(cells: Index, shares: Array) -> Motion:
-            own = np.searchsorted(first, cells, "right") - 1
-            out = []
-            for i in np.unique(own).tolist():
-                w, at = windows[i], cells[own == i] - first[i]
+            window = np.searchsorted(first, cells, "right") - 1
+            parts = []
+            for i in np.unique(window).tolist():
+                w, at = windows[i], cells[window == i] - first[i]
                 tau = (w.tau[at, None] + lengths[i][at, None] * shares).ravel()
-                out.append(self._motion(w.dense, w.begin + tau, w.dense.enveloped_motions(tau)))
-            return joined(out)
+                parts.append(self._motion(w.dense, w.begin + tau, w.dense.enveloped_motions(tau)))
+            return joined(parts)
 
         self.recorder.between(Course(joined(motions), np.concatenate(lengths), within))
 

@@ -85,24 +85,24 @@ class Search:
 
     def _cells(self, coarse: GridSamples, bounds: Array, largest: Array) -> Flags:
         """Which cells may hold an event or a peak, shape (n_segments, count)."""
-        out = np.zeros((len(coarse.span), coarse.t.shape[1] - 1), bool)
-        last = out.size
+        cells = np.zeros((len(coarse.span), coarse.t.shape[1] - 1), bool)
+        last = cells.size
         if self.events.keys:
             g, slope = self.events.sampled(coarse)
             scale = np.maximum(self.events.scale(largest), np.abs(g).max(axis=(1, 2)))
             least = SURE * STILL * scale[:, None, None]
             g[:, 0, 0] = np.minimum(g[:, 0, 0], 0.0)
             curvature = self.events.curvature_bounds(bounds)
-            out |= grid.may_rise(g, slope, curvature, coarse.widths).any(axis=0)
+            cells |= grid.may_rise(g, slope, curvature, coarse.widths).any(axis=0)
             sure = ((g[..., 1:] > least) & (g[..., :-1] <= 0.0)).any(axis=0).ravel()
             if sure.any():
                 last = int(sure.argmax())
         if self.peaks:
             value, slope = self.monitored.sampled(coarse)
             curvature = self.monitored.curvature_bounds(bounds)
-            out |= grid.may_peak(value, slope, curvature, coarse.widths, self.peaks).any(axis=0)
-        out.ravel()[last + 1 :] = False  # the run goes no further
-        return out
+            cells |= grid.may_peak(value, slope, curvature, coarse.widths, self.peaks).any(axis=0)
+        cells.ravel()[last + 1 :] = False  # the run goes no further
+        return cells
 
     def count_peaks(self, coarse: GridSamples, fine: GridSamples, t0: float, end: float) -> None:
         """Count the monitored functions into their peaks up to the local time `end` of a window from `t0`

@@ -145,17 +145,17 @@ class Subsystems:
             for subsystem in self.present
             for key, part in zip(subsystem.keys, subsystem.decomposition.parts)
         }
-        found = self._decomposed(branches, charge)
+        decomposed = self._decomposed(branches, charge)
         self.present = []
-        for group in self._groups(found):
+        for group in self._groups(decomposed):
             keys, constants = zip(*group)
-            own = [
+            starts = [
                 states[key] if key in states else x.propagator.state_of(u[x.unknowns], v[x.unknowns])
                 for key, x in ((key, self.decompositions[key]) for key in keys)
             ]
             decomposition = self._joint_decomposition(keys)
             self.present.append(
-                Subsystem(keys, decomposition, np.concatenate(constants), np.concatenate(own))
+                Subsystem(keys, decomposition, np.concatenate(constants), np.concatenate(starts))
             )
 
     def _decomposed(
@@ -164,7 +164,7 @@ class Subsystems:
         """Keys of the present decompositions, made where they are new, and constant loads of each."""
         system, labels = self.system, self._labels(branches)
         acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.held]
-        found = []
+        decomposed = []
         for label in np.unique(labels):
             unknowns = np.flatnonzero(labels == label)
             laws = np.array([i for i in acting if np.any(system.law_rows[i, unknowns])], np.intp)
@@ -175,22 +175,22 @@ class Subsystems:
                 self.decompositions[key] = self._decomposer.decompose(unknowns, laws, branches)
             constants = [branches[i].force0 for i in laws]
             rows = system.law_rows[np.ix_(laws, unknowns)]
-            found.append((key, system.constant[unknowns] - rows.T @ constants))
-        return found
+            decomposed.append((key, system.constant[unknowns] - rows.T @ constants))
+        return decomposed
 
     def _groups(self, found: list[tuple[Key, Array]]) -> list[list[tuple[Key, Array]]]:
         """Group the decompositions to be joined."""
         groups: list[list[tuple[Key, Array]]] = []
         room = 0  # modes that the first group may still take
-        for own in found:
-            propagator = self.decompositions[own[0]].propagator
+        for entry in found:
+            propagator = self.decompositions[entry[0]].propagator
             if not isinstance(propagator, ModalPropagator) or propagator.u_p is not None:
-                groups.append([own])
+                groups.append([entry])
             elif len(propagator.eigenvalues) <= room:
-                groups[0].append(own)
+                groups[0].append(entry)
                 room -= len(propagator.eigenvalues)
             else:
-                groups.insert(0, [own])
+                groups.insert(0, [entry])
                 room = MAX_JOINED_MODES - len(propagator.eigenvalues)
         return groups
 

@@ -64,23 +64,23 @@ class Windows:
     def next(self, t: float, goals: Array, spectral_radius: float) -> Window:
         """Return the window from time `t` towards the next `goals`."""
         ends = goals[: self._intervals + 1]
-        own = np.diff(np.append(t, ends))
+        lengths = np.diff(np.append(t, ends))
         # intervals of equal length share their exponentials, whatever the rounding of the times
-        close = 1e-11 * own + 4.0 * np.spacing(ends)
-        if abs(own[-1] - self._usual) > close[-1]:
-            self._usual = float(f"{own[-1]:.12e}")
-        own = np.where(np.abs(own - self._usual) <= close, self._usual, own)
-        usual = own[min(1, len(own) - 1)]
-        longest = float(max(own[0], usual))
+        close = 1e-11 * lengths + 4.0 * np.spacing(ends)
+        if abs(lengths[-1] - self._usual) > close[-1]:
+            self._usual = float(f"{lengths[-1]:.12e}")
+        lengths = np.where(np.abs(lengths - self._usual) <= close, self._usual, lengths)
+        usual = lengths[min(1, len(lengths) - 1)]
+        longest = float(max(lengths[0], usual))
         h = self._step(longest, spectral_radius)
         per_interval = int(np.ceil(longest / h * (1 - 1e-12)))
         if per_interval > MAX_POINTS:
-            length = float(min(own[0], MAX_POINTS * h))
-            return Window(np.array([length]), np.array([t]), h, bool(length == own[0]))
-        most = min(len(own), MAX_POINTS // per_interval)
-        other = np.flatnonzero(own[1:most] != usual)
+            length = float(min(lengths[0], MAX_POINTS * h))
+            return Window(np.array([length]), np.array([t]), h, bool(length == lengths[0]))
+        most = min(len(lengths), MAX_POINTS // per_interval)
+        other = np.flatnonzero(lengths[1:most] != usual)
         count = int(other[0]) + 1 if len(other) else most
-        return Window(own[:count], np.append(t, ends[: count - 1]), h, True)
+        return Window(lengths[:count], np.append(t, ends[: count - 1]), h, True)
 
     def _step(self, length: float, spectral_radius: float) -> float:
         """Step of the fine grid in intervals of a length: a power of two, so that tables recur."""

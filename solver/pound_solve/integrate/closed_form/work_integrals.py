@@ -129,11 +129,11 @@ class WorkIntegrals:
     @staticmethod
     def _slow_series(q: Complex, g: Complex, eigenvalues: Complex, count: int) -> Complex:
         """Coefficients of ``q' = eigenvalue q + g`` in powers of time, shape (count, n_slow, n)."""
-        out = np.empty((count, *q.shape), complex)
-        out[0] = q
+        coefs = np.empty((count, *q.shape), complex)
+        coefs[0] = q
         for k in range(count - 1):
-            out[k + 1] = (eigenvalues * out[k] + (g[k] if k < len(g) else 0.0)) / (k + 1)
-        return out
+            coefs[k + 1] = (eigenvalues * coefs[k] + (g[k] if k < len(g) else 0.0)) / (k + 1)
+        return coefs
 
     def over(
         self,
@@ -174,8 +174,8 @@ class WorkIntegrals:
             loss = self._change(self.form, ends)
             loss += ((self.damping @ steady) * (free + whole)).sum(axis=(0, 1))
         for (law, c, row), form in zip(self.laws, self.law_forms):
-            own = self._change(form, ends) + c * ((row @ steady) * (row @ (free + whole))).sum(axis=0)
-            losses.append((law, own))
+            lost = self._change(form, ends) + c * ((row @ steady) * (row @ (free + whole))).sum(axis=0)
+            losses.append((law, lost))
         total = np.asarray(constant @ whole[0])
         for k in range(input_coefs.shape[1]):
             total += ((self.inputs @ input_coefs[:, k].T) * whole[k]).sum(axis=0)
@@ -216,9 +216,9 @@ class WorkIntegrals:
                 if self.damped:
                     drag = np.tensordot(self.damping, v, 1)
                     loss[chosen] = np.einsum("int,int,t->n", v, drag, w)
-                for own, (_, c, row) in zip(losses, self.laws):
-                    own[chosen] = c * (np.tensordot(row, v, 1) ** 2 @ w)
-        return IntervalWork(loss, done, [(law, own) for (law, _, _), own in zip(self.laws, losses)])
+                for lost, (_, c, row) in zip(losses, self.laws):
+                    lost[chosen] = c * (np.tensordot(row, v, 1) ** 2 @ w)
+        return IntervalWork(loss, done, [(law, lost) for (law, _, _), lost in zip(self.laws, losses)])
 
 
 def total_work(

@@ -35,8 +35,8 @@ NAMES = ("drifts, contact forces and hinges", "accelerations", "member forces")
 def tolerances(options: Mapping[str, Any]) -> dict[int, float]:
     """The tolerance of each kind of peaks that has one, by the items of AUTO."""
     tol, every = float(options["TOL"]), options.get("PEAKS", RESPONSE) == ALL
-    own = {ACCELERATIONS: options.get("TOL_ACCELERATION"), FORCES: options.get("TOL_MEMBER")}
-    asked = {kind: float(tol if x is None else x) for kind, x in own.items() if x is not None or every}
+    others = {ACCELERATIONS: options.get("TOL_ACCELERATION"), FORCES: options.get("TOL_MEMBER")}
+    asked = {kind: float(tol if x is None else x) for kind, x in others.items() if x is not None or every}
     return {RESPONSES: tol, **asked}
 
 
@@ -64,11 +64,11 @@ def _all(kind: int, count: int) -> Index:
 
 def _floored(size: Array, kinds: Array, share: float = FLOOR) -> Array:
     """Sizes, but at least a share of the largest of their kind."""
-    out = size.copy()
+    floored = size.copy()
     for kind in np.unique(kinds):
-        own = kinds == kind
-        out[own] = np.maximum(out[own], share * out[own].max())
-    return out
+        alike = kinds == kind
+        floored[alike] = np.maximum(floored[alike], share * floored[alike].max())
+    return floored
 
 
 def hinges(laws: Sequence[LawSpring], peaks: Peaks, losses: Sequence[float]) -> Peak:
@@ -131,8 +131,8 @@ def hardest(peaks: Peaks) -> float:
     A long collision may reach its peak early, by a mode that is faster than the whole: steps have to follow
     that.  A force that is largest at once jumps, by a dashpot, which a located event resolves.
     """
-    found = max(peaks.collisions, key=lambda c: c.peak, default=None)
-    if found is None or not found.t_end > found.t_start:  # it is still closed
+    collision = max(peaks.collisions, key=lambda c: c.peak, default=None)
+    if collision is None or not collision.t_end > collision.t_start:  # it is still closed
         return np.inf
-    lasts, rises = found.t_end - found.t_start, found.t_peak - found.t_start
+    lasts, rises = collision.t_end - collision.t_start, collision.t_peak - collision.t_start
     return min(lasts, max(2.0 * rises, BRIEF * lasts)) if rises > 0.0 else lasts

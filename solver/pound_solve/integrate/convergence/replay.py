@@ -123,13 +123,13 @@ class Replay(Witness):
 
     def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
         """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
-        own = self.recorder.envelopes.blank()
-        own.widen(self.envelopes)
+        envelopes = self.recorder.envelopes.blank()
+        envelopes.widen(self.envelopes)
         for t, u, v, a, laws, _ in self.samples:
             law_forces = (laws.force + laws.dashpot)[self.acting]
             s = [system.excitation.values(t, order, before=True).T for order in range(3)]
-            own.take(Motion(t, u, v, a, law_forces), s)
-        return own.peaks()
+            envelopes.take(Motion(t, u, v, a, law_forces), s)
+        return envelopes.peaks()
 
     def pass_on(self) -> None:
         """Pass everything on to the recorder."""

@@ -156,8 +156,8 @@ class StepRefinement:
             return
         scales = np.where(scales > 0.0, scales, 1.0)
         for kind in self.tolerances:
-            own = kinds == kind
-            self.errors[kind] = error_left(self.steps, [x[own] for x in self.peaks], scales[own])
+            alike = kinds == kind
+            self.errors[kind] = error_left(self.steps, [x[alike] for x in self.peaks], scales[alike])
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
         allowed = scales * np.array([self.tolerances[kind] for kind in kinds.tolist()])
         # the next step relies on the order of the method, or one that is seen once; the judgement does not
@@ -215,13 +215,13 @@ class StepRefinement:
         """Return checks beyond those of a single run; `ended` is why no shorter steps follow."""
         steps = outcome.figures["steps"]
         resolved = self.met or self.error > 1.0  # else the steps are too long for a collision
-        out, told = list[Check](), f"not shown with {steps} steps, {ended}"
+        checks, told = list[Check](), f"not shown with {steps} steps, {ended}"
         for kind, tol in self.tolerances.items():
             error, about = self.errors[kind], f"estimated error of {NAMES[kind]}"
             judge = at_most if resolved else beyond
-            out.append(judge(Subject.ERROR, about, error, tol, told))
+            checks.append(judge(Subject.ERROR, about, error, tol, told))
         return [
-            *out,
+            *checks,
             between_check(outcome.peaks),
             *rounding_check(self.system.structure.laws, outcome.peaks),
             *(check for check in outcome.checks if check.subject is Subject.UNIQUENESS),

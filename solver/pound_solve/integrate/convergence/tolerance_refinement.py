@@ -132,7 +132,7 @@ class ToleranceRefinement:
     def _judge(self, outcome: Outcome, replay: Replay) -> Outcome | None:
         """Estimate the error of a run that was completed; hand it on if no run follows."""
         before, self.complete = self.complete, (outcome, replay)
-        own = figures(self.system, outcome.peaks, replay, self.tolerances)
+        peaks = figures(self.system, outcome.peaks, replay, self.tolerances)
         taken = outcome.figures["steps"] + outcome.figures["steps taken again"]
         self.runs, self.events = self.runs + 1, outcome.figures["events"]
         self.spent += self.step_cost * taken
@@ -140,14 +140,14 @@ class ToleranceRefinement:
         if before is not None:
             share = NEXT_LEAST  # which makes other steps
             if outcome.figures["steps"] > before[0].figures["steps"] or self.tol == LEAST:
-                self._compare(own)
+                self._compare(peaks)
                 share = float(np.clip(FIRST / self.error, NEXT_LEAST, NEXT))
         if self.error <= 1.0 or self.runs == MAX_RUNS or self.tol == LEAST:
             replay.pass_on()
             outcome.figures = {**outcome.figures, "runs": self.runs}
             outcome.checks = self.checks(outcome, "the smallest that is tried")
             return outcome
-        self.peaks.append((self.tol, own))
+        self.peaks.append((self.tol, peaks))
         self.steps = taken * share ** (-1.0 / ORDER)
         self.floor, self.tol = self.tol, max(share * self.tol, LEAST)
         return None

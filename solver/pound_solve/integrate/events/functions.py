@@ -82,10 +82,10 @@ class RowFunctions:
         rates, shape (2, n_rows, n_segments), which may be infinite.
         """
         a, b, _ = np.abs(self.factors)[:, :, None]
-        out = np.asarray(a * np.where(a != 0.0, bounds[0, self.row], 0.0))
+        curvatures = np.asarray(a * np.where(a != 0.0, bounds[0, self.row], 0.0))
         if self.by_rate:
-            out += b * np.where(b != 0.0, bounds[1, self.row], 0.0)
-        return out
+            curvatures += b * np.where(b != 0.0, bounds[1, self.row], 0.0)
+        return curvatures
 
     def scale(self, largest: Array) -> Array:
         """Largest magnitude of their terms, shape (n,), from that of rows and rates (2, n_rows)."""

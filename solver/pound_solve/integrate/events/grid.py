@@ -125,22 +125,22 @@ def first_rise(t: Array, g: Array, slope: Array, tol: Array, evaluate: Evaluate)
     for k, j in np.argwhere((crossed | humps).any(axis=0)).tolist():
         best: Rise | None = None
         for n in np.flatnonzero(crossed[:, k, j] | humps[:, k, j]).tolist():
-            own = partial(evaluate, n, k, j)
+            function = partial(evaluate, n, k, j)
             low, high = float(t[k, j]), float(t[k, j + 1])
             if not crossed[n, k, j]:
                 slopes = float(slope[n, k, j]), float(slope[n, k, j + 1])
                 middle = float(split[n, k, j]) if twice[n, k, j] else None
-                top = _summit_above(own, (low, high), slopes, middle, tol[n, 0, 0])
+                top = _summit_above(function, (low, high), slopes, middle, tol[n, 0, 0])
                 if top is None:
                     continue
                 high = top
             elif g[n, k, j] == 0.0:
                 # at the very start its slope may be rounding: it may fall first
                 if k == j == 0 and not slope[n, 0, 0] > SHALLOW * np.abs(slope[n]).max():
-                    low = _dip(own, low, high)
+                    low = _dip(function, low, high)
                 if low == t[k, j]:
                     return Rise(low, n, k, j)  # it rises from the start, however slowly
-            at = _root(own, low, high)
+            at = _root(function, low, high)
             if best is None or at < best.time:
                 best = Rise(at, n, k, j)
         if best is not None:
@@ -284,16 +284,16 @@ def count_extremes(
         meet = f0 + s0 * (value[..., 1:] - f0 - s1 * np.diff(t)) / (s0 - s1)
     beyond = turn & (((s0 > 0) & (meet > known[:, 0])) | ((s0 < 0) & (meet < known[:, 1])))
     for i, k, j in np.argwhere(beyond | twice).tolist():
-        own = partial(evaluate, i, k, j)
+        function = partial(evaluate, i, k, j)
         low, high = ((float(t[k, n]), float(value[i, k, n]), float(slope[i, k, n])) for n in (j, j + 1))
         if not twice[i, k, j]:
-            _count_extreme(peaks[i], t0, own, low, high)
+            _count_extreme(peaks[i], t0, function, low, high)
             continue
         middle = float(split[i, k, j])
-        between = (middle, *own(middle))
+        between = (middle, *function(middle))
         if between[2] * low[2] < 0.0:
-            _count_extreme(peaks[i], t0, own, low, between)
-            _count_extreme(peaks[i], t0, own, between, high)
+            _count_extreme(peaks[i], t0, function, low, between)
+            _count_extreme(peaks[i], t0, function, between, high)
 
 
 def _count_extreme(peak: Peak, t0: float, function: ValueAndSlope, low: Ends, high: Ends) -> None:

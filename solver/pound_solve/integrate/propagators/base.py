@@ -91,10 +91,10 @@ class Propagator(ABC):
 
         `gs`, shape (n, degree + 1, n_q), holds the forcing of each interval about its own start.
         """
-        out = [q]
+        states = [q]
         for g, length in zip(gs, lengths.tolist()):
-            out.append(self.at(out[-1], g, length))
-        return np.stack(out, axis=1)
+            states.append(self.at(states[-1], g, length))
+        return np.stack(states, axis=1)
 
     @abstractmethod
     def derivative_bounds(self, qs: NDArray[Any], gs: NDArray[Any], lengths: Array) -> Array:
@@ -125,11 +125,11 @@ class Propagator(ABC):
         by :math:`q^{(m+1)} = A q^{(m)} + g^{(m)}`.
         """
         rows = self._taylor_rows(row, h)
-        out: Array = (rows @ q).real
+        coefs: Array = (rows @ q).real
         for k, force in enumerate(g):
             # t^k enters at the power k + 1, and each derivative of q carries it one further
-            out[k + 1 :] += h ** (k + 1) * _FORCE_FACTORS[k] * (rows[: TERMS - k - 1] @ force).real
-        return out
+            coefs[k + 1 :] += h ** (k + 1) * _FORCE_FACTORS[k] * (rows[: TERMS - k - 1] @ force).real
+        return coefs
 
     @abstractmethod
     def _taylor_rows(self, row: NDArray[Any], h: float) -> NDArray[Any]:
@@ -143,8 +143,8 @@ class Propagator(ABC):
 
     def trajectory(self, q: NDArray[Any], g: NDArray[Any], times: Array) -> NDArray[Any]:
         """Return `trajectories` of one interval, shape (n_q, n_times)."""
-        out: NDArray[Any] = self.trajectories(q[:, None], g[None], times)[:, 0]
-        return out
+        states: NDArray[Any] = self.trajectories(q[:, None], g[None], times)[:, 0]
+        return states
 
 
 def real_parts(x: NDArray[Any], axis: int = 0) -> Array:

@@ -112,22 +112,22 @@ class ModalPropagator(Propagator):
         def each(name: str) -> list[Any]:
             return [getattr(x, name) for x in propagators]
 
-        out = cls.__new__(cls)
-        out.u_p = out.v_p = None
+        joint = cls.__new__(cls)
+        joint.u_p = joint.v_p = None
         first = np.cumsum([0, *map(len, each("eigenvalues"))])
-        out.eigenvalues = np.concatenate(each("eigenvalues"))
-        out.rigid_u = np.concatenate([x + n for x, n in zip(each("rigid_u"), first)])
-        out.rigid_v = np.concatenate([x + n for x, n in zip(each("rigid_v"), first)])
-        out.rigid_scale = np.concatenate(each("rigid_scale"))
-        out.inputs = np.concatenate(each("inputs"))
-        out._input_forcing = np.concatenate(each("_input_forcing"))
-        out._load_forcing = block_diagonal(each("_load_forcing"))
-        out._state_u, out._state_v = block_diagonal(each("_state_u")), block_diagonal(each("_state_v"))
-        out.u_q, out.v_q = block_diagonal(each("u_q")), block_diagonal(each("v_q"))
-        out.spectral_radius = max(each("spectral_radius"))
-        out.condition, out.residual = max(each("condition")), max(each("residual"))
-        out._clear_tables()
-        return out
+        joint.eigenvalues = np.concatenate(each("eigenvalues"))
+        joint.rigid_u = np.concatenate([x + n for x, n in zip(each("rigid_u"), first)])
+        joint.rigid_v = np.concatenate([x + n for x, n in zip(each("rigid_v"), first)])
+        joint.rigid_scale = np.concatenate(each("rigid_scale"))
+        joint.inputs = np.concatenate(each("inputs"))
+        joint._input_forcing = np.concatenate(each("_input_forcing"))
+        joint._load_forcing = block_diagonal(each("_load_forcing"))
+        joint._state_u, joint._state_v = block_diagonal(each("_state_u")), block_diagonal(each("_state_v"))
+        joint.u_q, joint.v_q = block_diagonal(each("u_q")), block_diagonal(each("v_q"))
+        joint.spectral_radius = max(each("spectral_radius"))
+        joint.condition, joint.residual = max(each("condition")), max(each("residual"))
+        joint._clear_tables()
+        return joint
 
     def state_of(self, u: Array, v: Array) -> Complex:  # noqa: D102
         return self._state_u @ u + self._state_v @ v
@@ -142,15 +142,15 @@ class ModalPropagator(Propagator):
 
     def integral(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         kernels = phi.duhamel(self.eigenvalues * t, len(g))
-        out: Complex = t * kernels[0] * q
+        total: Complex = t * kernels[0] * q
         for k in range(len(g)):
-            out += g[k] * t ** (k + 2) * kernels[k + 1] / (k + 1)
+            total += g[k] * t ** (k + 2) * kernels[k + 1] / (k + 1)
         if len(self.rigid_u):
             u, v, s = self.rigid_u, self.rigid_v, self.rigid_scale
-            out[u] += s * q[v] * t**2 / 2
+            total[u] += s * q[v] * t**2 / 2
             for k in range(len(g)):
-                out[u] += s * g[k][v] * t ** (k + 3) / ((k + 1) * (k + 2) * (k + 3))
-        return out
+                total[u] += s * g[k][v] * t ** (k + 3) / ((k + 1) * (k + 2) * (k + 3))
+        return total
 
     def _responses(self, t: NDArray[Any], degree: int) -> tuple[Complex, Complex]:
         """Responses at times `t` to a unit of q, shape (n_q, n_t), and to a unit of each g, shape
@@ -162,22 +162,22 @@ class ModalPropagator(Propagator):
 
     def _table(self, h: float, count: int, degree: int) -> Complex:
         """`_responses` at 0, h, ..., (count - 1) h, kept, shape (n_q, degree + 2, count)."""
-        found = self._tables.get((h, degree))
-        if found is None or found.shape[2] < count:
+        table = self._tables.get((h, degree))
+        if table is None or table.shape[2] < count:
             e, tables = self._responses(h * np.arange(max(count, MIN_SAMPLES)), degree)
-            found = np.concatenate([e[:, None], tables.swapaxes(0, 1)], axis=1)
-            self._tables[h, degree] = found
-        return found[:, :, :count]
+            table = np.concatenate([e[:, None], tables.swapaxes(0, 1)], axis=1)
+            self._tables[h, degree] = table
+        return table[:, :, :count]
 
     def _single_response(self, t: float, degree: int) -> tuple[Complex, Complex]:
         """`_responses` at one time, kept if there is room: lengths of intervals recur."""
-        found = self._single.get((t, degree))
-        if found is None:
+        response = self._single.get((t, degree))
+        if response is None:
             e, tables = self._responses(np.array([t]), degree)
-            found = e[:, 0], tables[:, :, 0]
+            response = e[:, 0], tables[:, :, 0]
             if len(self._single) < MAX_TABLES:
-                self._single[t, degree] = found
-        return found
+                self._single[t, degree] = response
+        return response
 
     def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # noqa: D102
         table = self._table(h, count, gs.shape[1] - 1)
@@ -185,24 +185,24 @@ class ModalPropagator(Propagator):
 
     def at(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         e, table = self._single_response(t, len(g) - 1)
-        out: Complex = e * q + (table * g).sum(axis=0)
+        state: Complex = e * q + (table * g).sum(axis=0)
         if len(self.rigid_u):
-            out = out[:, None, None]
-            self._add_rigid_motion(out, q[:, None], g[None], np.array([t]))
-            out = out[:, 0, 0]
-        return out
+            state = state[:, None, None]
+            self._add_rigid_motion(state, q[:, None], g[None], np.array([t]))
+            state = state[:, 0, 0]
+        return state
 
     def march(self, q: Complex, gs: Complex, lengths: Array) -> Complex:  # noqa: D102
         if len(self.rigid_u):
             return super().march(q, gs, lengths)
-        out = np.empty((len(q), len(gs) + 1), complex)
-        out[:, 0], out[:, 1] = q, self.at(q, gs[0], float(lengths[0]))
+        states = np.empty((len(q), len(gs) + 1), complex)
+        states[:, 0], states[:, 1] = q, self.at(q, gs[0], float(lengths[0]))
         if len(gs) > 1:  # the others are equal
             e, table = self._single_response(float(lengths[1]), gs.shape[1] - 1)
-            q = out[:, 1]
+            q = states[:, 1]
             for i, forced in enumerate((table * gs[1:]).sum(axis=1), 2):
-                out[:, i] = q = e * q + forced
-        return out
+                states[:, i] = q = e * q + forced
+        return states
 
     def derivative_bounds(self, qs: Complex, gs: Complex, lengths: Array) -> Array:  # noqa: D102
         # dq/dt = lambda q + g, and its derivatives likewise: |exp(lambda t)| times their start, and the
@@ -210,7 +210,7 @@ class ModalPropagator(Propagator):
         u, v, g = self.rigid_u, self.rigid_v, gs.transpose(1, 2, 0)
         start = qs
         growth = np.exp(np.maximum(self.eigenvalues.real[:, None], 0.0) * lengths)
-        out = np.empty((3, *qs.shape))
+        bounds = np.empty((3, *qs.shape))
         for order in range(3):
             before = start
             start = self.eigenvalues[:, None] * start
@@ -218,25 +218,25 @@ class ModalPropagator(Propagator):
                 start += factorial(order) * g[order]
             start[u] += self.rigid_scale[:, None] * before[v]
             later = polynomial.values(np.abs(gs), lengths, order + 1).T
-            out[order] = growth * (np.abs(start) + lengths * later)
-            out[order, u] += lengths * np.abs(self.rigid_scale[:, None]) * out[order, v]
-        return out[1:]
+            bounds[order] = growth * (np.abs(start) + lengths * later)
+            bounds[order, u] += lengths * np.abs(self.rigid_scale[:, None]) * bounds[order, v]
+        return bounds[1:]
 
     def rate_rows(self, rows: Complex) -> Complex:  # noqa: D102
-        out = rows * self.eigenvalues
-        out[..., self.rigid_v] += rows[..., self.rigid_u] * self.rigid_scale
-        return out
+        rates = rows * self.eigenvalues
+        rates[..., self.rigid_v] += rows[..., self.rigid_u] * self.rigid_scale
+        return rates
 
     def _taylor_rows(self, row: Complex, h: float) -> Complex:
-        found = self._powers.get(h)
-        if found is None:
+        factors = self._powers.get(h)
+        if factors is None:
             steps = h * self.eigenvalues / np.arange(1, TERMS)[:, None]
-            found = np.cumprod(np.concatenate([np.ones((1, len(self.eigenvalues))), steps]), axis=0)
+            factors = np.cumprod(np.concatenate([np.ones((1, len(self.eigenvalues))), steps]), axis=0)
             if len(self._powers) < MAX_TABLES:
-                self._powers[h] = found
-        out = row * found
-        out[1, self.rigid_v] += h * row[self.rigid_u] * self.rigid_scale
-        return out
+                self._powers[h] = factors
+        rows = row * factors
+        rows[1, self.rigid_v] += h * row[self.rigid_u] * self.rigid_scale
+        return rows
 
     def trajectories(self, qs: Complex, gs: Complex, times: Array) -> Complex:  # noqa: D102
         e, tables = self._responses(times, gs.shape[1] - 1)
@@ -246,9 +246,9 @@ class ModalPropagator(Propagator):
     def _superposed(self, qs: Complex, gs: Complex, times: NDArray[Any], table: Complex) -> Complex:
         """Superpose a table of responses (n_q, degree + 2, n_times) to starts and forcing."""
         start = np.concatenate([qs[:, :, None], gs.transpose(2, 0, 1)], axis=2)
-        out: Complex = start @ table
-        self._add_rigid_motion(out, qs, gs, times)
-        return out
+        states: Complex = start @ table
+        self._add_rigid_motion(states, qs, gs, times)
+        return states
 
     def _add_rigid_motion(self, out: Complex, qs: Complex, gs: Complex, t: NDArray[Any]) -> None:
         """Add the effect of rigid-body velocities and forces on rigid-body displacements, shape
@@ -263,9 +263,9 @@ class ModalPropagator(Propagator):
 
 def block_diagonal(blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Return matrices along the diagonal of one, zero elsewhere."""
-    out = np.zeros(np.sum([b.shape for b in blocks], axis=0), np.result_type(*blocks))
+    matrix = np.zeros(np.sum([b.shape for b in blocks], axis=0), np.result_type(*blocks))
     i = j = 0
     for b in blocks:
-        out[i : i + b.shape[0], j : j + b.shape[1]] = b
+        matrix[i : i + b.shape[0], j : j + b.shape[1]] = b
         i, j = i + b.shape[0], j + b.shape[1]
-    return out
+    return matrix

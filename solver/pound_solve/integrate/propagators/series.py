@@ -48,20 +48,20 @@ class SeriesPropagator(Propagator):
         return rows @ self.space.a
 
     def _taylor_rows(self, row: Array, h: float) -> Array:
-        out = [row]
+        rows = [row]
         for m in range(1, TERMS):
-            out.append(h / m * (out[-1] @ self.space.a))
-        return np.array(out)
+            rows.append(h / m * (rows[-1] @ self.space.a))
+        return np.array(rows)
 
     def trajectories(self, qs: Array, gs: Array, times: Array) -> Array:  # noqa: D102
         # from time to time, each as the start of the next
-        out = np.empty((*qs.shape, len(times)))
+        states = np.empty((*qs.shape, len(times)))
         for n, (q, g) in enumerate(zip(qs.T, gs)):
             last = 0.0
             for i, t in enumerate(times.tolist()):
                 q = self.at(q, polynomial.shift(g, last), t - last)
-                out[:, n, i], last = q, t
-        return out
+                states[:, n, i], last = q, t
+        return states
 
     def at(self, q: Array, g: Array, t: float) -> Array:  # noqa: D102
         substeps = max(1, int(np.ceil(abs(t) * self.norm)))
@@ -86,12 +86,12 @@ class SeriesPropagator(Propagator):
 
     def samples(self, qs: Array, gs: Array, h: float, count: int) -> Array:  # noqa: D102
         step, forcing = self._step_map(h, gs.shape[1] - 1), gs.swapaxes(0, 1)
-        out = np.empty((*qs.shape, count))
-        out[:, :, 0] = qs
+        states = np.empty((*qs.shape, count))
+        states[:, :, 0] = qs
         for i in range(1, count):
             local = polynomial.shift(forcing, (i - 1) * h).transpose(0, 2, 1)
-            out[:, :, i] = step @ np.concatenate([out[:, :, i - 1], *local])
-        return out
+            states[:, :, i] = step @ np.concatenate([states[:, :, i - 1], *local])
+        return states
 
     def _step_map(self, h: float, degree: int) -> Array:
         """Matrix of a step for (q, g_0, ..., g_degree), kept, shape (n_q, (degree + 2) n_q)."""

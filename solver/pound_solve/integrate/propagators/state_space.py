@@ -281,9 +281,9 @@ def _are_rigid(omega2: Array, scale: Array) -> Flags:
     combination.
     """
     share, size = RIGID * len(omega2), np.abs(omega2)
-    own = size <= share * scale
-    mixed = np.sqrt(scale * scale[own].max(initial=0.0))
-    return np.asarray(own | (size < share * np.maximum(mixed, share * size.max(initial=0.0))))
+    rigid = size <= share * scale
+    mixed = np.sqrt(scale * scale[rigid].max(initial=0.0))
+    return np.asarray(rigid | (size < share * np.maximum(mixed, share * size.max(initial=0.0))))
 
 
 def _rounding_scale(shapes: Array, k: Array) -> Array:

@@ -120,11 +120,11 @@ class RigidContacts:
             if not len(first):
                 return np.maximum(impulse, 0.0)
             pressed[first[0]] = not pressed[first[0]]
-            own = np.flatnonzero(pressed)
+            pressing = np.flatnonzero(pressed)
             impulse = np.zeros(len(rates))
             # contacts with dependent rows share evenly
-            delassus = self.delassus[np.ix_(own, own)]
-            impulse[own] = np.linalg.lstsq(delassus, rates[own], rcond=ROUNDING)[0]
+            delassus = self.delassus[np.ix_(pressing, pressing)]
+            impulse[pressing] = np.linalg.lstsq(delassus, rates[pressing], rcond=ROUNDING)[0]
         raise ArithmeticError("the set of rigid contacts that press cannot be found")
 
     def impact(self, rates: Array, touching: Flags, slow: Array) -> tuple[Array, Array, Array]:
@@ -204,10 +204,10 @@ class RigidContacts:
         """Forces of the contacts that are `held` closed, shape (n_rigid,), or (n_rigid, n_times);
         parameters as of `free_accelerations`.
         """
-        out, at = np.zeros((len(held), *u.shape[1:])), np.flatnonzero(held)
+        forces, at = np.zeros((len(held), *u.shape[1:])), np.flatnonzero(held)
         free = self.free_accelerations(law_forces, u, v, inputs)[0]
-        out[at] = self.inverse(at) @ free[at]
-        return out
+        forces[at] = self.inverse(at) @ free[at]
+        return forces
 
     def inverse(self, at: Index) -> Array:
         """Inverse of G over the contacts `at`; those with dependent rows share evenly."""

@@ -83,8 +83,8 @@ class RigidInstants:
     def _inputs(self) -> Array:
         """Inputs and their first two derivatives just after the present time, shape (3, n_inputs)."""
         excitation = self.run.system.excitation
-        own = excitation.about(np.array([self.run.t]))[0]
-        return np.stack([polynomial.value(own, 0.0, order) for order in range(3)])
+        coefs = excitation.about(np.array([self.run.t]))[0]
+        return np.stack([polynomial.value(coefs, 0.0, order) for order in range(3)])
 
     def _held(self) -> Flags:
         """Which rigid contacts are closed, shape (n_rigid,)."""
@@ -160,9 +160,9 @@ class RigidInstants:
         pressing = np.maximum(x.free_accelerations(run.law_forces, run.u, run.v, inputs)[0], 0.0)
         lost = LOST * STILL * (run.largest[0, x.laws] + x.gap)
         rebound, e = np.sqrt(2.0 * pressing * lost), x.restitution
-        own = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
-        out: Array = np.maximum(SLOW * run.largest[1, x.laws], own)
-        return out
+        approach = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
+        slow: Array = np.maximum(SLOW * run.largest[1, x.laws], approach)
+        return slow
 
     def open_pulled(self, spectral_radius: float = 0.0) -> None:
         """Open those of the closed rigid contacts whose force would be tensile.
