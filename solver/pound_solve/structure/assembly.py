@@ -186,14 +186,14 @@ class _Elements:
             message = f"element {element.id} is a {kind}: only FRAME and BEAM_COLUMN take member loads"
             self.problems.append(Diagnostic("P331", message, context.member_loads[0].span))
         try:
-            own = _built(context)
+            parts = _built(context)
         except ElementError as err:
             why = (context.prop.label, str(err), err.item)
             self._refused.setdefault(why, []).append(element)
             return
-        self.parts[element.id] = own
+        self.parts[element.id] = parts
         nodes = frozenset(k for k in (element.i, element.j) if k is not None)
-        self.mass += [MassBlock(nodes, b.dofs, b.matrix) for b in own.mass]
+        self.mass += [MassBlock(nodes, b.dofs, b.matrix) for b in parts.mass]
 
 
 def _built(context: ElementContext) -> Parts:
@@ -201,13 +201,13 @@ def _built(context: ElementContext) -> Parts:
     beyond = "its values and its nodes are too far apart in magnitude to be computed with"
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
-            own: Parts = context.prop.spec.impl(context)
+            parts: Parts = context.prop.spec.impl(context)
     except ArithmeticError as err:
         raise ElementError(beyond) from err
-    blocks = [b.matrix for b in (*own.stiffness, *own.mass, *own.damping)]
+    blocks = [b.matrix for b in (*parts.stiffness, *parts.mass, *parts.damping)]
     if not all(np.isfinite(x).all() for x in blocks):
         raise ElementError(beyond)
-    return own
+    return parts
 
 
 def stiffness_along(
@@ -217,9 +217,9 @@ def stiffness_along(
 
     That of a rod, EA/L, times the squared cosine; an element without length is a rod along the direction.
     """
-    out = {}
-    for name, own in parts.items():
-        e, initial = model.elements[name], own.initial()
+    stiffness = {}
+    for name, part in parts.items():
+        e, initial = model.elements[name], part.initial()
         at = [n for n, f in enumerate(initial.dofs) if f in ((node, 0), (node, 1))]
         if not at:
             continue
@@ -232,5 +232,5 @@ def stiffness_along(
         t = axis[[initial.dofs[n][1] for n in at]]
         k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(axis @ normal) ** 2
         if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
-            out[name] = k
-    return out
+            stiffness[name] = k
+    return stiffness

@@ -94,19 +94,19 @@ def parts(model: Model) -> list[tuple[int, ...]]:
     pairs = joints(model)
     pairs += [(n.id, master) for n in model.nodes.values() for master in n.slaved.values()]
     joined = components(len(numbers), groups=[np.array([place[i], place[j]]) for i, j in pairs])
-    found: dict[int, list[int]] = {}
-    for n, own in zip(numbers, joined.tolist()):
-        found.setdefault(own, []).append(n)
-    return [tuple(nodes) for nodes in found.values()]
+    by_label: dict[int, list[int]] = {}
+    for n, label in zip(numbers, joined.tolist()):
+        by_label.setdefault(label, []).append(n)
+    return [tuple(nodes) for nodes in by_label.values()]
 
 
 def stands(model: Model, nodes: Collection[int]) -> bool:
     """Whether a connected part has a height and members in it, as a frame has; a ball, a floor or a
     bar that lies has none.
     """
-    own = frozenset(nodes)
-    joined = any(i in own and j in own for i, j in joints(model))
-    return joined and len({model.nodes[n].y for n in own}) > 1
+    inside = frozenset(nodes)
+    joined = any(i in inside and j in inside for i, j in joints(model))
+    return joined and len({model.nodes[n].y for n in inside}) > 1
 
 
 def joints(model: Model) -> list[tuple[int, int]]:
@@ -121,20 +121,20 @@ def joints(model: Model) -> list[tuple[int, int]]:
 def buildings(structure: Structure) -> list[Building]:
     """The buildings of a structure, in the order of their lowest nodes."""
     along, up = (own_mass(structure, d) for d in range(2))
-    found = [p for p in parts(structure.model) if any(along[n] or up[n] for n in p)]
+    heavy = [p for p in parts(structure.model) if any(along[n] or up[n] for n in p)]
     named = {n: card for card in structure.model.buildings for n in card["NODES"]}
-    out = []
-    for i, nodes in enumerate(found, 1):
+    ordered = []
+    for i, nodes in enumerate(heavy, 1):
         card = next((named[n] for n in nodes if n in named), None)
         stack = Levels(structure.model, nodes, along)
         floors = stack.floors((card and card["FLOORS"]) or ())
         mass = sum(along[n] for n in nodes) or sum(up[n] for n in nodes)
         axis = float(np.mean([structure.model.nodes[n].x for n in stack.feet]))
         name = card.label if card else f"building {i}"
-        own = (structure.model.nodes[n] for n in nodes)
-        reach = max(max(abs(n.x - axis), abs(n.y - stack.base)) for n in own)
-        out.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass, reach))
-    return out
+        points = (structure.model.nodes[n] for n in nodes)
+        reach = max(max(abs(n.x - axis), abs(n.y - stack.base)) for n in points)
+        ordered.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass, reach))
+    return ordered
 
 
 class Levels:
@@ -162,15 +162,15 @@ class Levels:
         self._close = SAME_LEVEL * (max(height.values()) - min(height.values()))
         self.base = min(height[n] for n in held)
         self.feet = tuple(n for n in held if height[n] <= self.base + self._close)
-        own: list[list[int]] = []
+        levels: list[list[int]] = []
         for n in sorted((n for n in nodes if heavy[n] > 0.0), key=lambda n: (height[n], n)):
             if height[n] <= self.base + self._close:
                 continue
-            if own and height[n] <= height[own[-1][0]] + self._close:
-                own[-1].append(n)
+            if levels and height[n] <= height[levels[-1][0]] + self._close:
+                levels[-1].append(n)
             else:
-                own.append([n])
-        self._levels = [_floor(nodes, heavy, height) for nodes in own]
+                levels.append([n])
+        self._levels = [_floor(nodes, heavy, height) for nodes in levels]
 
     def floors(self, named: Collection[int]) -> tuple[Floor, ...]:
         """Those of the levels that are floors: of some nodes, or, where there are none, by their mass."""
@@ -196,11 +196,11 @@ def building(structure: Structure, name: str) -> Building:
     KeyError
         There is none; its text tells what there is.
     """
-    found = {b.name: b for b in buildings(structure)}
-    if name not in found:
-        there = ", ".join(found) or "none"
+    named = {b.name: b for b in buildings(structure)}
+    if name not in named:
+        there = ", ".join(named) or "none"
         raise KeyError(f"there is no building {name!r}; the buildings are {there}")
-    return found[name]
+    return named[name]
 
 
 def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection[int]]) -> list[Index]:
@@ -209,37 +209,37 @@ def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection
     for column, (owner, d) in enumerate(columns):
         i, j = (owner, owner) if d < 3 else (model.elements[owner].i, model.elements[owner].j)
         places.setdefault(i, []).append((column, j or i))
-    out = []
+    by_group = []
     for nodes in groups:
-        own = frozenset(nodes)
-        found = sorted(column for i in own for column, j in places.get(i, ()) if j in own)
-        out.append(np.array(found, np.int64))
-    return out
+        inside = frozenset(nodes)
+        numbers = sorted(column for i in inside for column, j in places.get(i, ()) if j in inside)
+        by_group.append(np.array(numbers, np.int64))
+    return by_group
 
 
 def misnamed(structure: Structure) -> list[Diagnostic]:
     """Cards of BUILDINGS that name no building, several, or one that has a name."""
-    out, names, of = list[Diagnostic](), set[str](), {}
+    problems, names, of = list[Diagnostic](), set[str](), {}
     for i, nodes in enumerate(parts(structure.model)):
         of.update(dict.fromkeys(nodes, i))
     taken: dict[int, str] = {}
     for card in structure.model.buildings:
-        own = {of[n]: n for n in reversed(card["NODES"])}
-        (first, node), *others = sorted(own.items())
+        touched = {of[n]: n for n in reversed(card["NODES"])}
+        (first, node), *others = sorted(touched.items())
         if others:
             message = f"nodes {node} and {others[0][1]} of {card.label!r} are not connected"
-            out.append(Diagnostic("P338", message, card.place("NODES"), "name nodes of one building"))
+            problems.append(Diagnostic("P338", message, card.place("NODES"), "name nodes of one building"))
         elif first in taken:
             message = f"{card.label!r} is the building {taken[first]!r}: node {node} belongs to it"
-            out.append(Diagnostic("P338", message, card.place("NODES"), "give it one name"))
+            problems.append(Diagnostic("P338", message, card.place("NODES"), "give it one name"))
         elif card.label in names:
             message = f"two buildings have the name {card.label!r}"
-            out.append(Diagnostic("P338", message, card.place("NAME"), "give another name"))
+            problems.append(Diagnostic("P338", message, card.place("NAME"), "give another name"))
         else:
-            out += _no_floors(structure, card, [n for n in of if of[n] == first])
+            problems += _no_floors(structure, card, [n for n in of if of[n] == first])
         taken.setdefault(first, card.label)
         names.add(card.label)
-    return out
+    return problems
 
 
 def _no_floors(structure: Structure, card: Card, nodes: Sequence[int]) -> Iterator[Diagnostic]:
@@ -257,14 +257,14 @@ def _no_floors(structure: Structure, card: Card, nodes: Sequence[int]) -> Iterat
 def own_mass(structure: Structure, d: int) -> dict[int, float]:
     """Mass of every node along direction `d`, without that of its slaves [F T^2/L]."""
     nodes, whole = structure.model.nodes, structure.nodal_mass
-    out = {n: whole.get((n, d), 0.0) for n in nodes}
+    mass = {n: whole.get((n, d), 0.0) for n in nodes}
     for n, x in nodes.items():
         if (master := x.slaved.get("XY"[d])) is not None:
-            out[master] -= whole.get((n, d), 0.0)
-    return out
+            mass[master] -= whole.get((n, d), 0.0)
+    return mass
 
 
 def _floor(nodes: Sequence[int], heavy: Mapping[int, float], height: Mapping[int, float]) -> Floor:
-    own = np.array([heavy[n] for n in nodes])
-    level = float(own @ [height[n] for n in nodes] / own.sum())
-    return Floor(tuple(nodes), own / own.sum(), level, float(own.sum()))
+    mass = np.array([heavy[n] for n in nodes])
+    level = float(mass @ [height[n] for n in nodes] / mass.sum())
+    return Floor(tuple(nodes), mass / mass.sum(), level, float(mass.sum()))

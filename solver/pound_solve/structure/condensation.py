@@ -44,15 +44,15 @@ class Condensed:
         the loads, counted from zero loads [F L], at some times, or just before the loads jump then.
         """
         s = np.vstack([self.system.excitation.values(t, before=before).T, np.ones(len(t))])
-        own = np.column_stack([self.follow, self.constant]) @ s
-        return np.asarray(0.5 * (own * (self.loads @ s)).sum(axis=0))
+        displacements = np.column_stack([self.follow, self.constant]) @ s
+        return np.asarray(0.5 * (displacements * (self.loads @ s)).sum(axis=0))
 
     def all(self, u: Array, s: Array, order: int = 0) -> Array:
         """All unknowns from those that are left and the inputs `s`, shape (n,); `order` 1: velocities,
         2: accelerations.  Columns are instants where there are several.
         """
-        out = self.expand @ u + self.follow @ s
-        return (out.T + self.constant).T if order == 0 else out
+        whole = self.expand @ u + self.follow @ s
+        return (whole.T + self.constant).T if order == 0 else whole
 
 
 def condense(system: ReducedSystem) -> Condensed:
@@ -110,15 +110,15 @@ def condense(system: ReducedSystem) -> Condensed:
 
 def _decisions(dofs: Sequence[Dof], condensed: Flags, kept: Flags) -> list[Decision]:
     """Lines of the report on the massless DOFs."""
-    out = []
+    lines = []
     if condensed.any():
         subject = _massless(int(condensed.sum()))
-        out.append(Decision(subject, "condensed", "they follow the others statically, no error is made"))
+        lines.append(Decision(subject, "condensed", "they follow the others statically, no error is made"))
     if kept.any():
         subject = _massless(int(kept.sum()))
-        why = "dashpots move them: " + labels([f for f, own in zip(dofs, kept) if own])
-        out.append(Decision(subject, "kept", why))
-    return out
+        why = "dashpots move them: " + labels([f for f, keep in zip(dofs, kept) if keep])
+        lines.append(Decision(subject, "kept", why))
+    return lines
 
 
 def _massless(count: int) -> str:

@@ -220,47 +220,47 @@ class CorotationalMembers:
 
     def touched(self) -> list[tuple[Index, Array]]:
         """Columns that each member touches, ascending, and its six quantities over them, (6, n_touched)."""
-        rows, out = by_rows(self.rows), []
+        rows, by_member = by_rows(self.rows), []
         for c in range(len(self)):
             six = rows[QUANTITIES * c : QUANTITIES * (c + 1)]
             at = np.unique(np.concatenate([columns for columns, _ in six]))
-            own = np.zeros((QUANTITIES, len(at)))
+            quantities = np.zeros((QUANTITIES, len(at)))
             for j, (columns, values) in enumerate(six):
-                own[j, np.searchsorted(at, columns)] = values
-            out.append((at, own))
-        return out
+                quantities[j, np.searchsorted(at, columns)] = values
+            by_member.append((at, quantities))
+        return by_member
 
     def forces(self, u: Array) -> Array:
         """Forces beyond those of the linear stiffness, shape (n,)."""
-        out = np.zeros((len(self), QUANTITIES))
+        forces = np.zeros((len(self), QUANTITIES))
         s = self.quantities(u)
         for c in range(len(self)):
-            quantity_forces(self.p, c, s, 0, out, 0)
-        return np.asarray(out.ravel() @ self.rows, float)
+            quantity_forces(self.p, c, s, 0, forces, 0)
+        return np.asarray(forces.ravel() @ self.rows, float)
 
     def stiffness(self, u: Array) -> Matrix:
         """Tangent stiffness beyond the linear one, shape (n, n); see `quantity_stiffness`."""
         s, h = self.quantities(u), np.zeros((len(self), QUANTITIES**2))
         i, j, x = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
-        for c, (at, own) in enumerate(self.touched()):
+        for c, (at, quantities) in enumerate(self.touched()):
             quantity_stiffness(self.p, c, s, 0, h, c)
             i.append(np.repeat(at, len(at)))
             j.append(np.tile(at, len(at)))
-            x.append((own.T @ h[c].reshape(QUANTITIES, QUANTITIES) @ own).ravel())
+            x.append((quantities.T @ h[c].reshape(QUANTITIES, QUANTITIES) @ quantities).ravel())
         n = self.rows.shape[1]
         return gathered((n, n), np.concatenate(i), np.concatenate(j), np.concatenate(x))
 
     def actions(self, s: Array) -> Array:
         """`member_actions` at the quantities `s`, shape (n_times, n_members, 6)."""
-        out = np.zeros((*s.shape[:2], 4))
-        provider().ready(member_actions)(self.p, np.ascontiguousarray(s), out)
-        return out
+        actions = np.zeros((*s.shape[:2], 4))
+        provider().ready(member_actions)(self.p, np.ascontiguousarray(s), actions)
+        return actions
 
     def turning(self, s: Array, members: Index) -> Array:
         """`member_turning` of some members at their quantities `s`, shape (n_times, n_members, 6)."""
-        out = np.zeros(s.shape)
-        provider().ready(member_turning)(self.p[members], np.ascontiguousarray(s), out)
-        return out
+        turning = np.zeros(s.shape)
+        provider().ready(member_turning)(self.p[members], np.ascontiguousarray(s), turning)
+        return turning
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:
         """Member and share of its eta, rho and shear in each of some (element, quantity),

@@ -71,10 +71,10 @@ def sides(
     `members` are the numbers of the elements at each node.
     """
     element = structure.model.elements[spring.element]
-    given = structure.model.props[element.prop]["DIAPHRAGMS"]
+    known = structure.model.props[element.prop]["DIAPHRAGMS"]
     first, second = map(Diaphragm, spring.facts["masses"])
-    if given is not None:
-        return Diaphragm(first.mass, given[0]), Diaphragm(second.mass, (*given, math.inf)[1])
+    if known is not None:
+        return Diaphragm(first.mass, known[0]), Diaphragm(second.mass, (*known, math.inf)[1])
     (nx, ny), _ = axes(spring.facts["angle"])
     first = _behind(structure, members, element.i, (-nx, -ny)) or first
     if element.j is not None:
@@ -104,16 +104,16 @@ def _diaphragm_collision(
     if 0.0 in (first.mass, second.mass):
         return DiaphragmCollision(both, None, math.nan, "no theory: a diaphragm has no mass")
     prop = structure.model.props[structure.model.elements[spring.element].prop]
-    given = prop["DIAPHRAGMS"] is not None
+    known = prop["DIAPHRAGMS"] is not None
     rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
-    if rigid and not given:
+    if rigid and not known:
         # a mass at a column is no floor: its supports matter, which the theory leaves out
         who = " and ".join(rigid)
         what = f"no theory: {who} rigid, no member behind; DIAPHRAGMS under PROPS gives a stiffness"
         return DiaphragmCollision(both, None, math.nan, what)
     pair = Pair(first, second)
     plasticity = prop["R"] if spring.rule == "EQUIVALENT" else 1.0
-    lumped = given and math.isfinite(spring.facts["e_given"])
+    lumped = known and math.isfinite(spring.facts["e_given"])
     e = spring.facts["e_given"] if lumped else 1.0
     error = (1.0 + e) / (1.0 + plasticity * pair.e) - 1.0
     notes = [] if pair.paper_holds else ["Z of the shorter period is the larger: Eqs 7, 8, 14-17 fail"]
@@ -138,10 +138,10 @@ def _behind(
     nodes = structure.model.nodes
     mass = flexibility = 0.0
     while True:
-        own = mass_along(structure.model, structure.nodal_mass, node, direction)
-        if math.isinf(own):
+        nodal = mass_along(structure.model, structure.nodal_mass, node, direction)
+        if math.isinf(nodal):
             return None
-        mass += own
+        mass += nodal
         stiffness = _straight_on(structure, members.get(node, ()), node, direction)
         if not stiffness:
             return Diaphragm(mass, 1.0 / flexibility) if flexibility else None
@@ -157,7 +157,7 @@ def _straight_on(
     structure: Structure, members: Sequence[int], node: int, direction: tuple[float, float]
 ) -> dict[int, float]:
     """Nodes straight on that members join to this one, and the stiffness between along a direction."""
-    nodes, found = structure.model.nodes, dict[int, float]()
+    nodes, stiffness = structure.model.nodes, dict[int, float]()
     here = nodes[node]
     for member in members:
         e = structure.model.elements[member]
@@ -173,5 +173,5 @@ def _straight_on(
         )
         along = -float(from_here @ block.matrix @ from_there)
         if along > 0.0:
-            found[other.id] = found.get(other.id, 0.0) + along
-    return found
+            stiffness[other.id] = stiffness.get(other.id, 0.0) + along
+    return stiffness

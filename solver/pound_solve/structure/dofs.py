@@ -69,9 +69,9 @@ class DofMap:
 
     def row(self, dofs: Collection[Dof], values: Collection[float]) -> Array:
         """Sum of `values` times `DOFs` as a row over the columns, shape (size,)."""
-        out = np.zeros(self.size)
-        self.add(out, dofs, values)
-        return out
+        row = np.zeros(self.size)
+        self.add(row, dofs, values)
+        return row
 
     def rows(self, sums: Sequence[tuple[Collection[Dof], Collection[float]]]) -> Matrix:
         """Several such rows, shape (len(sums), size)."""
@@ -88,10 +88,10 @@ class DofMap:
         rows, columns, values = [], [], []
         for dofs, matrix in blocks:
             terms = [self.terms[f] for f in dofs]
-            for own, line in zip(terms, matrix.tolist()):
+            for one, line in zip(terms, matrix.tolist()):
                 for other, value in zip(terms, line):
                     if value != 0.0:
-                        for i, fi in own:
+                        for i, fi in one:
                             for j, fj in other:
                                 rows.append(i)
                                 columns.append(j)

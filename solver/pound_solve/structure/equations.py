@@ -98,9 +98,9 @@ def rigid_motions(structure: Structure) -> Array:
     rigid = np.array([_rigid(structure, f) for f in columns]).reshape(-1, 3).T
     inside = np.array([d > 2 for _, d in columns], bool) & used_rows(k)
     if inside.any():
-        own, others = np.flatnonzero(inside), np.flatnonzero(~inside)
-        pull = k[np.ix_(own, others)] @ rigid[:, others].T
-        rigid[:, own] = -least_squares(k[np.ix_(own, own)], pull).T
+        inner, others = np.flatnonzero(inside), np.flatnonzero(~inside)
+        pull = k[np.ix_(inner, others)] @ rigid[:, others].T
+        rigid[:, inner] = -least_squares(k[np.ix_(inner, inner)], pull).T
     return rigid
 
 
@@ -157,17 +157,17 @@ class Equations:
     def _damping_to_ground(self) -> Matrix:
         """Damping of the unknowns that has no place between two nodes, shape (n_columns, n_columns)."""
         i, j, c = entries(self.system.structure.damping[: self.n])
-        own = np.concatenate([np.arange(self.n), np.array(self._moved, np.int64)])
+        place = np.concatenate([np.arange(self.n), np.array(self._moved, np.int64)])
         p, q, between = entries(self.structure.damping[: self.n])
-        found = gathered(
+        difference = gathered(
             self.structure.damping.shape,
             np.concatenate([i, p]),
-            np.concatenate([own[j], q]),
+            np.concatenate([place[j], q]),
             np.concatenate([c, -between]),
         )
-        rows, columns, values = entries(found)
+        rows, columns, values = entries(difference)
         kept = np.abs(values) > 1e-12 * np.abs(values_at(self.structure.damping, rows, columns))
-        return gathered(found.shape, rows[kept], columns[kept], values[kept])
+        return gathered(difference.shape, rows[kept], columns[kept], values[kept])
 
     def sums(self, weights: Weights) -> LinearSums:
         """Sums of rows of the equations over the unknowns of the reduced system."""
@@ -180,9 +180,9 @@ class Equations:
         ]
         motion, inputs = [], []
         for row in terms:
-            own, ruled = row[:, : self.n], row[:, self.n :]
-            motion.append(own @ system.expand)
-            inputs.append(own @ system.expand_inputs + ruled @ self._prescribed)
+            free, ruled = row[:, : self.n], row[:, self.n :]
+            motion.append(free @ system.expand)
+            inputs.append(free @ system.expand_inputs + ruled @ self._prescribed)
         inputs[0] = inputs[0] + weights.ridden @ (s.ground.T @ system.acceleration_inputs)
         inputs[0] = inputs[0] - weights.loads @ self._forces()
         constant = terms[0][:, : self.n] @ system.expand_constant - weights.loads @ s.held
@@ -193,12 +193,12 @@ class Equations:
 
     def _forces(self) -> Array:
         """FORCES over the released columns, shape (n_columns, n_inputs)."""
-        out = np.zeros((len(self.columns), self._prescribed.shape[1]))
-        for j, force in enumerate(self.system.forces, out.shape[1] - len(self.system.forces)):
+        forces = np.zeros((len(self.columns), self._prescribed.shape[1]))
+        for j, force in enumerate(self.system.forces, forces.shape[1] - len(self.system.forces)):
             for node in force.nodes:
                 pushed = [(node, d) for d in range(len(force.push))]
-                self.structure.dofs.add(out[:, j], pushed, force.push)
-        return out
+                self.structure.dofs.add(forces[:, j], pushed, force.push)
+        return forces
 
 
 class LinearSums:

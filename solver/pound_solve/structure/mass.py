@@ -22,29 +22,29 @@ class MassBlock(NamedTuple):
 
 def weights(model: Model) -> list[MassBlock]:
     """Mass of the cards of WEIGHTS."""
-    out = []
+    mass = []
     for card in model.weights:
         wy = card["WX"] if card["WY"] is None else card["WY"]
         diagonal = np.array([card["WX"], wy, card["WR"]]) / model.gravity
         for node in card["NODES"]:
-            out.append(MassBlock(frozenset([node]), tuple((node, d) for d in range(3)), np.diag(diagonal)))
-    return out
+            mass.append(MassBlock(frozenset([node]), tuple((node, d) for d in range(3)), np.diag(diagonal)))
+    return mass
 
 
 def nodal_mass(model: Model, blocks: Iterable[MassBlock]) -> dict[Dof, float]:
     """Diagonal mass by node and direction; a master has the mass of its slaves in addition."""
-    out: dict[Dof, float] = {}
+    mass: dict[Dof, float] = {}
     for _, at, matrix in blocks:
         for a, dof in enumerate(at):
             # a consistent matrix is summed along the row of its own direction:
             # the node's share of rigid motion
             same = [b for b, other in enumerate(at) if other[1] == dof[1]] if dof[1] < 2 else [a]
-            out[dof] = out.get(dof, 0.0) + float(matrix[a, same].sum())
+            mass[dof] = mass.get(dof, 0.0) + float(matrix[a, same].sum())
     for node in model.nodes.values():
         for letter, master in node.slaved.items():
             d = DIRECTIONS.index(letter)
-            out[master, d] = out.get((master, d), 0.0) + out.get((node.id, d), 0.0)
-    return out
+            mass[master, d] = mass.get((master, d), 0.0) + mass.get((node.id, d), 0.0)
+    return mass
 
 
 def mass_along(
@@ -55,9 +55,9 @@ def mass_along(
     """
     inverse = 0.0
     for d, component in enumerate(normal):
-        own = model.nodes[node]
-        at = (own.slaved.get(DIRECTIONS[d], node), d)
-        if component == 0.0 or DIRECTIONS[d] in own.fixed or DIRECTIONS[d] in model.nodes[at[0]].fixed:
+        here = model.nodes[node]
+        at = (here.slaved.get(DIRECTIONS[d], node), d)
+        if component == 0.0 or DIRECTIONS[d] in here.fixed or DIRECTIONS[d] in model.nodes[at[0]].fixed:
             continue
         if nodal_mass.get(at, 0.0) == 0.0:
             return 0.0
@@ -67,19 +67,19 @@ def mass_along(
 
 def ground_inertia(model: Model, dofs: DofMap, blocks: Iterable[MassBlock]) -> Array:
     """``M r`` for a unit acceleration of the ground along x, y and about the origin, shape (3, n)."""
-    out = np.zeros((3, dofs.size))
+    inertia = np.zeros((3, dofs.size))
     for _, at, matrix in blocks:
         for d in range(3):
-            dofs.add(out[d], at, matrix @ [_rigid_body(model, f, d) for f in at])
-    return out
+            dofs.add(inertia[d], at, matrix @ [_rigid_body(model, f, d) for f in at])
+    return inertia
 
 
 def _rigid_body(model: Model, dof: Dof, d: int) -> float:
     """Displacement of a DOF when the ground moves by one along `d` (2: rotates about the origin)."""
-    owner, own = dof
-    if own > 2:  # internal DOFs of an element are relative to its nodes
+    owner, direction = dof
+    if direction > 2:  # internal DOFs of an element are relative to its nodes
         return 0.0
     if d < 2:
-        return float(own == d)
+        return float(direction == d)
     node = model.nodes[owner]
-    return (-node.y, node.x, 1.0)[own]
+    return (-node.y, node.x, 1.0)[direction]

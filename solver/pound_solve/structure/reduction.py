@@ -116,12 +116,12 @@ class ReducedSystem:
     def over(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
         """Rows over all columns of the structure as rows over unknowns and inputs, and constants."""
         n = self.structure.n_free
-        own = rows[:, :n]
-        over = own @ self.expand
+        free = rows[:, :n]
+        over = free @ self.expand
         return (
             gathered(over.shape, *entries(over)),
-            own @ self.expand_inputs + rows[:, n:] @ self.support_inputs,
-            own @ self.expand_constant,
+            free @ self.expand_inputs + rows[:, n:] @ self.support_inputs,
+            free @ self.expand_constant,
         )
 
     def applied(self, s: Array) -> Array:
@@ -140,13 +140,13 @@ class ReducedSystem:
     def corotational_inputs(self) -> Array:
         """Their quantities from the inputs, shape (n_members, 6, n_inputs)."""
         corotational = self.structure.corotational
-        own = corotational.rows[:, self.structure.n_free :] @ self.support_inputs
-        return np.asarray(own, float).reshape(len(corotational), QUANTITIES, own.shape[1])
+        quantities = corotational.rows[:, self.structure.n_free :] @ self.support_inputs
+        return np.asarray(quantities, float).reshape(len(corotational), QUANTITIES, quantities.shape[1])
 
     def quantities(self, u: Array, s: Array) -> Array:
         """Quantities of the members, shape (n_times, n_members, 6), for rows of unknowns and of inputs."""
-        own = (u @ self.corotational.rows.T).reshape(len(u), len(self.corotational), QUANTITIES)
-        return np.asarray(own + np.einsum("ti,cji->tcj", s, self.corotational_inputs), float)
+        quantities = (u @ self.corotational.rows.T).reshape(len(u), len(self.corotational), QUANTITIES)
+        return np.asarray(quantities + np.einsum("ti,cji->tcj", s, self.corotational_inputs), float)
 
     @property
     def columns(self) -> list[int]:
@@ -185,11 +185,11 @@ class ReducedSystem:
 
 def moved_supports(motions: Sequence[Motion], fixed: Sequence[Dof]) -> tuple[Dof, ...]:
     """Fixed DOFs that the motions with SUPPORTS prescribe."""
-    out: set[Dof] = set()
+    moved: set[Dof] = set()
     for m in motions:
         if m.supports is not None:
-            out |= {(node, d) for node in m.supports for d in m.directions}
-    return tuple(sorted(out & set(fixed)))
+            moved |= {(node, d) for node in m.supports for d in m.directions}
+    return tuple(sorted(moved & set(fixed)))
 
 
 def build(
@@ -317,9 +317,9 @@ def _inputs(
 
 def _support_shares(structure: Structure, motion: Motion) -> list[float]:
     """Displacement of every prescribed DOF for a motion of one, shape (n_moved,)."""
-    nodes, own = structure.model.nodes, motion.supports or ()
+    nodes, supports = structure.model.nodes, motion.supports or ()
     return [
-        motion.share(d, nodes[node].x, nodes[node].y) if node in own else 0.0
+        motion.share(d, nodes[node].x, nodes[node].y) if node in supports else 0.0
         for node, d in structure.dofs.moved
     ]
 

@@ -18,8 +18,8 @@ def standing_alone(structure: Structure, nodes: Collection[int]) -> Structure:
     elements = {e.id: e for e in model.elements.values() if e.i in own and (e.j is None or e.j in own)}
 
     def kept(cards: Sequence[Card], item: str, these: Collection[int]) -> tuple[Card, ...]:
-        found = [(c, tuple(x for x in c[item] if x in these)) for c in cards]
-        return tuple(replace(c, values={**c.values, item: left}) for c, left in found if left)
+        pairs = [(c, tuple(x for x in c[item] if x in these)) for c in cards]
+        return tuple(replace(c, values={**c.values, item: left}) for c, left in pairs if left)
 
     part = replace(
         model,

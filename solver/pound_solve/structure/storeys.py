@@ -72,9 +72,9 @@ def storey_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSu
         x, _, turn = equations.rigid_about(b.axis, foot, above)
         elements.append((above, np.array([x, turn])))
         geometric.append((above, np.array([x, 0.0 * turn])))
-    own, turned = (_matrix(rows, equations) for rows in (elements, geometric))
-    nothing = 0.0 * own
-    return equations.sums(Weights(own, turned, nothing, nothing, nothing, nothing, nothing))
+    rigid, turned = (_matrix(rows, equations) for rows in (elements, geometric))
+    nothing = 0.0 * rigid
+    return equations.sums(Weights(rigid, turned, nothing, nothing, nothing, nothing, nothing))
 
 
 def drift_sums(system: ReducedSystem, buildings: Sequence[Building]) -> LinearSums:
@@ -87,8 +87,8 @@ def drift_sums(system: ReducedSystem, buildings: Sequence[Building]) -> LinearSu
             (b.feet, np.full(len(b.feet), 1.0 / len(b.feet))),
             *((f.nodes, f.shares) for f in b.floors),
         ]
-        for (low, share), (high, own), foot, top in zip(means, means[1:], b.levels, b.levels[1:]):
-            values = np.concatenate([own, -share]) / (top - foot)
+        for (low, share), (high, above), foot, top in zip(means, means[1:], b.levels, b.levels[1:]):
+            values = np.concatenate([above, -share]) / (top - foot)
             rows.append(([(n, 0) for n in (*high, *low)], values.tolist()))
     of_u, on_inputs, constant = system.over(system.structure.dofs.rows(rows))
     return _sums(

@@ -115,13 +115,13 @@ class Structure:
         """Its `count` slowest modes, or more; None: all."""
         if "free_vibration" in self.__dict__:
             return self.free_vibration
-        found = modes.solve(self.tied(self.initial_stiffness), self.tied(self.mass), count)
-        return found if self.basis is None else replace(found, shapes=self.basis @ found.shapes)
+        slowest = modes.solve(self.tied(self.initial_stiffness), self.tied(self.mass), count)
+        return slowest if self.basis is None else replace(slowest, shapes=self.basis @ slowest.shapes)
 
     def tied(self, k: Matrix) -> Matrix:
         """The part of a matrix over all columns that modes are made of, shape (n_free, n_free)."""
-        own = k[: self.n_free, : self.n_free]
-        return own if self.basis is None else self.basis.T @ own @ self.basis
+        free = k[: self.n_free, : self.n_free]
+        return free if self.basis is None else self.basis.T @ free @ self.basis
 
     def axial(self, u: Array) -> Array:
         """Axial forces of the members of `geometric` at displacements `u` of all columns [F]."""
@@ -162,8 +162,8 @@ class Structure:
     def framed(self, k: Matrix) -> Matrix:
         """The part of a matrix over all columns, or over the unknowns, that is theirs; zeros elsewhere."""
         (i, j, x), n = entries(k), self.n_free
-        own = (i < n) & (j < n)
-        return gathered(self.stiffness.shape, i[own], j[own], x[own])
+        inside = (i < n) & (j < n)
+        return gathered(self.stiffness.shape, i[inside], j[inside], x[inside])
 
     def member_forces(self, u: Array) -> Array:
         """All of `outputs` at displacements `u` of all columns and no velocity, shape (n_outputs,)."""
@@ -171,8 +171,8 @@ class Structure:
         if not self.corotational:
             return np.array(linear)
         at, share = self.corotational.shares([(o.element, o.quantity) for o in self.outputs])
-        found = self.corotational.actions(self.corotational.quantities(u)[None])[0]
-        forces: Array = np.array(linear) + (share * found[at, 1:]).sum(axis=1)
+        actions = self.corotational.actions(self.corotational.quantities(u)[None])[0]
+        forces: Array = np.array(linear) + (share * actions[at, 1:]).sum(axis=1)
         return forces
 
     def influence(self) -> Array:

@@ -33,7 +33,7 @@ def wide(structure: Structure) -> list[Diagnostic]:
 
     What falls may be further from the ground than it is high; no earthquake does that.
     """
-    model, out = structure.model, dict[str, Diagnostic]()
+    model, problems = structure.model, dict[str, Diagnostic]()
     if not shaken(model):
         return []
     height: dict[int | None, float] = {}
@@ -44,13 +44,13 @@ def wide(structure: Structure) -> list[Diagnostic]:
         e = model.elements[spring.element]
         high, between = max(height[e.i], height.get(e.j, 0.0)), apart(model, spring)
         if spring.gap > high > 0.0:
-            found = _beyond(model, e, high)
+            problem = _beyond(model, e, high)
         elif high and 0.0 < WIDEST * between < spring.gap:
-            found = _between(model, e, between)
+            problem = _between(model, e, between)
         else:
             continue
-        out.setdefault(e.prop, found)
-    return list(out.values())
+        problems.setdefault(e.prop, problem)
+    return list(problems.values())
 
 
 def _beyond(model: Model, e: Element, high: float) -> Diagnostic:
@@ -75,7 +75,7 @@ def _between(model: Model, e: Element, between: float) -> Diagnostic:
 
 def misplaced(structure: Structure) -> list[Diagnostic]:
     """Contacts between nodes of one floor, or with I and J exchanged."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     floors, columns = _floors(model), _columns(model)
     collide = [s for s in structure.laws if s.role.collides and apart(model, s) > 0.0]
     forward = {frozenset((e.i, e.j)) for e in (model.elements[s.element] for s in collide)}
@@ -84,14 +84,14 @@ def misplaced(structure: Structure) -> list[Diagnostic]:
         if spring.role.collides and e.j is not None:
             within = floors[e.i] == floors[e.j] and abs(_way(spring)[0]) > ALONG
             twin = frozenset((e.i, e.j)) in forward
-            out += [_within(e)] if within else _backwards(model, spring, e, twin)
-            out += _misaligned(model, columns, spring, e)
-    return out
+            problems += [_within(e)] if within else _backwards(model, spring, e, twin)
+            problems += _misaligned(model, columns, spring, e)
+    return problems
 
 
 def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
     """Contacts of the same nodes, direction and gap: those of two bodies of one property set."""
-    model, first, out = structure.model, dict[tuple[object, ...], Element](), list[Diagnostic]()
+    model, first, problems = structure.model, dict[tuple[object, ...], Element](), list[Diagnostic]()
     for spring in (s for s in structure.laws if s.role.collides):
         e, angle = model.elements[spring.element], round(spring.facts["angle"], 6) % 360.0
         kind = "" if e.j is None else e.prop  # of two bodies, others may be side by side
@@ -100,8 +100,8 @@ def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
             both = f"contacts {other.name or other.id} and {e.name or e.id}"
             message = f"{both} are the same: they close at {angle:g} degrees together"
             hint = "give one ANGLE=180 if it is that of the other side, or take it out"
-            out.append(Diagnostic("P354", message, e.span, hint, "warning"))
-    return out
+            problems.append(Diagnostic("P354", message, e.span, hint, "warning"))
+    return problems
 
 
 def idle(structure: Structure) -> list[Diagnostic]:
@@ -122,10 +122,10 @@ def idle(structure: Structure) -> list[Diagnostic]:
 
 def _columns(model: Model) -> dict[float, list[Node]]:
     """Nodes above each other, by their x."""
-    out = defaultdict[float, list[Node]](list)
+    columns = defaultdict[float, list[Node]](list)
     for n in model.nodes.values():
-        out[n.x].append(n)
-    return out
+        columns[n.x].append(n)
+    return columns
 
 
 def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -> tuple[int, int] | None:
@@ -133,11 +133,11 @@ def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -
     end: it is the node of a floor which meets the other one.
     """
     nodes = model.nodes
-    for own, other in ((e.i, e.j), (e.j, e.i)) if e.j is not None else ():
-        assert own is not None and other is not None
-        rise = abs(nodes[own].y - nodes[other].y)
+    for one, other in ((e.i, e.j), (e.j, e.i)) if e.j is not None else ():
+        assert one is not None and other is not None
+        rise = abs(nodes[one].y - nodes[other].y)
         for n in columns[nodes[other].x] if rise else ():
-            if abs(n.y - nodes[own].y) < LEVEL * rise:
+            if abs(n.y - nodes[one].y) < LEVEL * rise:
                 return n.id, other
     return None
 
@@ -159,9 +159,9 @@ def _misaligned(
         )
         yield Diagnostic("P368", message, e.span, "give it ANGLE=0, or leave ANGLE out", "warning")
     elif across and (sloping or abs(_way(spring)[1]) <= ALONG):
-        found, angle = _beside(model, columns, e), spring.facts["angle"]
-        if found:
-            n, other = found
+        beside, angle = _beside(model, columns, e), spring.facts["angle"]
+        if beside:
+            n, other = beside
             message = (
                 f"contact {e.name or e.id} joins node {e.i} at y = {i.y:g} with node {e.j} at y = {j.y:g}, "
                 f"but node {n} faces it"
@@ -207,8 +207,8 @@ def apart(model: Model, spring: LawSpring) -> float:
     """Distance of the nodes of a contact along it [L]; negative where J is behind I, 0 to a wall."""
     e, (c, s) = model.elements[spring.element], _way(spring)
     i, j = model.nodes[e.i], model.nodes[e.i if e.j is None else e.j]
-    found = (j.x - i.x) * c + (j.y - i.y) * s
-    return found if abs(found) > SAME * math.hypot(j.x - i.x, j.y - i.y) else 0.0
+    distance = (j.x - i.x) * c + (j.y - i.y) * s
+    return distance if abs(distance) > SAME * math.hypot(j.x - i.x, j.y - i.y) else 0.0
 
 
 def _backwards(model: Model, spring: LawSpring, e: Element, twin: bool) -> Iterator[Diagnostic]:

@@ -13,7 +13,7 @@ def doubtful_drifts(structure: Structure) -> list[Diagnostic]:
     Those with a HEIGHT of their own may be the distance of two buildings, and so may those of nodes at one
     height.
     """
-    nodes, out = structure.model.nodes, list[Diagnostic]()
+    nodes, problems = structure.model.nodes, list[Diagnostic]()
     of = {n: b.name for b in buildings(structure) for n in b.nodes}
     for card in structure.model.drifts:
         i, j = card["I"], card["J"]
@@ -28,5 +28,5 @@ def doubtful_drifts(structure: Structure) -> list[Diagnostic]:
             hint = "exchange I and J: the lower node comes first"
         else:
             continue
-        out.append(Diagnostic("P367", message, card.place("J"), hint, "warning"))
-    return out
+        problems.append(Diagnostic("P367", message, card.place("J"), hint, "warning"))
+    return problems

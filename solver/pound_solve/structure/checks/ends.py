@@ -19,10 +19,10 @@ SAME_PLACE = 1e-6  #: share of the size of a structure by which nodes at one pla
 def loose_ends(structure: Structure) -> list[Diagnostic]:
     """Ends of members that hang free, or lie beside the node that they should end at: one for each line."""
     ends = Ends(structure.model)
-    found: dict[Span, Diagnostic] = {}
+    problems: dict[Span, Diagnostic] = {}
     for n, d in (*_apart(ends), *_feet(ends)):
-        found.setdefault(structure.model.nodes[n].span, d)
-    return list(found.values())
+        problems.setdefault(structure.model.nodes[n].span, d)
+    return list(problems.values())
 
 
 class Ends:
@@ -89,10 +89,10 @@ def places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
     """Nodes at every place, and the number of the place of each node."""
     x, y = np.array([(n.x, n.y) for n in model.nodes.values()]).T
     unit = SAME_PLACE * max(np.ptp(x), np.ptp(y)) or 1.0
-    found: dict[tuple[float, float], list[int]] = defaultdict(list)
+    by_place: dict[tuple[float, float], list[int]] = defaultdict(list)
     for n, a, b in zip(model.nodes, np.round(x / unit).tolist(), np.round(y / unit).tolist()):
-        found[a, b].append(n)
-    groups = list(found.values())
+        by_place[a, b].append(n)
+    groups = list(by_place.values())
     return groups, {n: i for i, group in enumerate(groups) for n in group}
 
 

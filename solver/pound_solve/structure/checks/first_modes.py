@@ -29,7 +29,7 @@ RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may 
 
 def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings whose first mode is damped beyond sense, or not at all under an earthquake."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
     for b, part in found:
         if not part.period:
@@ -43,52 +43,52 @@ def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> l
                 f"DAMPING gives the first mode of {b.name!r} {_percent(by_cards)} of critical: 5 % is usual"
             )
             hint = "XI is a share; ALPHA [1/T] and BETA [T] are factors of M and K, not shares"
-            out.append(Diagnostic("P373", message, place.span, hint, "warning"))
+            problems.append(Diagnostic("P373", message, place.span, hint, "warning"))
         elif dashpots and own > MOST_ADDED:
             message = (
                 f"dashpots give the first mode of {b.name!r} {_percent(own)} of critical: it does not swing"
             )
             hint = f"coefficients are in {model.units.text('F*T/L')}"
-            out.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
+            problems.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
         elif dashpots and 0.0 < own < LEAST_ADDED:
             message = f"dashpots give the first mode of {b.name!r} no more than {_percent(own)} of critical"
             hint = f"coefficients are in {model.units.text('F*T/L')}"
-            out.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
+            problems.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
         elif not whole and not model.damping and any(c.spec.name in RECORDS for c in model.equake):
             message = f"nothing damps the first mode of {b.name!r}"
             hint = "add DAMPING, such as RAYLEIGH XI=0.05 MODES=1,3; XI=0 says that none is meant"
-            out.append(Diagnostic("P373", message, model.nodes[b.feet[0]].span, hint, "warning"))
-    return out
+            problems.append(Diagnostic("P373", message, model.nodes[b.feet[0]].span, hint, "warning"))
+    return problems
 
 
 def frequencies_in_hertz(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Circular frequencies of DAMPING below the first one of every building that they may mean."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
-        given, nodes = card.values.get("OMEGA"), card.values.get("NODES")
-        own = [part for b, part in found if not nodes or set(nodes) & set(b.nodes)]
-        periods = [t for part in own if (t := part.period)]
-        if not given or not periods:
+        omega, nodes = card.values.get("OMEGA"), card.values.get("NODES")
+        chosen = [part for b, part in found if not nodes or set(nodes) & set(b.nodes)]
+        periods = [t for part in chosen if (t := part.period)]
+        if not omega or not periods:
             continue
         first = 2.0 * math.pi / max(periods)
-        if max(given) < LOWEST * first:
-            written = ",".join(f"{w:g}" for w in given)
+        if max(omega) < LOWEST * first:
+            written = ",".join(f"{w:g}" for w in omega)
             message = f"OMEGA={written} is below the first mode, about {first:.3g} rad/{model.units.time}"
             hint = "OMEGA are circular frequencies: 2 pi times those in 1/s"
-            out.append(Diagnostic("P373", message, card.place("OMEGA"), hint, "warning"))
-    return out
+            problems.append(Diagnostic("P373", message, card.place("OMEGA"), hint, "warning"))
+    return problems
 
 
 def _by_dashpots(structure: Structure) -> Matrix:
     """Damping matrix of dashpots that end at two nodes; those of the soil radiate, and may add little."""
-    own = (p for e, p in structure.parts.items() if structure.model.elements[e].j is not None)
-    return structure.dofs.assembled((b.dofs, b.matrix) for p in own for b in p.damping)
+    joining = (p for e, p in structure.parts.items() if structure.model.elements[e].j is not None)
+    return structure.dofs.assembled((b.dofs, b.matrix) for p in joining for b in p.damping)
 
 
 def _dashpots(model: Model, b: Building) -> Card | None:
     """Property set of a dashpot above the base of a building."""
-    own = {n for n in b.nodes if model.nodes[n].y > b.base}
-    cards = (model.props[e.prop] for e in model.elements.values() if e.j and {e.i, e.j} & own)
+    above = {n for n in b.nodes if model.nodes[n].y > b.base}
+    cards = (model.props[e.prop] for e in model.elements.values() if e.j and {e.i, e.j} & above)
     return next((card for card in cards if card.spec.name == "DASHPOT"), None)
 
 
@@ -98,14 +98,14 @@ def _percent(share: float) -> str:
 
 def _axial(model: Model) -> dict[int, float]:
     """Sum of EA/L of the members that lie, by their nodes [F/L]."""
-    out = defaultdict[int, float](float)
+    stiffness = defaultdict[int, float](float)
     for label, members in kinds(model).items():
         card = model.props[label]
         for e in members:
             if lies(model, e):
                 for n in (e.i, e.j or e.i):
-                    out[n] += card["E"] * card["A"] / length(model, e)
-    return out
+                    stiffness[n] += card["E"] * card["A"] / length(model, e)
+    return stiffness
 
 
 def contact_stiffnesses(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
@@ -113,14 +113,14 @@ def contact_stiffnesses(structure: Structure, found: Sequence[tuple[Building, Pa
     buildings, or so stiff that a collision ends before it is felt behind the face: one for each property
     set.
     """
-    model, out = structure.model, dict[str, Diagnostic]()
+    model, problems = structure.model, dict[str, Diagnostic]()
     beams = _axial(model)
     tall = dict[int, float]()
     for b, _ in found:
         tall.update(dict.fromkeys(b.nodes, max(model.nodes[n].y for n in b.nodes) - b.base))
     for s in structure.laws:
         e = model.elements[s.element]
-        if not s.role.collides or s.facts.get("k_unit") != "F/L" or e.prop in out:
+        if not s.role.collides or s.facts.get("k_unit") != "F/L" or e.prop in problems:
             continue
         m, k = s.facts["reduced_mass"], s.facts["k"]
         high = max(tall.get(e.i, 0.0), tall.get(e.j or e.i, 0.0))
@@ -139,5 +139,5 @@ def contact_stiffnesses(structure: Structure, found: Sequence[tuple[Building, Pa
         else:
             continue
         card, hint = model.props[e.prop], f"K is in {model.units.text('F/L')}"
-        out[e.prop] = Diagnostic("P369", message, card.place("K"), hint, "warning")
-    return list(out.values())
+        problems[e.prop] = Diagnostic("P369", message, card.place("K"), hint, "warning")
+    return list(problems.values())

@@ -30,12 +30,12 @@ def framing_mistakes(structure: Structure) -> list[Diagnostic]:
     model = structure.model
     if not shaken(model):
         return []
-    out = list(_coincident_frames(model))
+    problems = list(_coincident_frames(model))
     lines = Lines(model)
     for b in buildings(structure):
         if stands(model, b.nodes):
-            out += [*_without_column(lines, b), *_without_beam(lines, b), *_passing_a_floor(lines, b)]
-    return [*out, *_sloping_beams(model), *_short_columns(structure), *_inclined_dashpots(model)]
+            problems += [*_without_column(lines, b), *_without_beam(lines, b), *_passing_a_floor(lines, b)]
+    return [*problems, *_sloping_beams(model), *_short_columns(structure), *_inclined_dashpots(model)]
 
 
 def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
@@ -44,8 +44,8 @@ def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
     first: dict[int, int] = {}
     frames = [p for p in parts(model) if stands(model, p) and len({model.nodes[n].x for n in p}) > 1]
     covers = [frozenset(at[n] for n in p) for p in frames]
-    for k, (nodes, own) in enumerate(zip(frames, covers)):
-        below = next((i for i in {first.get(a, k) for a in own} if i != k and own <= covers[i]), k)
+    for k, (nodes, cover) in enumerate(zip(frames, covers)):
+        below = next((i for i in {first.get(a, k) for a in cover} if i != k and cover <= covers[i]), k)
         if below != k:
             message = (
                 f"the frame of nodes {some(nodes)} lies upon that of nodes {some(frames[below])}: each of "
@@ -53,7 +53,7 @@ def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
             )
             hint = "move it by its X under NODES, or take it out if it is given twice"
             yield _warn("P371", message, model.nodes[nodes[0]].span, hint)
-        for a in own:
+        for a in cover:
             first.setdefault(a, k)
 
 
@@ -206,8 +206,8 @@ def _short_columns(structure: Structure) -> Iterator[Diagnostic]:
         if not short:
             continue
         e, middle = min(short, key=lambda e: length(model, e)), median(length(model, e) for e in high)
-        own, unit = length(model, e), model.units.length
-        if own < SHORTEST * middle:
-            message = f"column {e.id} is {own:.3g} {unit} high, others of {label} {middle:.3g} {unit}"
+        height, unit = length(model, e), model.units.length
+        if height < SHORTEST * middle:
+            message = f"column {e.id} is {height:.3g} {unit} high, others of {label} {middle:.3g} {unit}"
             hint = f"correct the height of node {e.i} or {e.j} under NODES"
             yield _warn("P353", message, e.span, hint)

@@ -24,7 +24,7 @@ def facing(structure: Structure) -> list[Diagnostic]:
     Both have the same moment.  At their common strength only the sum of their rotations is determined, but
     where dashpots across the hinges divide it.  A PUSHOVER has no rates and so no dashpots.
     """
-    n, out = structure.n_free, list[Diagnostic]()
+    n, problems = structure.n_free, list[Diagnostic]()
     held = used_rows(structure.stiffness) | used_rows(structure.mass)
     if all(card.spec.name != "PUSHOVER" for card in structure.model.analyses):
         held |= used_rows(structure.damping)
@@ -38,8 +38,8 @@ def facing(structure: Structure) -> list[Diagnostic]:
         (one, a), (other, b) = joined
         moment = _common(one, other, -a / b)
         if moment and one.element != other.element:
-            out.append(_told(structure, column, one, other, moment))
-    return out
+            problems.append(_told(structure, column, one, other, moment))
+    return problems
 
 
 def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:

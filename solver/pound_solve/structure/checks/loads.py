@@ -55,9 +55,9 @@ def gravity_acts(model: Model) -> bool:
 
 def unloaded(structure: Structure) -> list[Diagnostic]:
     """Buildings whose members take P-Delta into account, but bear no load."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     if not model.geometry.startswith("PDELTA") or not model.analyses or gravity_acts(model):
-        return out
+        return problems
     bent = {model.elements[g.element].i for g in structure.geometric}
     loaded = {n for c in (*model.loads, *model.forces) for n in c["NODES"]}
     loaded |= {load.node for load in given(model)}
@@ -65,26 +65,26 @@ def unloaded(structure: Structure) -> list[Diagnostic]:
         card = model.props[e.prop]
         if card.values.get("N0") or (structure.self_weight and card.values.get("WGT")):
             loaded.add(e.i)
-    found = [b for b in buildings(structure) if bent & set(b.nodes)]
-    idle = [b for b in found if loaded.isdisjoint(b.nodes)]
+    affected = [b for b in buildings(structure) if bent & set(b.nodes)]
+    idle = [b for b in affected if loaded.isdisjoint(b.nodes)]
     place = next((c for c in model.analyses if c.spec.name == "STATIC"), model.analyses[0]).span
     for b in idle:
-        who = "the columns" if len(idle) == len(found) else f"the columns of {b.name!r}"
+        who = "the columns" if len(idle) == len(affected) else f"the columns of {b.name!r}"
         message = f"GEOMETRY {model.geometry}, but nothing loads {who}: their axial forces are zero"
         hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS"
-        out.append(Diagnostic("P340", message, place, hint, "warning"))
-        if len(idle) == len(found):
+        problems.append(Diagnostic("P340", message, place, hint, "warning"))
+        if len(idle) == len(affected):
             break
-    return out + [d for b in found if b not in idle for d in _lightly_loaded(structure, b)]
+    return problems + [d for b in affected if b not in idle for d in _lightly_loaded(structure, b)]
 
 
 def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
     """Loads of a building that are a small part of its weight, so that P-Delta has hardly an effect."""
     model = structure.model
-    own, weight = set(b.nodes), b.mass * model.gravity
-    loads = [load for load in given(model) if load.node in own]
+    inside, weight = set(b.nodes), b.mass * model.gravity
+    loads = [load for load in given(model) if load.node in inside]
     press = -sum(load.y for load in loads)
-    for e in (e for members in kinds(model).values() for e in members if e.i in own):
+    for e in (e for members in kinds(model).values() for e in members if e.i in inside):
         press += structure.self_weight * model.props[e.prop]["WGT"] * length(model, e)
     if not 0.0 <= press < PART * weight or not shaken(model) or any(load.y > 0.0 for load in loads):
         return []
@@ -98,17 +98,17 @@ def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
 
 def misloaded(structure: Structure) -> list[Diagnostic]:
     """Buildings whose loads contradict their weight: the first contradiction of each."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     if not shaken(model):
-        return out
+        return problems
     loads = defaultdict[int, list[Load]](list)
     for load in given(model):
         loads[load.node].append(load)
     for b in buildings(structure):
-        own = [load for n in b.nodes for load in loads[n]]
-        if own and b.mass and stands(model, b.nodes):
-            out += next(filter(None, (look(structure, b, own) for look in LOOKS)), [])
-    return out
+        acting = [load for n in b.nodes for load in loads[n]]
+        if acting and b.mass and stands(model, b.nodes):
+            problems += next(filter(None, (look(structure, b, acting) for look in LOOKS)), [])
+    return problems
 
 
 def _lifted(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:

@@ -28,27 +28,27 @@ def massless(structure: Structure) -> list[Diagnostic]:
         return [Diagnostic("P347", "nothing has mass, so that nothing swings", asked.span, cure, "warning")]
     names = {n: card.label for card in model.buildings for n in card["NODES"]}
     free = {owner for owner, _ in structure.dofs.free}
-    out = []
+    problems = []
     for nodes in parts(model):
         if heavy.isdisjoint(nodes) and not free.isdisjoint(nodes) and stands(model, nodes):
             name = next((names[n] for n in nodes if n in names), "")
             who = repr(name) if name else f"the building of nodes {some(nodes)}"
             message = f"{who} has no mass, so that the ground does not shake it"
-            out.append(Diagnostic("P347", message, model.nodes[nodes[0]].span, cure, "warning"))
-    return out
+            problems.append(Diagnostic("P347", message, model.nodes[nodes[0]].span, cure, "warning"))
+    return problems
 
 
 def roof_without_mass(structure: Structure) -> list[Diagnostic]:
     """Buildings whose highest beams end at nodes without mass, while others end at nodes with mass."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     group, at = places(model)
     own_mass = {n for (n, d), mass in structure.nodal_mass.items() if d == 0 and mass > 0.0}
     heavy = {n for m in own_mass for n in group[at[m]]}  # a joint may lie between a beam and its mass
     beams = [e for members in kinds(model).values() for e in members if lies(model, e)]
     for b in buildings(structure) if "X" in shaken(model) else ():
-        own, levels = set(b.nodes), defaultdict[float, set[int]](set)
+        inside, levels = set(b.nodes), defaultdict[float, set[int]](set)
         for e in beams:
-            if e.i in own and model.nodes[e.i].y > b.base:
+            if e.i in inside and model.nodes[e.i].y > b.base:
                 levels[model.nodes[e.i].y].update((e.i, e.j or e.i))
         highest = levels.pop(max(levels)) if levels else set()
         masters = {m for n in highest for m in model.nodes[n].slaved.values()}
@@ -57,13 +57,13 @@ def roof_without_mass(structure: Structure) -> list[Diagnostic]:
                 f"the highest beams of {b.name!r} have no mass at their nodes, {some(sorted(highest))}"
             )
             cure, place = "give the nodes of each floor WEIGHTS", model.nodes[min(highest)].span
-            out.append(Diagnostic("P347", message, place, cure, "warning"))
-    return out
+            problems.append(Diagnostic("P347", message, place, cure, "warning"))
+    return problems
 
 
 def immovable(structure: Structure) -> list[Diagnostic]:
     """Weights above the base of a building at nodes that are fixed along x alone, where others move."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     moved = {owner for owner, _ in structure.dofs.moved}
     swings = {n for n, d in structure.dofs.free if d == 0 and structure.nodal_mass.get((n, d))}
     held: dict[int, str] = {}
@@ -73,16 +73,16 @@ def immovable(structure: Structure) -> list[Diagnostic]:
             stuck = (n.id for n in above if "X" in n.fixed and "Y" not in n.fixed and n.y > b.base)
             held.update(dict.fromkeys(stuck, b.name))
     for card in model.weights:
-        found = [n for n in dict.fromkeys(card["NODES"]) if n in held]
-        if found and card["WX"]:
+        fixed = [n for n in dict.fromkeys(card["NODES"]) if n in held]
+        if fixed and card["WX"]:
             who = (
-                f"nodes {some(found)} are"
-                if len(found) > 1
-                else f"node {found[0]} of {held[found[0]]!r} is"
+                f"nodes {some(fixed)} are"
+                if len(fixed) > 1
+                else f"node {fixed[0]} of {held[fixed[0]]!r} is"
             )
             message = (
                 f"{who} fixed along X above the base: the weight does not swing, and the floor is held"
             )
             place, hint = card.place("NODES"), "take X out of FIX under NODES"
-            out.append(Diagnostic("P343", message, place, hint, "warning"))
-    return out
+            problems.append(Diagnostic("P343", message, place, hint, "warning"))
+    return problems

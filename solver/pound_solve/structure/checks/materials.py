@@ -28,16 +28,16 @@ def impossible_materials(structure: Structure) -> list[Diagnostic]:
     if not newton or not metre:
         return []
     pascal, by_volume = newton * metre**2, newton * metre**3
-    out = []
+    flaws = []
     for label, members in kinds(model).items():
-        out += [
+        flaws += [
             *_soft(model, model.props[label], pascal),
             *_heavy(model, label, members, newton * metre, metre**2),
         ]
     for card in model.props.values():
         if card.spec.name == "FOUNDATION":
-            out += _soil(model, card, {"G": pascal, "WGT": by_volume, "B": 1.0 / metre, "L": 1.0 / metre})
-    return out
+            flaws += _soil(model, card, {"G": pascal, "WGT": by_volume, "B": 1.0 / metre, "L": 1.0 / metre})
+    return flaws
 
 
 def _soft(model: Model, card: Card, pascal: float) -> Iterator[Diagnostic]:

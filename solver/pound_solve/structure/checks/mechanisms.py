@@ -30,12 +30,12 @@ FASTEST: Final = 1000.0
 
 def loose(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings of members whose nodes can move although their base is held, as with too many pins."""
-    out = list[Diagnostic]()
+    problems = list[Diagnostic]()
     for b, part in found:
         slack = part.slack()
         bent = [m for m in slack[:, ~_allowed(structure, slack)].T if not _rigid(structure, b, m)]
-        out += [_mechanism(structure, b, motion) for motion in bent[:1]]
-    return out
+        problems += [_mechanism(structure, b, motion) for motion in bent[:1]]
+    return problems
 
 
 def untimely(
@@ -81,7 +81,7 @@ def hasty(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[
     """Histories of fewer than `FEWEST` steps in the first period of every building, and rows further apart
     than that period.
     """
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     longest, unit = max((part.period for _, part in found), default=0.0), model.units.time
     for card in (c for c in model.analyses if c.spec.name == "HISTORY" and longest):
         first = f"a motion whose first period is about {longest:.2g} {unit}"
@@ -89,24 +89,24 @@ def hasty(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[
         if dt is not None and longest < FEWEST * dt:
             message = f"steps of DT={dt:g} {unit} do not follow {first}"
             hint = f"DT is a time in {unit}: a hundredth of the first period is usual"
-            out.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
+            problems.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
         if every is not None and longest < every < card["T"]:
             message = f"rows every {every:g} {unit} do not show {first}"
             hint = f"EVERY is a time in {unit}; peaks are found between the rows, too"
-            out.append(Diagnostic("P365", message, model.output.place("EVERY"), hint, "warning"))
-    return out
+            problems.append(Diagnostic("P365", message, model.output.place("EVERY"), hint, "warning"))
+    return problems
 
 
 def standing(structure: Structure) -> list[tuple[Building, Part]]:
     """The buildings of some height that the ground shakes along x, if computing does not fail them."""
-    model, out = structure.model, list[tuple[Building, Part]]()
+    model, pairs = structure.model, list[tuple[Building, Part]]()
     if "X" not in shaken(model):
-        return out
-    found = [b for b in buildings(structure) if stands(model, b.nodes)]
-    for b, columns in zip(found, columns_of(model, structure.dofs.free, [b.nodes for b in found])):
+        return pairs
+    tall = [b for b in buildings(structure) if stands(model, b.nodes)]
+    for b, columns in zip(tall, columns_of(model, structure.dofs.free, [b.nodes for b in tall])):
         if part := _part(structure, columns):
-            out.append((b, part))
-    return out
+            pairs.append((b, part))
+    return pairs
 
 
 def _part(structure: Structure, columns: Index) -> Part | None:
@@ -127,17 +127,17 @@ class Part:
         k = structure.initial_stiffness[: structure.n_free, : structure.n_free]
         shifts = np.array([structure.dofs.free[c][1] < 2 for c in columns.tolist()], bool)
         self.columns = columns[shifts | used_rows(k[columns][:, columns])]
-        own = k[self.columns][:, self.columns]
-        self.structure, self.factors = structure, modes.scaling(own)
-        self.held = modes.Held(scaled(own, self.factors))
+        stiffness = k[self.columns][:, self.columns]
+        self.structure, self.factors = structure, modes.scaling(stiffness)
+        self.held = modes.Held(scaled(stiffness, self.factors))
 
     def slack(self) -> Array:
         """Motions that it does not resist, shape (n, n_slack), over all columns."""
-        found = self.held.slack.copy()
-        found[abs(found) < ROUNDING] = 0.0  # else what is left of rounding counts as a deformation
-        out = np.zeros((self.structure.dofs.size, found.shape[1]))
-        out[self.columns] = self.factors[:, None] * found
-        return out
+        slack = self.held.slack.copy()
+        slack[abs(slack) < ROUNDING] = 0.0  # else what is left of rounding counts as a deformation
+        motions = np.zeros((self.structure.dofs.size, slack.shape[1]))
+        motions[self.columns] = self.factors[:, None] * slack
+        return motions
 
     @cached_property
     def period(self) -> float:
@@ -190,9 +190,9 @@ def _rigid(structure: Structure, b: Building, motion: Array) -> bool:
     x, y = np.array([(structure.model.nodes[n].x, structure.model.nodes[n].y) for n in b.nodes]).T
     one, none = np.ones(len(x)), np.zeros(len(x))
     body = np.column_stack([np.append(one, none), np.append(none, one), np.append(-y, x)])
-    found = structure.dofs.matrix([(n, d) for d in range(2) for n in b.nodes]) @ motion
-    left = found - body @ np.linalg.lstsq(body, found, rcond=None)[0]
-    return bool(abs(left).max() <= SAME * abs(found).max())
+    moved = structure.dofs.matrix([(n, d) for d in range(2) for n in b.nodes]) @ motion
+    left = moved - body @ np.linalg.lstsq(body, moved, rcond=None)[0]
+    return bool(abs(left).max() <= SAME * abs(moved).max())
 
 
 def _mechanism(structure: Structure, b: Building, motion: Array) -> Diagnostic:

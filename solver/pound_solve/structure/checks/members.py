@@ -58,7 +58,7 @@ def lies(model: Model, e: Element) -> bool:
 
 def misshapen(structure: Structure) -> list[Diagnostic]:
     """Sections and members of impossible proportions, once for each property set."""
-    model, out = structure.model, dict[str, Diagnostic]()
+    model, problems = structure.model, dict[str, Diagnostic]()
     sizes = _sizes(model)
     for label, members in kinds(model).items():
         card = model.props[label]
@@ -67,13 +67,13 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
         h, short = depth(card), min(members, key=lambda e: length(model, e))
         size, long = sizes[short.i], length(model, short)
         if h > size and (h > DEEPEST * long or _exchanged(card, long, h / size)):
-            out[label] = _too_deep(model, card, short, h)
+            problems[label] = _too_deep(model, card, short, h)
             continue
-        found = _area_in_smaller_units(model, card, members, size**2)
-        found = found or _too_thin(model, card, short, h, size**2) or _too_long(model, card, members, h)
-        if found:
-            out[label] = found
-    return list(out.values())
+        problem = _area_in_smaller_units(model, card, members, size**2)
+        problem = problem or _too_thin(model, card, short, h, size**2) or _too_long(model, card, members, h)
+        if problem:
+            problems[label] = problem
+    return list(problems.values())
 
 
 def _exchanged(card: Card, long: float, beyond: float) -> bool:
@@ -85,20 +85,20 @@ def _exchanged(card: Card, long: float, beyond: float) -> bool:
 
 def kinds(model: Model) -> dict[str, list[Element]]:
     """Members by their property sets."""
-    out: dict[str, list[Element]] = defaultdict(list)
+    by_set: dict[str, list[Element]] = defaultdict(list)
     for e in model.elements.values():
         if model.props[e.prop].spec.name in MEMBERS and e.j is not None:
-            out[e.prop].append(e)
-    return out
+            by_set[e.prop].append(e)
+    return by_set
 
 
 def _sizes(model: Model) -> dict[int, float]:
     """The larger of height and width of the part that every node belongs to [L]."""
-    out: dict[int, float] = {}
+    sizes: dict[int, float] = {}
     for nodes in parts(model):
         x, y = [model.nodes[n].x for n in nodes], [model.nodes[n].y for n in nodes]
-        out.update(dict.fromkeys(nodes, max(max(x) - min(x), max(y) - min(y))))
-    return out
+        sizes.update(dict.fromkeys(nodes, max(max(x) - min(x), max(y) - min(y))))
+    return sizes
 
 
 def _too_deep(model: Model, card: Card, e: Element, h: float) -> Diagnostic:
@@ -167,7 +167,7 @@ def doubled(structure: Structure) -> list[Diagnostic]:
     """Members between the same two nodes, but those of a set whose members all stand beside others, as the
     jackets of columns do.
     """
-    out, sets = list[Diagnostic](), kinds(structure.model)
+    problems, sets = list[Diagnostic](), kinds(structure.model)
     at = defaultdict[frozenset[int | None], list[Element]](list)
     for members in sets.values():
         for e in members:
@@ -180,8 +180,8 @@ def doubled(structure: Structure) -> list[Diagnostic]:
                 of = f" of {e.prop}" if e.prop == first.prop else f", {first.prop} and {e.prop},"
                 message = f"members {first.id} and {e.id}{of} join the same nodes, {e.i} and {e.j}"
                 hint = "take one out, or correct an end, unless two members stand side by side"
-                out.append(Diagnostic("P354", message, e.span, hint, "warning"))
-    return out
+                problems.append(Diagnostic("P354", message, e.span, hint, "warning"))
+    return problems
 
 
 def misjudged(structure: Structure) -> list[Diagnostic]:
@@ -190,10 +190,10 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
 
     Such ones may be rigid until they yield, so that neither a small strain nor a large ductility is told.
     """
-    model, out = structure.model, dict[str, Diagnostic]()
+    model, problems = structure.model, dict[str, Diagnostic]()
     for label, members in kinds(model).items():
         for d in _long_hinges(model, label, members):
-            out[label] = d
+            problems[label] = d
     for spring in structure.laws:
         element = model.elements[spring.element]
         card = model.props[element.prop]
@@ -202,14 +202,14 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
             continue
         assert spring.strengths is not None
         if card.spec.name not in MEMBERS or card.values.get("KH") is not None:
-            found = list(_rotation(model, card, spring))
+            new = list(_rotation(model, card, spring))
         elif card["I"]:
-            found = [*_strain(model, card, element, spring.strengths), *_ductility(card)]
+            new = [*_strain(model, card, element, spring.strengths), *_ductility(card)]
         else:
             continue
-        for d in found:
-            out.setdefault(card.label, d)
-    return list(out.values())
+        for d in new:
+            problems.setdefault(card.label, d)
+    return list(problems.values())
 
 
 def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[Diagnostic]:

@@ -28,15 +28,15 @@ ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is 
 
 def adrift(structure: Structure) -> list[Diagnostic]:
     """Directions in which nothing joins the structure, or one of its buildings, to the shaken ground."""
-    out = []
+    problems = []
     for way, card in shaken(structure.model).items():
         d = DIRECTIONS.index(way)
         shift = _shift(structure, d)
         if shift @ structure.ground[d] > 0.0 and not resisted(structure, shift[:, None]).any():
             message = f"nothing ties the structure to the ground along {way}: it stays behind as one body"
             hint = f"fix {way} of its base under NODES, or join it to the ground by an element"
-            out.append(Diagnostic("P337", message, card.span, hint, "warning"))
-    return out or _unsupported(structure)
+            problems.append(Diagnostic("P337", message, card.span, hint, "warning"))
+    return problems or _unsupported(structure)
 
 
 def shaken(model: Model) -> dict[str, Card]:
@@ -45,8 +45,8 @@ def shaken(model: Model) -> dict[str, Card]:
     """
     if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
         return {}
-    found = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
-    return {direction: found[direction] for direction in sorted(found.keys() - {"R"})}
+    by_direction = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
+    return {direction: by_direction[direction] for direction in sorted(by_direction.keys() - {"R"})}
 
 
 def _unsupported(structure: Structure) -> list[Diagnostic]:
@@ -55,16 +55,16 @@ def _unsupported(structure: Structure) -> list[Diagnostic]:
     A body without height, such as a ball or a bar between walls, may be meant to fly.
     """
     directions = [DIRECTIONS.index(d) for d in shaken(structure.model)]
-    out = []
+    problems = []
     for b in buildings(structure) if directions else ():
         if stands(structure.model, b.nodes) and (free := _free_motion(structure, b, directions)):
-            own = structure.model.nodes
-            base = min(own[n].y for n in b.nodes)
-            lowest = [n for n in b.nodes if own[n].y == base]
+            nodes = structure.model.nodes
+            base = min(nodes[n].y for n in b.nodes)
+            lowest = [n for n in b.nodes if nodes[n].y == base]
             message = f"nothing keeps {b.name!r} from {free} as one body"
             hint = f"fix its base ({some(lowest)}) under NODES, or join it to the ground by an element"
-            out.append(Diagnostic("P337", message, own[lowest[0]].span, hint, "warning"))
-    return out
+            problems.append(Diagnostic("P337", message, nodes[lowest[0]].span, hint, "warning"))
+    return problems
 
 
 def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -> str:
@@ -110,7 +110,7 @@ def some(nodes: Sequence[int], most: int = 6) -> str:
 
 def unmoved_feet(structure: Structure) -> list[Diagnostic]:
     """Feet of buildings that stand still while SUPPORTS move other feet of the same building."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     cards = [c for c in model.equake if c["SUPPORTS"] is not None and c["DIRECTION"] != "Y"]
     moved = {n for c in cards for n in c["SUPPORTS"]}
     for b in buildings(structure) if moved else ():
@@ -118,8 +118,8 @@ def unmoved_feet(structure: Structure) -> list[Diagnostic]:
         if still and not moved.isdisjoint(b.feet):
             message = f"no motion has node {some(still)} of {b.name!r} among its SUPPORTS: it stands still"
             hint = "name all feet of the building, or leave SUPPORTS out, which moves the whole base"
-            out.append(Diagnostic("P372", message, cards[0].place("SUPPORTS"), hint, "warning"))
-    return out
+            problems.append(Diagnostic("P372", message, cards[0].place("SUPPORTS"), hint, "warning"))
+    return problems
 
 
 def _shift(structure: Structure, d: int) -> Array:
@@ -138,14 +138,14 @@ def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Ar
         By node: along x and y, and the turn.
     """
     columns = [*structure.dofs.free, *structure.dofs.moved]
-    out = np.zeros((len(columns), count))
+    moved = np.zeros((len(columns), count))
     beams = {e.id: e for members in kinds(structure.model).values() for e in members}
-    for row, (owner, d) in zip(out, columns):
+    for row, (owner, d) in zip(moved, columns):
         if d < 3:
             row[:] = motions[owner][d] if owner in motions else 0.0
         elif (e := beams.get(owner)) is not None and e.i in motions and e.j is not None:
             row[:] = _inside(structure.model, e, e.j, d, motions)
-    return out
+    return moved
 
 
 def _inside(model: Model, e: Element, j: int, d: int, motions: Mapping[int, Array]) -> Array:
@@ -174,16 +174,16 @@ def resisted(structure: Structure, motions: Array, touching: bool = False) -> Ar
     dofs, laws = structure.dofs, structure.laws
     apart = {s.element for s in laws if touching and s.role.collides and s.gap > 0.0}
     ties = np.array([i for i, s in enumerate(laws) if s.element not in apart], np.int64)
-    out = []
+    resistances = []
     for a in (
         structure.displaced(np.zeros(structure.n_free)).initial_stiffness,
         structure.law_rows[ties],
         *(b.matrix @ dofs.matrix(b.dofs) for p in structure.parts.values() for b in p.damping),
     ):
-        found = np.asarray(a @ motions)
+        resistance = np.asarray(a @ motions)
         noise = (
             ROUNDING**2 * abs(a).max() * abs(motions).max() if 0 not in (*a.shape, motions.size) else 0.0
         )
-        found[abs(found) <= ROUNDING * (abs(a) @ abs(motions)) + noise] = 0.0
-        out.append(found)
-    return np.concatenate(out)
+        resistance[abs(resistance) <= ROUNDING * (abs(a) @ abs(motions)) + noise] = 0.0
+        resistances.append(resistance)
+    return np.concatenate(resistances)

@@ -86,10 +86,10 @@ def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> floa
     """Weight of the members whose E is that of concrete or steel and whose section is usual [N]; 0 where
     the deck gives weights of members.
     """
-    own, total = frozenset(b.nodes), 0.0
+    inside, total = frozenset(b.nodes), 0.0
     for e in model.elements.values():
         card = model.props[e.prop]
-        if e.i not in own or e.j not in own or card.spec.name not in MEMBERS:
+        if e.i not in inside or e.j not in inside or card.spec.name not in MEMBERS:
             continue
         if card["WGT"]:
             return 0.0
@@ -113,21 +113,21 @@ def _strain(model: Model, b: Building, weight: float) -> float:
 
 def _lowest(model: Model, b: Building) -> list[Element]:
     """Elements between the base of a building, or the ground, and what is above."""
-    own = frozenset(b.nodes)
+    inside = frozenset(b.nodes)
     top = b.base + SAME_LEVEL * (max(model.nodes[n].y for n in b.nodes) - b.base)
-    out = []
+    lowest = []
     for e in model.elements.values():
-        if e.i not in own or model.props[e.prop].spec.name == "CONTACT":
+        if e.i not in inside or model.props[e.prop].spec.name == "CONTACT":
             continue
         low = e.j is None or model.nodes[e.j].y <= top
         if low != (model.nodes[e.i].y <= top):
-            out.append(e)
-    return out
+            lowest.append(e)
+    return lowest
 
 
 def misarmed(structure: Structure) -> list[Diagnostic]:
     """Buildings on springs whose strength together is beyond sense beside the weight on them."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     along = {s.element: s for s in structure.laws if s.component == "X" and s.strengths is not None}
     for b in _standing(structure):
         lowest = _lowest(model, b)
@@ -143,13 +143,13 @@ def misarmed(structure: Structure) -> list[Diagnostic]:
                 f"{strength / weight:.2g} of its weight: {'0.02 is little' if few else '1 is much'}"
             )
             hint = f"FX and WEIGHTS are in {unit}; without FX and RULE a spring does not yield"
-            out.append(Diagnostic("P363", message, card.place("FX"), hint, "warning"))
-    return out
+            problems.append(Diagnostic("P363", message, card.place("FX"), hint, "warning"))
+    return problems
 
 
 def far(structure: Structure) -> list[Diagnostic]:
     """Springs weaker than the weight that yield at a deformation beyond the height of their building."""
-    model, out = structure.model, dict[str, Diagnostic]()
+    model, problems = structure.model, dict[str, Diagnostic]()
     high = {n: b for b in _standing(structure) for n in b.nodes}
     for s in structure.laws:
         e = model.elements[s.element]
@@ -171,8 +171,8 @@ def far(structure: Structure) -> list[Diagnostic]:
             )
             item = f"F{s.component}" if card.values.get(f"F{s.component}") is not None else "RULE"
             hint = f"stiffnesses are in {model.units.text('F/L')}, strengths in {model.units.force}"
-            out.setdefault(e.prop, Diagnostic("P363", message, card.place(item), hint, "warning"))
-    return list(out.values())
+            problems.setdefault(e.prop, Diagnostic("P363", message, card.place(item), hint, "warning"))
+    return list(problems.values())
 
 
 def _standing(structure: Structure) -> Iterator[Building]:

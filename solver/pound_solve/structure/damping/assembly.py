@@ -88,15 +88,15 @@ def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group |
 
 def _matrices(structure: Structure, group: Group) -> list[Matrix]:
     """Damping matrices of a group over all columns; its dashpots beside laws are not among them."""
-    out = []
+    matrices = []
     if group.relative is not None:
         n = structure.n_free
-        out.append(structure.framed(group.relative))
+        matrices.append(structure.framed(group.relative))
         if len(structure.dofs.moved):
-            out.append(_at_supports(structure, group.relative[:n, :n]))
+            matrices.append(_at_supports(structure, group.relative[:n, :n]))
     if group.proportional is not None:
-        out.append(between_nodes(structure, group.proportional))
-    return out
+        matrices.append(between_nodes(structure, group.proportional))
+    return matrices
 
 
 def between_nodes(structure: Structure, damping: Proportional) -> Matrix:
@@ -126,11 +126,11 @@ def _at_supports(structure: Structure, c: Matrix) -> Matrix:
     """
     n, influence = structure.n_free, structure.influence()
     pull = c @ influence
-    out = []
+    corners = []
     for corner, i, j in ((-pull, 0, n), (-pull.T, n, 0), (influence.T @ pull, n, n)):
         rows, columns, values = entries(np.asarray(corner))
-        out.append((rows + i, columns + j, values))
-    return gathered(structure.stiffness.shape, *(np.concatenate(part) for part in zip(*out)))
+        corners.append((rows + i, columns + j, values))
+    return gathered(structure.stiffness.shape, *(np.concatenate(part) for part in zip(*corners)))
 
 
 @dataclass(frozen=True)
@@ -192,7 +192,7 @@ class _Sources:
                 f"{label(others[0])} is connected to these nodes: only a whole building has modes", "NODES"
             )
         at = np.flatnonzero(inside)
-        own = modes.solve(k[np.ix_(at, at)], m[np.ix_(at, at)], count)
-        shapes = np.zeros((n, len(own.omega)))
-        shapes[inside] = own.shapes
-        return modes.Modes(own.omega, shapes)
+        vibration = modes.solve(k[np.ix_(at, at)], m[np.ix_(at, at)], count)
+        shapes = np.zeros((n, len(vibration.omega)))
+        shapes[inside] = vibration.shapes
+        return modes.Modes(vibration.omega, shapes)

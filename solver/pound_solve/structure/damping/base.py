@@ -58,10 +58,10 @@ class DampingContext:
         DampingError
             Both are given, or there is no such building.
         """
-        given: Collection[int] | None = card["NODES"]
+        nodes: Collection[int] | None = card["NODES"]
         if not card["BUILDING"]:
-            return given
-        if given is not None:
+            return nodes
+        if nodes is not None:
             raise DampingError("BUILDING stands for all nodes of a building: leave NODES out", "NODES")
         return self.building(card["BUILDING"])
 
@@ -180,12 +180,12 @@ def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext)
             f"{whole} has no mode {max(card['MODES'])}: its last one, {len(known)}, is taken in its place"
         )
         context.warn(text, "MODES")
-    out = known[np.minimum(card["MODES"], len(known)) - 1]
-    if not out.all():
+    chosen = known[np.minimum(card["MODES"], len(known)) - 1]
+    if not chosen.all():
         raise DampingError(
             "a mode of zero frequency cannot carry a damping ratio: is a support (FIX) missing?", "MODES"
         )
-    return np.asarray(out)
+    return np.asarray(chosen)
 
 
 def ratios(card: Card, count: int) -> Array:
@@ -196,13 +196,13 @@ def ratios(card: Card, count: int) -> Array:
     DampingError
         Their numbers differ.
     """
-    given = card["XI"]
-    if len(given) not in (1, count):
+    xi = card["XI"]
+    if len(xi) not in (1, count):
         raise DampingError(
-            f"XI has {len(given)} values for {count} frequencies: give one for each, or one for all",
+            f"XI has {len(xi)} values for {count} frequencies: give one for each, or one for all",
             "XI",
         )
-    return np.broadcast_to(np.array(given), (count,))
+    return np.broadcast_to(np.array(xi), (count,))
 
 
 def apart(at: Array, item: str) -> None:

@@ -13,7 +13,7 @@ def uneven(structure: Structure) -> list[Diagnostic]:
 
     A card for some NODES or PROPS only is meant to go with others.
     """
-    cards, out = structure.model.damping, _apart(structure)
+    cards, problems = structure.model.damping, _apart(structure)
     named = [c for c in cards if c["BUILDING"]]
     for b in buildings(structure) if named else ():
         whole = [c for c in cards if _of_whole(c, b)]
@@ -21,25 +21,25 @@ def uneven(structure: Structure) -> list[Diagnostic]:
             first, again = whole[:2]
             message = f"building {b.name!r} has two dampings: this one and that of line {first.span.line}"
             hint = "they add up; leave one out, or give each its BUILDING"
-            out.append(Diagnostic("P339", message, again.span, hint, "warning"))
+            problems.append(Diagnostic("P339", message, again.span, hint, "warning"))
         if not any(_touches(c, b) for c in cards):
             message = f"building {b.name!r} has no damping"
             hint = f'add a line with BUILDING="{b.name}", or leave BUILDING out for all'
-            out.append(Diagnostic("P339", message, named[0].place("BUILDING"), hint, "warning"))
-    return out
+            problems.append(Diagnostic("P339", message, named[0].place("BUILDING"), hint, "warning"))
+    return problems
 
 
 def _apart(structure: Structure) -> list[Diagnostic]:
     """Cards whose NODES and PROPS have nothing in common: K is damped elsewhere than M."""
-    model, out = structure.model, list[Diagnostic]()
+    model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
         props, nodes = card.values.get("PROPS"), card.values.get("NODES")
         chosen = [e for e in model.elements.values() if props and e.prop in props]
         if props and chosen and nodes and all({e.i, e.j}.isdisjoint(nodes) for e in chosen):
             message = f"no element of PROPS={','.join(props)} ends at one of these NODES"
             hint = "NODES are those of the building whose members PROPS names"
-            out.append(Diagnostic("P339", message, card.place("NODES"), hint, "warning"))
-    return out
+            problems.append(Diagnostic("P339", message, card.place("NODES"), hint, "warning"))
+    return problems
 
 
 def _touches(card: Card, b: Building) -> bool:

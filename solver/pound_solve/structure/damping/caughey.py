@@ -44,13 +44,13 @@ BETWEEN = 64  #: places between two neighbouring points where the sign of the ra
 
 def rates(omega: Array, at: Array, xi: Array) -> Array:
     r""":math:`2\xi\omega` of the series through ratios `xi` at `at`, for frequencies `omega`."""
-    out = np.zeros_like(omega)
+    total = np.zeros_like(omega)
     for i, (w, x) in enumerate(zip(at, xi)):
         others = np.delete(at, i)
         # differences of squares as products keep their digits
         shares = (omega[:, None] - others) * (omega[:, None] + others) / ((w - others) * (w + others))
-        out += 2.0 * x * w * shares.prod(axis=1)
-    return out
+        total += 2.0 * x * w * shares.prod(axis=1)
+    return total
 
 
 def build(card: Card, context: DampingContext) -> Group:
@@ -59,7 +59,7 @@ def build(card: Card, context: DampingContext) -> Group:
     at = frequencies(card, lambda: modes.omega, context)
     xi = ratios(card, len(at))
     apart(at, "OMEGA" if card["OMEGA"] is not None else "MODES")
-    given = rates(modes.omega, at, xi)
+    of_modes = rates(modes.omega, at, xi)
     floor = -1e-12 * float((xi * at).max())
     low, high = np.sort(at)[:-1], np.sort(at)[1:]
     within = (low + (high - low) * np.linspace(0.0, 1.0, BETWEEN)[:, None]).ravel()
@@ -70,18 +70,18 @@ def build(card: Card, context: DampingContext) -> Group:
             f"near omega {within[between.argmin()]:.6g}: take fewer of them, or ratios that differ less",
             "XI",
         )
-    if len(given) and given.min() < floor:
-        n = int(given.argmin())
+    if len(of_modes) and of_modes.min() < floor:
+        n = int(of_modes.argmin())
         raise DampingError(
             f"the series becomes negative beyond the given frequencies, at mode {n + 1} "
             f"(omega {modes.omega[n]:.6g}): give a ratio there too, or an even number of them",
             "XI",
         )
-    given = np.maximum(given, 0.0)
+    of_modes = np.maximum(of_modes, 0.0)
     return Group(
-        context.from_modes(modes, given),
+        context.from_modes(modes, of_modes),
         None,
-        f"{len(at)} terms, XI {values(xi)} at omega {values(at)}; {span(modes.omega, given)}",
+        f"{len(at)} terms, XI {values(xi)} at omega {values(at)}; {span(modes.omega, of_modes)}",
     )
 
 

@@ -41,23 +41,23 @@ def through(x: Array, at: Array, xi: Array, straight: bool) -> Array:
     """Piecewise linear function through (`at`, `xi`) at `x`, with ends that go on straight or constant."""
     order = np.argsort(at)
     at, xi = at[order], xi[order]
-    out = np.interp(x, at, xi)
+    line = np.interp(x, at, xi)
     if straight:
         slope = np.diff(xi) / np.diff(at)
-        out = np.where(x < at[0], xi[0] + slope[0] * (x - at[0]), out)
-        out = np.where(x > at[-1], xi[-1] + slope[-1] * (x - at[-1]), out)
-    return np.asarray(out)
+        line = np.where(x < at[0], xi[0] + slope[0] * (x - at[0]), line)
+        line = np.where(x > at[-1], xi[-1] + slope[-1] * (x - at[-1]), line)
+    return np.asarray(line)
 
 
 def listed(card: Card, omega: Array) -> tuple[Array, str]:
     """Ratio of every mode out of a list, and words."""
-    given = card["XI"]
+    numbers = card["XI"]
     for item in ("BEYOND", "OVER"):
         if item in card.spans:
             raise DampingError(f"{item} needs OMEGA or MODES: XI alone is a list, mode by mode", item)
-    xi = np.array([given[min(n, len(given) - 1)] for n in range(len(omega))])
-    rest = " (the last for all higher modes)" if len(given) < len(omega) else ""
-    return xi, f"XI {values(given)}{rest}"
+    xi = np.array([numbers[min(n, len(numbers) - 1)] for n in range(len(omega))])
+    rest = " (the last for all higher modes)" if len(numbers) < len(omega) else ""
+    return xi, f"XI {values(numbers)}{rest}"
 
 
 def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Array, str]:

@@ -63,21 +63,21 @@ def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of one group."""
     alpha, beta, nodes = card["ALPHA"], card["BETA"], context.nodes(card)
-    own = nodes if card["BUILDING"] else None
+    building = nodes if card["BUILDING"] else None
     if card["AFTER"] == "STATIC" and card["MODES"] is None:
         raise DampingError("AFTER says whose MODES are meant", "AFTER")
     how = "ALPHA and BETA given"
     if card["XI"] is not None:
         if alpha is not None or beta is not None:
             raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
-        w1, w2 = frequencies(card, lambda: context.modes(own, max(card["MODES"])).omega, context)
+        w1, w2 = frequencies(card, lambda: context.modes(building, max(card["MODES"])).omega, context)
         x1, x2 = ratios(card, 2)
         alpha, beta = coefficients((x1, x2), (w1, w2))
         how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
     elif card["OMEGA"] is not None or card["MODES"] is not None:
         raise DampingError("OMEGA and MODES go with XI", "OMEGA" if card["OMEGA"] is not None else "MODES")
     alpha, beta = alpha or 0.0, beta or 0.0
-    chosen = Chosen(card["PROPS"], own)
+    chosen = Chosen(card["PROPS"], building)
     follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
     return Group(
         alpha * context.mass(nodes),

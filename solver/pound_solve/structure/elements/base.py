@@ -134,11 +134,11 @@ class LawSpring:
 
     def branch(self, state: State) -> Branch:
         """Linear branch of the law, the dashpots of `beta` and `secant` included."""
-        own = self.law.branch(state)
+        branch = self.law.branch(state)
         if not self.beta and not self.secant:
-            return own
+            return branch
         follows = self.secant * state[3][-1] if self.secant else 0.0
-        return own._replace(damping=own.damping + self.beta * max(own.stiffness, 0.0) + follows)
+        return branch._replace(damping=branch.damping + self.beta * max(branch.stiffness, 0.0) + follows)
 
     def force(self, state: State, d: float, v: float) -> float:
         """Force that is reported at deformation `d` and rate `v`."""
@@ -216,12 +216,12 @@ class Parts:
         for b in blocks:
             at = [place[f] for f in b.dofs]
             k[np.ix_(at, at)] += b.matrix
-        own = [i for f, i in place.items() if f[1] > 2 and k[i].any()]
+        inside = [i for f, i in place.items() if f[1] > 2 and k[i].any()]
         nodes = [i for f, i in place.items() if f[1] < 3]
         if len(nodes) == len(dofs):
             return ElementMatrix(dofs, k)
-        follow = np.linalg.solve(k[np.ix_(own, own)], k[np.ix_(own, nodes)])
-        left = k[np.ix_(nodes, nodes)] - k[np.ix_(nodes, own)] @ follow
+        follow = np.linalg.solve(k[np.ix_(inside, inside)], k[np.ix_(inside, nodes)])
+        left = k[np.ix_(nodes, nodes)] - k[np.ix_(nodes, inside)] @ follow
         return ElementMatrix(tuple(dofs[i] for i in nodes), left)
 
 

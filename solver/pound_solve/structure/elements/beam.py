@@ -193,9 +193,9 @@ class _FlexiblePart:
         """Forces on the ends of the beam by loads that are equivalent to `load`, the nodes at rest, shape
         (6,).
         """
-        out: Array = self.k @ (self.flexibility @ load) - load
-        out[self.pins] = 0.0
-        return out
+        forces: Array = self.k @ (self.flexibility @ load) - load
+        forces[self.pins] = 0.0
+        return forces
 
 
 def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart:
@@ -234,10 +234,10 @@ def _kinematics(
     as the nodes move them, and of the beam behind the hinges.
     """
     assert context.j is not None
-    own = tuple((context.element.id, INSIDE[d]) for d in hinged)
-    dofs = tuple((n.id, d) for n in (context.i, context.j) for d in range(3)) + own
+    hinges = tuple((context.element.id, INSIDE[d]) for d in hinged)
+    dofs = tuple((n.id, d) for n in (context.i, context.j) for d in range(3)) + hinges
     to_ends = end_blocks(context.prop["END1"], context.prop["END2"]) @ line.at_nodes
-    outer = np.hstack([to_ends, np.zeros((6, len(own)))])
+    outer = np.hstack([to_ends, np.zeros((6, len(hinges)))])
     inner = outer.copy()
     for n, d in enumerate(hinged):
         inner[d] = 0.0
@@ -248,7 +248,7 @@ def _kinematics(
 def _outputs(context: ElementContext, dofs: tuple[Dof, ...], rows: Array, constant: Array) -> list[Output]:
     """End forces: ``rows u + constant``, local, tension positive at both ends."""
     bar = context.prop["E"] * context.prop["I"] == 0.0
-    out = []
+    outputs = []
     for name, unit, row, sign in (
         ("axial I", "F", 0, -1.0),
         ("axial J", "F", 3, 1.0),
@@ -259,8 +259,8 @@ def _outputs(context: ElementContext, dofs: tuple[Dof, ...], rows: Array, consta
     ):
         if row in (0, 3) or not bar:
             u_row, c0 = sign * rows[row], sign * float(constant[row])
-            out.append(Output(context.element.id, name, unit, dofs, u_row, None, c0))
-    return out
+            outputs.append(Output(context.element.id, name, unit, dofs, u_row, None, c0))
+    return outputs
 
 
 def _add_geometry(
@@ -294,8 +294,8 @@ def _add_geometry(
         matrix = line.full * np.outer(across, across)
         parts.geometric.append(Geometric(number, dofs, matrix, axial, mean, {}))
     elif geometry == "PDELTA_MEMBER":
-        matrix, own = _bowed(p, line.length, beam.phi, beam.shape, inner, line.at_nodes)
-        parts.geometric.append(Geometric(number, dofs, matrix, axial, mean, own))
+        matrix, adds = _bowed(p, line.length, beam.phi, beam.shape, inner, line.at_nodes)
+        parts.geometric.append(Geometric(number, dofs, matrix, axial, mean, adds))
 
 
 def _loads(context: ElementContext, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
@@ -345,14 +345,14 @@ def _corotational(
     """
     ends = [3, 2, 5]
     d = np.array([[1.0, 0.0], [0.0, -1.0], [0.0, -1.0]])
-    own = forces[np.ix_(ends, ends)] @ d  # axial force and end moments for unit eta and rho
-    k = d.T @ own
+    actions = forces[np.ix_(ends, ends)] @ d  # axial force and end moments for unit eta and rho
+    k = d.T @ actions
     pins = pinned(p)
     # a pinned end does not rotate with the member
     share_i = {2: 0.0, 5: 1.0}[pins[0]] if len(pins) == 1 else 0.5
     n0, t0 = d.T @ held[ends]
     parameters = (COROTATIONAL, length, p["END1"], p["END2"], share_i, k[0, 0], k[0, 1], k[1, 1], n0, t0)
-    axial, at_i, at_j = (np.append(row, 0.0) for row in own)
+    axial, at_i, at_j = (np.append(row, 0.0) for row in actions)
     shear = (at_i + at_j) / length + (0.0, 0.0, 1.0)
     adds = {"axial I": axial, "axial J": axial, "moment I": at_i, "moment J": at_j}
     return tuple(map(float, parameters)), adds | {"shear I": shear, "shear J": -shear}

@@ -121,14 +121,14 @@ def springs(corners: Array) -> Springs:
     """
     half = np.ptp(corners, axis=0) / 2
     centre, lever = corners.min(axis=0) + half, half[1] / half[0]
-    found: dict[float, tuple[Array, float]] = {}  # parallel edges are one spring
+    by_angle: dict[float, tuple[Array, float]] = {}  # parallel edges are one spring
     for edge in np.roll(corners, -1, axis=0) - corners:
         reach = max(abs(edge[0]), abs(edge[1]) / (OUTMOST * lever)) * (-1 if tuple(edge) < (0, 0) else 1)
         d, f = edge / reach, abs(reach) / 4
         key = round(float(np.arctan2(d[1], d[0] * lever)), 9)
-        found[key] = (d, found[key][1] + f) if key in found else (d, f)
-    direction = np.array([d for d, _ in found.values()])
-    strength = np.array([f for _, f in found.values()])
+        by_angle[key] = (d, by_angle[key][1] + f) if key in by_angle else (d, f)
+    direction = np.array([d for d, _ in by_angle.values()])
+    strength = np.array([f for _, f in by_angle.values()])
     shift = direction @ np.linalg.solve((direction.T * strength) @ direction, centre)
     if np.abs(shift).max() > 0.999:
         raise ElementError(
@@ -139,9 +139,9 @@ def springs(corners: Array) -> Springs:
     # distance between the two diagrams as convex sets, in half widths (to a few parts in a thousand)
     angle = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
     normals = np.array([np.cos(angle), np.sin(angle)])
-    given = ((corners - centre) / half @ normals).max(axis=0)
+    wanted = ((corners - centre) / half @ normals).max(axis=0)
     made = np.abs(strength[:, None] * direction / half @ normals).sum(axis=0)
-    return Springs(direction, strength, shift, float(np.abs(given - made).max()))
+    return Springs(direction, strength, shift, float(np.abs(wanted - made).max()))
 
 
 def build(context: ElementContext) -> Parts:

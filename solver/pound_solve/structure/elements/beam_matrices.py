@@ -41,8 +41,8 @@ def slopes(xi: float, length: float, phi: float) -> Array:
     """Derivative of the transverse displacement along the member, shape (6,)."""
     a, b = (6 * xi * (xi - 1) - phi) / length, 1 - 4 * xi + 3 * xi**2
     half = phi / 2 * (1 - 2 * xi)
-    out = np.array([0.0, a, b + half, 0.0, -a, 3 * xi**2 - 2 * xi - half])
-    return out / (1.0 + phi)
+    row = np.array([0.0, a, b + half, 0.0, -a, 3 * xi**2 - 2 * xi - half])
+    return row / (1.0 + phi)
 
 
 def stiffness(ea: float, ei: float, length: float, phi: float) -> Array:
@@ -102,15 +102,15 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
 
 def spare(k: Array, length: float, ea: float, joints: Array, taken: Array, pins: list[int]) -> float:
     """How many times the flexibility `taken` off the ends would leave a beam without any."""
-    own = np.zeros((3, 3))
-    own[0, 0] = length / ea
-    own[1:, 1:] = np.linalg.inv(k[np.ix_([2, 5], [2, 5])])
+    flexibility = np.zeros((3, 3))
+    flexibility[0, 0] = length / ea
+    flexibility[1:, 1:] = np.linalg.inv(k[np.ix_([2, 5], [2, 5])])
     chord = np.array([0.0, 1.0, 0.0, 0.0, -1.0, 0.0]) / length
     natural = np.array([[-1, 0, 0, 1, 0, 0], np.eye(6)[2] + chord, np.eye(6)[5] + chord])
     free = [0] + [n for n, d in ((1, 2), (2, 5)) if d not in pins]
     at = np.ix_(free, free)
-    own, less = (own + natural @ joints @ natural.T)[at], (natural @ taken @ natural.T)[at]
-    return float(1.0 / np.linalg.eigvals(np.linalg.solve(own, less)).real.max())
+    flexibility, less = (flexibility + natural @ joints @ natural.T)[at], (natural @ taken @ natural.T)[at]
+    return float(1.0 / np.linalg.eigvals(np.linalg.solve(flexibility, less)).real.max())
 
 
 def block_mass(m: float, length: float, sign: float) -> Array:

@@ -37,18 +37,18 @@ def direction(context: ElementContext) -> tuple[float, float]:
 
 def adjacent(context: ElementContext, nodes: list[int], normal: tuple[float, float]) -> tuple[float, str]:
     """Stiffness of a contact from its neighbours [F/L], and its source in words."""
-    choice, found = context.prop["ADJACENT"], []
+    choice, pairs = context.prop["ADJACENT"], []
     for node in nodes:
-        own = context.stiffness_along(node, normal)
-        if not own:
+        axial = context.stiffness_along(node, normal)
+        if not axial:
             raise ElementError(
                 f"K=ADJACENT, but no element that meets node {node} is stiff axially along the contact's "
                 "direction: give K a number",
                 "K",
             )
-        found.append((sum(own.values()), f"element{'s' * (len(own) > 1)} {', '.join(map(str, own))}"))
-    found.sort()
-    (soft, softer), (stiff, stiffer) = found[0], found[-1] if len(found) > 1 else (math.inf, "the wall")
+        pairs.append((sum(axial.values()), f"element{'s' * (len(axial) > 1)} {', '.join(map(str, axial))}"))
+    pairs.sort()
+    (soft, softer), (stiff, stiffer) = pairs[0], pairs[-1] if len(pairs) > 1 else (math.inf, "the wall")
     if choice == "HARMONIC":
         return 2.0 / (1.0 / soft + 1.0 / stiff), f"K: harmonic mean of {softer} and {stiffer}"
     if choice == "SOFTER":

@@ -131,14 +131,14 @@ def _join(
     """Add spring and dashpot of one direction, each a coefficient along a row of DOFs, and their joint
     force as output, with its name and unit.
     """
-    (name, unit), (k, own), (c, row) = quantity, spring, dashpot
+    (name, unit), (k, spring_row), (c, row) = quantity, spring, dashpot
     if k:
-        parts.stiffness.append(_block(own, k))
+        parts.stiffness.append(_block(spring_row, k))
     if c:
         parts.damping.append(_block(row, c))
     if k or c:
-        dofs = tuple({**own, **row})
-        u_row = k * np.array([own.get(f, 0.0) for f in dofs])
+        dofs = tuple({**spring_row, **row})
+        u_row = k * np.array([spring_row.get(f, 0.0) for f in dofs])
         v_row = c * np.array([row.get(f, 0.0) for f in dofs])
         parts.outputs.append(Output(number, name if k else "dashpot R", unit, dofs, u_row, v_row))
 

@@ -69,11 +69,11 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
     """Raise where the items of hinges contradict each other."""
     p = context.prop
     (rule,) = p.laws["RULE"]
-    given = [item for item in ("KH", "LP") if p[item] is not None]
+    stiffness_items = [item for item in ("KH", "LP") if p[item] is not None]
     if not strengths:
         if rule.impl is not None:
             raise ElementError(f"{rule.name} needs a yield moment: MI, MJ or both", "RULE")
-        idle = [*given, *(["DUCTU"] if p["DUCTU"] is not None else [])]
+        idle = [*stiffness_items, *(["DUCTU"] if p["DUCTU"] is not None else [])]
         if idle:
             raise ElementError(f"{idle[0]} has no effect without a yield moment MI or MJ", idle[0])
         return
@@ -81,19 +81,19 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
         raise ElementError(
             f"{strengths[0]} has no effect with RULE=ELASTIC: name a rule that yields", strengths[0]
         )
-    if not given:
+    if not stiffness_items:
         raise ElementError(
             "a hinge needs its stiffness KH or its length LP, often half the depth of the section",
             strengths[0],
         )
-    if len(given) > 1:
+    if len(stiffness_items) > 1:
         raise ElementError("KH and LP both give the stiffness of a hinge: keep one of them", "LP")
     pinned = [(end, item) for d, end, item in ENDS if item in strengths and d in beam.pinned(p)]
     if pinned:
         ends = " and ".join(end for end, _ in pinned)
         items = [item for _, item in pinned]
         if len(items) == len(strengths):  # the rest of the hinges has no effect then
-            items += ["RULE", *given, *(["DUCTU"] if p["DUCTU"] is not None else [])]
+            items += ["RULE", *stiffness_items, *(["DUCTU"] if p["DUCTU"] is not None else [])]
         many = len(pinned) > 1
         why = f"end{'s' * many} {ends} {'are' if many else 'is'} pinned, where no hinge yields"
         if p["I"] == 0.0:

@@ -38,7 +38,7 @@ def components(context: ElementContext) -> list[tuple[str, tuple[Dof, ...], tupl
     """
     ax, ay = _axes(context)
     rotation = [(2, 1.0)]
-    out = []
+    rows = []
     for name, at_i, at_j in (
         ("X", _at(ax, context, True), _at(ax, context, False)),
         ("Y", _at(ay, context, True), _at(ay, context, False)),
@@ -49,8 +49,8 @@ def components(context: ElementContext) -> list[tuple[str, tuple[Dof, ...], tupl
         else:
             terms = [((context.j.id, d), f) for d, f in at_j] + [((context.i.id, d), -f) for d, f in at_i]
         terms = [term for term in terms if term[1] != 0.0]
-        out.append((name, tuple(dof for dof, _ in terms), tuple(f for _, f in terms)))
-    return out
+        rows.append((name, tuple(dof for dof, _ in terms), tuple(f for _, f in terms)))
+    return rows
 
 
 def _line(context: ElementContext, item: str) -> tuple[float, float]:
@@ -76,13 +76,13 @@ def _axes(context: ElementContext) -> tuple[tuple[float, float], tuple[float, fl
 
 def _at(way: tuple[float, float], context: ElementContext, first: bool) -> list[tuple[int, float]]:
     """Displacement of the spring's end at node I (or J) along a direction: direction of the DOF, factor."""
-    out = [(0, way[0]), (1, way[1])]
+    terms = [(0, way[0]), (1, way[1])]
     arm = context.prop["ARM"]
     if arm is not None:
         dx, dy = _line(context, "ARM")
         share = arm if first else arm - 1.0
-        out.append((2, share * (dx * way[1] - dy * way[0])))
-    return out
+        terms.append((2, share * (dx * way[1] - dy * way[0])))
+    return terms
 
 
 def build(context: ElementContext) -> Parts:
