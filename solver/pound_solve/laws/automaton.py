@@ -366,10 +366,10 @@ def transitions(
     at, v = d0, direction * rate
     for _ in range(limit):
         places = [event_place(event, at, d1, direction, v) for event in law.branch(state).events]
-        found = [(where, n) for n, where in enumerate(places) if where is not None]
-        if not found:
+        reached = [(where, n) for n, where in enumerate(places) if where is not None]
+        if not reached:
             return
-        at, first = min(found, key=lambda event: direction * event[0])
+        at, first = min(reached, key=lambda event: direction * event[0])
         state = law.transition(state, first, at, v)
         yield at, state
     raise NoProgressError("the law changed branch again and again")

@@ -84,14 +84,14 @@ def condensed(rule: Rule) -> Rule:
         k = rule.steepest(p[:n])
         return k / (1.0 - p[n] * k)
 
-    own = {
+    functions = {
         "own_branch": rule.branch,
         "own_transition": rule.transition,
         "own_recoverable": rule.recoverable,
     }
 
     def made(template: Function, function: Function) -> Function:
-        return bound(template, f"{function.__module__}.{function.__qualname__}-{n}", place=n, **own)
+        return bound(template, f"{function.__module__}.{function.__qualname__}-{n}", place=n, **functions)
 
     return Rule(
         rule.branches,

@@ -216,8 +216,8 @@ def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Curve of a rule."""
-    found: tuple[float, float, float, float] = own(p[:parameters], at, m[:variables], d0, d, v)
-    return found
+    response: tuple[float, float, float, float] = own(p[:parameters], at, m[:variables], d0, d, v)
+    return response
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
@@ -233,14 +233,14 @@ def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Powers of a rule."""
-    found: PowersNumbers = own(p[:parameters], at, m[:variables])
-    return found
+    numbers: PowersNumbers = own(p[:parameters], at, m[:variables])
+    return numbers
 
 
 def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Smooth curve of a rule."""
-    found: SmoothNumbers = own(p[:parameters], at, m[:variables], d, f)
-    return found
+    numbers: SmoothNumbers = own(p[:parameters], at, m[:variables], d, f)
+    return numbers
 
 
 @cache
@@ -285,7 +285,7 @@ def tables(rules: Sequence[Rule]) -> Tables:
     The last rule fills the tables up to a length that hardly a deck exceeds: numba compiles the kernels
     anew for every length.
     """
-    found = [functions(r) for r in rules]
-    found += found[-1:] * (-len(found) % ROOM)
+    by_rule = [functions(r) for r in rules]
+    by_rule += by_rule[-1:] * (-len(by_rule) % ROOM)
     ready = provider().ready
-    return Tables(*(tuple(ready(f, s) for f in column) for column, s in zip(zip(*found), SIGNATURES)))
+    return Tables(*(tuple(ready(f, s) for f in column) for column, s in zip(zip(*by_rule), SIGNATURES)))

@@ -150,18 +150,18 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         k1, k2, dy = (values[name] for name in plain)
         if k2 > k1:
             raise ValueError(f"K2 {k2:g} is above K1 {k1:g}: the second stiffness is the lower one")
-        required = given = math.nan
+        required = resulting = math.nan
         worst = dy * (1.0 + math.sqrt(k1 / k2))
         slow, at = (speed(k1, k2, dy, x, reduced_mass) for x in (dy, worst))
         note = f"e depends on the speed: 1 up to {slow:.4g}, least, {(k2 / k1) ** 0.25:.4g}, at {at:.4g}"
     else:
         k1, k2, dy = constants(values)
-        required, given = values["E"], restitution(k1, k2, dy, values["DM"])
+        required, resulting = values["E"], restitution(k1, k2, dy, values["DM"])
         at = speed(k1, k2, dy, values["DM"], reduced_mass)
         relation = values["RELATION"].lower()
         note = f"{relation} relation of E; e depends on the speed: as given at {at:.4g}, which reaches DM"
     law = Law(RULE, (k1, k2, values["GAP"], dy))
-    return Built(law, k1, 0.0, 0.0, required, given, note)
+    return Built(law, k1, 0.0, 0.0, required, resulting, note)
 
 
 def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:

@@ -51,15 +51,15 @@ def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: floa
     ValueError
         None or several; or no mass.
     """
-    given = [name for name in names if values[name] is not None]
-    if len(given) != 1:
+    present = [name for name in names if values[name] is not None]
+    if len(present) != 1:
         ways = " or ".join([", ".join(f"as {name}" for name in names[:-1]), f"as {names[-1]}"])
         raise ValueError(
-            f"give the damping once: {ways}" + (", not " + " and ".join(given) if given else "")
+            f"give the damping once: {ways}" + (", not " + " and ".join(present) if present else "")
         )
-    if given[0] != free and reduced_mass == 0.0:
-        raise ValueError(f"{given[0]} needs colliding masses: give the nodes weight, or MASSES")
-    return given[0]
+    if present[0] != free and reduced_mass == 0.0:
+        raise ValueError(f"{present[0]} needs colliding masses: give the nodes weight, or MASSES")
+    return present[0]
 
 
 def constant(
@@ -111,8 +111,8 @@ def dashpot(
     if chosen(values, ("C", "XI", "E"), reduced_mass, "C") == "C":
         xi = values["C"] / root if root else math.inf
         return Dashpot(values["C"], xi, math.nan, given_back(xi) if root else math.nan, "C given")
-    found = constant(values, "XI", given_back, exact, published)
-    return Dashpot(found.value * root, *found)
+    ratio = constant(values, "XI", given_back, exact, published)
+    return Dashpot(ratio.value * root, *ratio)
 
 
 def linear_fields(published: str) -> tuple[Field, ...]:

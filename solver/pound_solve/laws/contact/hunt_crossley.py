@@ -153,11 +153,11 @@ def build_with(
         Both or none of D, E; or no mass.
     """
     constants.chosen(values, ("D", "E"), reduced_mass)
-    found = constants.constant(
+    damping = constants.constant(
         values, "D", restitution.throughout, restitution.throughout_constant, published
     )
-    made = law(values["K"], n, values["GAP"], found.value, reduced_mass)
-    return Built(made, values["K"], math.nan, *found, unit=stiffness_unit(n))
+    made = law(values["K"], n, values["GAP"], damping.value, reduced_mass)
+    return Built(made, values["K"], math.nan, *damping, unit=stiffness_unit(n))
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

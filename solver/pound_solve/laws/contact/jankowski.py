@@ -112,16 +112,16 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     if values["RELATION"] == "PUBLISHED" and n != 1.5:
         raise ValueError("the published relation of E to XI is for N=1.5: RELATION=EXACT holds for any N")
     scale = math.sqrt(2.0 / (n + 1.0))  # to the ratio of the linear law with the same path
-    found = constants.constant(
+    damping = constants.constant(
         values,
         "XI",
         lambda xi: restitution.one_sided(scale * xi),
         lambda e: restitution.one_sided_ratio(e) / scale,
         published,
     )
-    c = 2.0 * found.value * math.sqrt(k * reduced_mass)
+    c = 2.0 * damping.value * math.sqrt(k * reduced_mass)
     law = Law(RULE, (k, n, values["GAP"], c, reduced_mass))
-    return Built(law, k, math.nan, *found, unit=stiffness_unit(n))
+    return Built(law, k, math.nan, *damping, unit=stiffness_unit(n))
 
 
 SPEC = Spec(

@@ -133,9 +133,9 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
     )
-    found = dashpot(values, reduced_mass, given_back, exact, restitution.sticky_ratio)
-    p = (values["K"], found.c, values["GAP"], float(tension))
-    return Built(Law(RULE, p), values["K"], *found)
+    damper = dashpot(values, reduced_mass, given_back, exact, restitution.sticky_ratio)
+    p = (values["K"], damper.c, values["GAP"], float(tension))
+    return Built(Law(RULE, p), values["K"], *damper)
 
 
 TENSION = Field(

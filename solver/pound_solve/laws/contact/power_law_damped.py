@@ -119,16 +119,16 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
     )
-    found = constants.constant(
+    damping = constants.constant(
         values,
         "ALPHA",
         lambda alpha: given_back(alpha / scale),
         lambda e: exact(e) * scale,
         lambda e: restitution.sticky_ratio(e) * scale,
     )
-    c = found.value * math.sqrt(k * reduced_mass)
+    c = damping.value * math.sqrt(k * reduced_mass)
     law = Law(RULE, (k, n, values["GAP"], c, reduced_mass, float(tension)))
-    return Built(law, k, math.nan, *found, unit=stiffness_unit(n))
+    return Built(law, k, math.nan, *damping, unit=stiffness_unit(n))
 
 
 SPEC = Spec(

@@ -161,13 +161,13 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     if (thickness is None) != (beyond is None):
         raise ValueError("THICKNESS and KU, the stiffness beyond its limit, go together")
     constants.chosen(values, ("D", "E"), reduced_mass)
-    found = constants.constant(
+    damping = constants.constant(
         values, "D", restitution.in_restitution, restitution.in_restitution_constant, published
     )
     limit = math.inf if thickness is None else values["LIMIT"] * thickness
-    law = Law(RULE, (k, n, values["GAP"], limit, beyond or 0.0, found.value, reduced_mass))
+    law = Law(RULE, (k, n, values["GAP"], limit, beyond or 0.0, damping.value, reduced_mass))
     end = math.inf if thickness is None else thickness
-    return Built(law, k, math.nan, *found, unit=stiffness_unit(n), limit=end)
+    return Built(law, k, math.nan, *damping, unit=stiffness_unit(n), limit=end)
 
 
 SPEC = Spec(

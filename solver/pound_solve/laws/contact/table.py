@@ -150,11 +150,11 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         RULE, (slopes[0], ku or 0.0, values["GAP"], len(depths), *(x for pair in path[1:] for x in pair))
     )
     if ku is None:
-        given, note = 1.0, "elastic: back along the table"
+        resulting, note = 1.0, "elastic: back along the table"
     else:
         if ku < max(slopes):
             raise ValueError(f"KU {ku:g} is below the steepest slope of the table, {max(slopes):g}")
-        given = math.nan
+        resulting = math.nan
         brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
         back = 0.5 * forces[-1] ** 2 / ku
         at = math.sqrt(2.0 * brought / reduced_mass) if reduced_mass else math.inf
@@ -162,7 +162,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             f"e depends on the speed: {math.sqrt(back / brought):.4g} at {at:.4g}, which reaches the last "
             "of DEPTHS for the first time"
         )
-    return Built(law, steepest(law.p), 0.0, 0.0, math.nan, given, note, limit=depths[-1])
+    return Built(law, steepest(law.p), 0.0, 0.0, math.nan, resulting, note, limit=depths[-1])
 
 
 SPEC = Spec(

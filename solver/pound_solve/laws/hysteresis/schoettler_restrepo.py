@@ -166,12 +166,12 @@ def reverse(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
     plus, minus, inner = m[0:3]
     if at < UNLOADING:
         plus, minus = grown(m, s, x)
-    own = corner(s, m)
+    point = corner(s, m)
     if at < TO_CORNER or at >= TO_PINCH:
-        own, inner = (x, f), 1.0 if at >= UNLOADING and short(p, s, m, x, f) else 0.0
+        point, inner = (x, f), 1.0 if at >= UNLOADING and short(p, s, m, x, f) else 0.0
     if s > 0.0:
-        return (plus, minus, inner, own[0], own[1], m[5], m[6], m[7], m[8], x, f, float(at))
-    return (plus, minus, inner, m[3], m[4], own[0], own[1], m[7], m[8], x, f, float(at))
+        return (plus, minus, inner, point[0], point[1], m[5], m[6], m[7], m[8], x, f, float(at))
+    return (plus, minus, inner, m[3], m[4], point[0], point[1], m[7], m[8], x, f, float(at))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
