@@ -77,9 +77,9 @@ class Excitation:
         at = np.flatnonzero(after != self.pieces_before(t))
         change = np.abs(self.values_after(t[at]) - self.values(t[at], before=True))
         at = at[(change > 1e-9 * np.abs(self.coefs[:, 0]).max(axis=0, initial=0.0)).any(axis=1)]
-        out = t.copy()
-        out[at] = self.breaks[after[at]] - 4.0 * INSTANT * np.maximum(1.0, t[at])
-        return out
+        moved = t.copy()
+        moved[at] = self.breaks[after[at]] - 4.0 * INSTANT * np.maximum(1.0, t[at])
+        return moved
 
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
@@ -90,10 +90,10 @@ class Excitation:
         shape (n_times, degree + 1, n_inputs).
         """
         i = self.pieces_after(t)
-        own, since = self.coefs[i], t - self.breaks[i]
+        coefs, since = self.coefs[i], t - self.breaks[i]
         if not since.any():
-            return own
-        return np.asarray(polynomial.shift(own.swapaxes(0, 1), since[:, None]).swapaxes(0, 1))
+            return coefs
+        return np.asarray(polynomial.shift(coefs.swapaxes(0, 1), since[:, None]).swapaxes(0, 1))
 
     def jumps(self) -> Flags:
         """Which inputs jump, from zero at t = 0 or between two intervals."""

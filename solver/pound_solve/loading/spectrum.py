@@ -112,8 +112,8 @@ def pseudo_acceleration(acceleration: Piecewise, periods: ArrayLike, damping: Ar
     """
     t, xi = _valid(periods, damping)
     (sd,) = _largest(acceleration, t, xi, (0,), True)
-    out: Array = (2.0 * np.pi / t) ** 2 * sd
-    return out
+    spectrum: Array = (2.0 * np.pi / t) ** 2 * sd
+    return spectrum
 
 
 def _valid(periods: ArrayLike, damping: ArrayLike) -> tuple[Array, Array]:
@@ -140,17 +140,17 @@ def _largest(
         raise ValueError(f"the period {t.min():g} is too short for an acceleration of this length")
     peaks = np.empty((len(quantities), len(period)))
     for lines, count in np.unique(np.stack([curved, parts]), axis=1).T.tolist():
-        own = np.flatnonzero((curved == lines) & (parts == count))
+        alike = np.flatnonzero((curved == lines) & (parts == count))
         fine = acceleration.lines(int(lines)).divided(int(count))
-        for some in np.array_split(own, -(-len(own) * len(fine.breaks) // BLOCK)):
+        for some in np.array_split(alike, -(-len(alike) * len(fine.breaks) // BLOCK)):
             peaks[:, some] = _peaks(fine, 2.0 * np.pi / period[some], ratio[some], quantities, free)
     return peaks.reshape(-1, len(xi), len(t))
 
 
 def _power_of_two(x: Array) -> Array:
     """The next power of two from each value on, 1 at least."""
-    out: Array = 2.0 ** np.ceil(np.log2(np.maximum(x, 1.0)))
-    return out
+    power: Array = 2.0 ** np.ceil(np.log2(np.maximum(x, 1.0)))
+    return power
 
 
 def _peaks(lines: Piecewise, omega: Array, xi: Array, quantities: tuple[int, ...], free: bool) -> Array:
@@ -160,8 +160,8 @@ def _peaks(lines: Piecewise, omega: Array, xi: Array, quantities: tuple[int, ...
     z, width = _states(lines, rate), np.diff(lines.breaks)
     a0, a1 = lines.coefs
     bend = np.abs(_Swing(z[:-1], a0[:, None], a1[:, None], rate).bend)
-    out = np.empty((len(quantities), len(omega)))
-    for row, k in zip(out, quantities):
+    peaks = np.empty((len(quantities), len(omega)))
+    for row, k in zip(peaks, quantities):
         factor = np.asarray(rate**k / omega_d, complex)
         q = np.abs((factor * z).imag)
         row[:] = q.max(axis=0)
@@ -175,7 +175,7 @@ def _peaks(lines: Piecewise, omega: Array, xi: Array, quantities: tuple[int, ...
             swing = factor * z[-1]
             wait = np.mod(-np.angle(rate * swing), np.pi) / omega_d
             np.maximum(row, np.abs((swing * np.exp(rate * wait)).imag), out=row)
-    return out
+    return peaks
 
 
 def _states(lines: Piecewise, rate: Complex) -> Complex:
@@ -217,13 +217,13 @@ class _Swing(NamedTuple):
     def state(self, s: Array) -> Complex:
         """State z after the times `s`."""
         k0, k1 = duhamel(self.rate * s, 1)
-        out: Complex = np.exp(self.rate * s) * self.z - s * (self.a0 * k0 + self.a1 * s * k1)
-        return out
+        state: Complex = np.exp(self.rate * s) * self.z - s * (self.a0 * k0 + self.a1 * s * k1)
+        return state
 
     def slope(self, factor: Complex, s: Array) -> Array:
         """Slope of the quantity after the times `s`."""
-        out: Array = (factor * (self.rate * self.state(s) - self.a0 - self.a1 * s)).imag
-        return out
+        slope: Array = (factor * (self.rate * self.state(s) - self.a0 - self.a1 * s)).imag
+        return slope
 
     def extremes(self, factor: Complex, width: Array) -> tuple[Index, Array]:
         """Stationary points of the quantity within intervals of one inflexion at most.
@@ -245,9 +245,9 @@ class _Swing(NamedTuple):
         which = np.concatenate([once, others[left], others[right]])
         low = np.concatenate([np.zeros(len(once) + int(left.sum())), middle[right]])
         high = np.concatenate([width[once], middle[left], width[others[right]]])
-        found = self.of(which)
-        s = found.stationary(factor[which], low, high)
-        return which, (factor[which] * found.state(s)).imag
+        swings = self.of(which)
+        s = swings.stationary(factor[which], low, high)
+        return which, (factor[which] * swings.state(s)).imag
 
     def stationary(self, factor: Complex, low: Array, high: Array) -> Array:
         """Zeros of the slope between times at which its signs differ, by Newton's method and bisection."""

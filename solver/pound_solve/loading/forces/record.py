@@ -16,9 +16,9 @@ from pound_solve.loading.motions.base import LoadingContext
 
 def build(card_values: Mapping[str, Any], context: LoadingContext) -> Force:
     """Force of a RECORD card; raises as `motions.record.samples` does."""
-    found = record.samples(card_values, context)
-    info = {"kind": SPEC.name, "name": str(card_values["FILE"]), "dt": record.step(found.raw)}
-    return finish(card_values, found.lines, info | {"sha256": found.sha256, "notes": found.raw.notes})
+    samples = record.samples(card_values, context)
+    info = {"kind": SPEC.name, "name": str(card_values["FILE"]), "dt": record.step(samples.raw)}
+    return finish(card_values, samples.lines, info | {"sha256": samples.sha256, "notes": samples.raw.notes})
 
 
 SPEC: Final = Spec(

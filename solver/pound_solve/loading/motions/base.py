@@ -301,6 +301,6 @@ def common_breaks(histories: Iterable[Piecewise], t_end: float) -> Array:
     ndarray, shape (n,), [T]
         Begins with 0 and ends with `t_end`; no two are closer than 1e-12 of `t_end`.
     """
-    own = [h.breaks for h in histories]
-    inside = np.concatenate([np.array([0.0, t_end]), *own])
+    breaks = [h.breaks for h in histories]
+    inside = np.concatenate([np.array([0.0, t_end]), *breaks])
     return merged(inside[(inside >= 0) & (inside <= t_end)], 1e-12 * t_end)

@@ -122,13 +122,13 @@ def matched(target: Target, t: Array, e: Array, seed: int, tol: float) -> tuple[
     a, best, least = _noise(target, t, e, seed), np.zeros_like(t), math.inf
     responses = _impulse_responses(target, t)
     for step in range(MOST_STEPS):
-        found = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
-        misfit = float(np.abs(found / target.psa - 1.0).max())
+        psa = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
+        misfit = float(np.abs(psa / target.psa - 1.0).max())
         if misfit < least:
             best, least = a, misfit
         if misfit <= tol or (step == EARLY and least > HOPELESS):
             break
-        a = a + _correction(target, t, e, a, found, responses)
+        a = a + _correction(target, t, e, a, psa, responses)
     return best, least
 
 
@@ -141,8 +141,8 @@ def _noise(target: Target, t: Array, e: Array, seed: int) -> Array:
     size[w < 0.7 * ends[0]] = 0.0  # slower than the slowest oscillator, noise would drift
     noise = np.fft.rfft(np.random.default_rng(seed).standard_normal(len(t)))
     a = np.fft.irfft(noise * size, len(t)) * e
-    found = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
-    return np.asarray(a / math.exp(np.log(found / target.psa).mean()))
+    psa = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
+    return np.asarray(a / math.exp(np.log(psa / target.psa).mean()))
 
 
 def _impulse_responses(target: Target, t: Array) -> Array:

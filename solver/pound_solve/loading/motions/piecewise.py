@@ -106,9 +106,9 @@ class Piecewise:
             An own break is missing, so that one polynomial would have to stand for two.
         """
         new = np.asarray(breaks, dtype=np.float64)
-        own = self.breaks[(self.breaks > new[0]) & (self.breaks < new[-1])]
-        near = np.searchsorted(new, own)
-        gap = np.minimum(own - new[near - 1], new[near] - own)
+        inner = self.breaks[(self.breaks > new[0]) & (self.breaks < new[-1])]
+        near = np.searchsorted(new, inner)
+        gap = np.minimum(inner - new[near - 1], new[near] - inner)
         if (gap > 1e-9 * (new[-1] - new[0])).any():
             raise ValueError("the new breaks leave out one of the old")
         # middles, because a new break may lie a rounding error to the wrong side of an old one
@@ -223,13 +223,13 @@ class Piecewise:
         width = np.diff(self.breaks)
         sampled = np.abs([_horner(self.coefs, part * width) for part in (0.0, 0.5, 1.0)]).max(axis=0)
         i = int(sampled.argmax())
-        own = np.polynomial.Polynomial(self.coefs[:, i] * width[i] ** np.arange(self.degree + 1))
-        slope = own.deriv()
+        polynomial = np.polynomial.Polynomial(self.coefs[:, i] * width[i] ** np.arange(self.degree + 1))
+        slope = polynomial.deriv()
         # high powers that are rounding would make roots() ill-posed; a constant has no turning point
         roots = slope.trim(1e-15 * np.abs(slope.coef).max()).roots() if self.degree > 1 else np.empty(0)
         turns = roots[np.isreal(roots)].real
         at = np.concatenate(([0.0, 1.0], turns[(turns > 0) & (turns < 1)]))
-        values = own(at)
+        values = polynomial(at)
         k = int(np.abs(values).argmax())
         return float(self.breaks[i] + at[k] * width[i]), float(values[k])
 
@@ -258,7 +258,7 @@ def merged(times: ArrayLike, tolerance: float) -> Array:
 
 def _horner(coefs: Array, s: Array) -> Array:
     """Values of polynomials with ascending `coefs` (first axis) at `s`."""
-    out = np.array(coefs[-1])
+    values = np.array(coefs[-1])
     for c in coefs[-2::-1]:
-        out = out * s + c
-    return out
+        values = values * s + c
+    return values

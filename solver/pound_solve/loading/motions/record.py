@@ -93,8 +93,8 @@ def _parsed(text: str, reader: str, options: tuple[tuple[str, Any], ...]) -> Raw
 def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     """Motion of a RECORD card; raises as `samples` does."""
     name = str(card_values["FILE"])
-    found = samples(card_values, context)
-    raw, path = found.raw, found.path
+    record = samples(card_values, context)
+    raw, path = record.raw, record.path
     unit, warnings = _unit(raw, card_values.get("UNIT"))
     if card_values.get("DIRECTION") == "R" and unit != "DECK":
         message = (
@@ -106,13 +106,13 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     if unit == "G" and abs(abs(scale) / context.gravity - 1.0) < 0.01:
         warnings.append(f"SCALE={scale:g} is gravity, by which samples in G are multiplied anyway")
     shipped = known(name)
-    if shipped and found.sha256 != shipped.sha256:
+    if shipped and record.sha256 != shipped.sha256:
         warnings.append(
             f"{path.name} differs from the file that {name} stood for when this program was released"
         )
     return finish(
         card_values,
-        found.lines * factor,
+        record.lines * factor,
         context,
         {
             "kind": SPEC.name,
@@ -126,7 +126,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
             "unit": unit,
             "start": float(card_values.get("START", 0.0)),
             "tscale": float(card_values.get("TSCALE", 1.0)),
-            "sha256": found.sha256,
+            "sha256": record.sha256,
             "warnings": warnings,
             "notes": raw.notes,
             "cuts": _cuts(raw, card_values),
@@ -138,14 +138,14 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, str, str], ...]:
     """Doubts whether the strong part of a record acts, and whether its step is right."""
     whole = Piecewise.from_samples(raw.t, raw.values)
-    start, out = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
+    start, doubts = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
     at, _ = whole.peak()
     if at < start:
         told = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
-        out.append((told, "START", "give an earlier START, or a DURATION to the part that is meant"))
+        doubts.append((told, "START", "give an earlier START, or a DURATION to the part that is meant"))
     if card_values.get("DT") is not None and (wrong := mispaced(whole)):
-        out.append((wrong, "DT", "DT is the time from one sample to the next in s"))
-    return tuple(out)
+        doubts.append((wrong, "DT", "DT is the time from one sample to the next in s"))
+    return tuple(doubts)
 
 
 def _lines(text: str, span: tuple[int, int] | None) -> str:

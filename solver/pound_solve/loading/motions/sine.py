@@ -97,11 +97,11 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 
 def omega(card_values: Mapping[str, Any]) -> np.longdouble:
     """Circular frequency [rad/T] from PERIOD or OMEGA."""
-    period, given = card_values.get("PERIOD"), card_values.get("OMEGA")
-    if (period is None) == (given is None):
+    period, frequency = card_values.get("PERIOD"), card_values.get("OMEGA")
+    if (period is None) == (frequency is None):
         item = "FILE" if period is None else "OMEGA"
         raise RecordError("R405", "a SINE needs PERIOD or OMEGA, one of the two", item=item)
-    return 2 * np.arccos(_Long(-1)) / _Long(period) if given is None else _Long(given)
+    return 2 * np.arccos(_Long(-1)) / _Long(period) if frequency is None else _Long(frequency)
 
 
 def ending(card_values: Mapping[str, Any], context: LoadingContext) -> float:
@@ -126,11 +126,11 @@ def intervals(w: np.longdouble, start: float, end: float) -> Array:
 
 def taylor(amplitude: Any, w: np.longdouble, angle: Any, base: Any = 0.0) -> Array:
     """Taylor coefficients of ``amplitude sin(w s + angle) + base`` in s, shape (degree + 1, len(angle))."""
-    out, turns = np.empty((_DEGREE + 1, len(angle))), (np.sin(angle), np.cos(angle))
+    coefs, turns = np.empty((_DEGREE + 1, len(angle))), (np.sin(angle), np.cos(angle))
     for k in range(_DEGREE + 1):
         sign = 1 - 2 * (k // 2 % 2)
-        out[k] = sign * amplitude * w**k / math.factorial(k) * turns[k % 2] + (base if k == 0 else 0.0)
-    return out
+        coefs[k] = sign * amplitude * w**k / math.factorial(k) * turns[k % 2] + (base if k == 0 else 0.0)
+    return coefs
 
 
 def _joined(parts: list[Piecewise]) -> Piecewise:

@@ -77,7 +77,7 @@ def of_samples(
     facts: Mapping[str, Any],
 ) -> Motion:
     """Motion of accelerations `a` [L/T^2] at the times `t` that a card asks for, see `samples`."""
-    own = {
+    info = {
         "kind": spec.name,
         "name": f"{spec.name} SEED={int(card_values['SEED'])}",
         "unit": "DECK",
@@ -87,8 +87,8 @@ def of_samples(
     }
     scale = float(card_values.get("SCALE", 1.0))
     doubts = _in_g(card_values.get("PGA"), context) if scale == 1.0 else ()
-    own["warnings"] = doubts
-    return finish(card_values, Piecewise.from_samples(t, a * scale), context, own | dict(facts))
+    info["warnings"] = doubts
+    return finish(card_values, Piecewise.from_samples(t, a * scale), context, info | dict(facts))
 
 
 def _in_g(pga: float | None, context: LoadingContext) -> tuple[str, ...]:

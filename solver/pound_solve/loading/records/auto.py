@@ -31,8 +31,8 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     known = formats()
     for spec in sorted(known.values(), key=lambda s: (s.impl.greedy, s.name)):
         if spec.impl.sniff(start):
-            given = {f.name for f in SPEC.fields if options.get(f.name, f.default) != f.default}
-            if odd := sorted(given - {f.name for f in spec.fields}):
+            asked = {f.name for f in SPEC.fields if options.get(f.name, f.default) != f.default}
+            if odd := sorted(asked - {f.name for f in spec.fields}):
                 raise RecordError(
                     "R405", f"the file is {spec.name}, which takes no {', '.join(odd)}", "leave it out"
                 )

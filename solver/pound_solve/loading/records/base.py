@@ -139,16 +139,16 @@ class RawRecord:
     def _contradictions(self) -> Iterator[str]:
         """Peak and length of the samples where they are not those that the header prints."""
         if self.peak:
-            stated, found = abs(float(self.peak)), float(np.abs(self.values).max())
+            stated, actual = abs(float(self.peak)), float(np.abs(self.values).max())
             # agencies print samples with five digits and take the peak before that
-            if abs(found - stated) > _last_place(self.peak) + 1e-4 * stated:
-                yield f"the header gives a peak of {stated:g} {self.unit}, the samples have {found:g}"
+            if abs(actual - stated) > _last_place(self.peak) + 1e-4 * stated:
+                yield f"the header gives a peak of {stated:g} {self.unit}, the samples have {actual:g}"
         if self.length:
             stated, step = abs(float(self.length)), float(self.t[1] - self.t[0])
-            found = float(self.t[-1] - self.t[0]) + step
+            actual = float(self.t[-1] - self.t[0]) + step
             # some count samples, some the steps between them, some what an approximate clock gave
-            if abs(found - stated) > _last_place(self.length) + 2 * step:
-                yield f"the header gives a length of {stated:g} s, the samples last {found:g} s"
+            if abs(actual - stated) > _last_place(self.length) + 2 * step:
+                yield f"the header gives a length of {stated:g} s, the samples last {actual:g} s"
 
     def named(self, format: str) -> RawRecord:
         """The same samples, marked as recognised as that format."""

@@ -138,12 +138,12 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
         R402 where the integers or reals are not there.
     """
     for part, first in parts(lines, _OPENING.match):
-        found = {
+        numbers = {
             m[1].lower(): " ".join(fixed(part[k + 1 : k + 1 + int(m[2][:3])], int(m[3][:3]) or 1)).split()
             for k, line in enumerate(part)
             if (m := _NUMBERS.match(line[:_LONGEST]))
         }
-        integers, reals = found.get("integer", []), found.get("real", [])
+        integers, reals = numbers.get("integer", []), numbers.get("real", [])
         if len(integers) <= _AZIMUTH or len(reals) <= _PEAK:
             raise RecordError(
                 "R402",

@@ -21,12 +21,12 @@ _STEP, _COUNT, _UNIT = "SAMPLING_INTERVAL_S", "NDATA", "UNITS"
 
 def _entries(lines: list[str]) -> dict[str, tuple[str, int]]:
     """Values of the header by name, each with its line number."""
-    out: dict[str, tuple[str, int]] = {}
+    entries: dict[str, tuple[str, int]] = {}
     for number, line in enumerate(lines[:_LONGEST], 1):
         if not (entry := _ENTRY.match(line)):
             break
-        out[entry[1]] = entry[2].strip(), number
-    return out
+        entries[entry[1]] = entry[2].strip(), number
+    return entries
 
 
 def sniff(head: str) -> bool:

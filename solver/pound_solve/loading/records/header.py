@@ -164,7 +164,7 @@ def side_by_side(lines: Sequence[str], first: int, names: Sequence[str], k: int)
         R402 for a row that holds another number of samples.
     """
     values, counts = parse(lines, first)
-    for number, found in enumerate(counts, first):
-        if found not in (0, len(names)):
-            raise RecordError("R402", f"line {number}: {found} numbers, not {len(names)}")
+    for number, columns in enumerate(counts, first):
+        if columns not in (0, len(names)):
+            raise RecordError("R402", f"line {number}: {columns} numbers, not {len(names)}")
     return values.reshape(-1, len(names))[:, k].copy()

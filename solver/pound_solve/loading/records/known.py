@@ -174,9 +174,9 @@ def find(name: str, search_path: Sequence[Path] = ()) -> Path:
 
 def _places(file: str, search_path: Sequence[Path]) -> Iterator[Path]:
     """Where a file name may lead, in order, each place once."""
-    given = Path(os.path.expanduser(file))
+    path = Path(os.path.expanduser(file))
     # joining an absolute path to a folder gives that path again
-    yield from dict.fromkeys([given, *(Path(folder, given) for folder in search_path)])
+    yield from dict.fromkeys([path, *(Path(folder, path) for folder in search_path)])
 
 
 def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> RecordError:
@@ -202,9 +202,9 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
 
 def _cure(record: Known) -> str:
     """How a known record is had with the package and without it, and what runs without it."""
-    own = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
+    without = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
     return (
-        f"{_EXTRA} brings it: {record.description}; or {own}. SINE, TABLE and SYNTHETIC motions "
+        f"{_EXTRA} brings it: {record.description}; or {without}. SINE, TABLE and SYNTHETIC motions "
         "and most of the examples (pound-solve example) need no record"
     )
 

@@ -131,7 +131,7 @@ def _decimal_points(lines: Sequence[str], first: int) -> Sequence[str]:
 
 def _patient(row: list[str], number: int) -> list[str]:
     """Words of one line as numbers that ``float`` takes, glued ones parted, or R402."""
-    out = []
+    words = []
     for word in row:
         parts = _NUMBER.findall(word) if _GLUED.fullmatch(word) else [word]
         for part in parts:
@@ -140,5 +140,5 @@ def _patient(row: list[str], number: int) -> list[str]:
                 raise RecordError("R402", f"line {number}: '{part[:30]}' is not a finite number")
             if abs(float(plain)) >= _BEYOND:
                 raise RecordError("R404", f"line {number}: '{part[:30]}' is beyond any record")
-            out.append(plain)
-    return out
+            words.append(plain)
+    return words

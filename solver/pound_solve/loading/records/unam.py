@@ -97,8 +97,8 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 def _channels(entries: list[tuple[str, str, int]], key: str) -> list[tuple[str, int]]:
     """Words of all channels in the entries whose names begin so, each with its line number."""
     # ACEL. MAX. is given twice: the peaks, and the samples at which they occur
-    found = [(value, line) for name, value, line in entries if name.startswith(key)]
-    return [(word.strip(), line) for value, line in found for word in value.split("/")[1:]]
+    chosen = [(value, line) for name, value, line in entries if name.startswith(key)]
+    return [(word.strip(), line) for value, line in chosen for word in value.split("/")[1:]]
 
 
 def _value(entries: list[tuple[str, str, int]], key: str) -> str:
