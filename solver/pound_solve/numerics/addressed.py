@@ -97,9 +97,9 @@ def read(context: Any, builder: Any, kind: Any, place: Any) -> Any:
         return read_array(context, builder, kind, place)
     if isinstance(kind, types.BaseTuple):
         values, before = [], 0
-        for own in kind.types:
-            values.append(read(context, builder, own, builder.gep(place, [CELL(before)])))
-            before += n_cells(own)
+        for field in kind.types:
+            values.append(read(context, builder, field, builder.gep(place, [CELL(before)])))
+            before += n_cells(field)
         return context.make_tuple(builder, kind, values)
     if isinstance(kind, types.Boolean):
         return builder.trunc(load(builder, place), ir.IntType(1))
@@ -120,8 +120,8 @@ def read_array(context: Any, builder: Any, kind: Any, place: Any) -> Any:
     address = builder.gep(place, [CELL(PLACE)])
     address = load(builder, builder.bitcast(address, layout.elements[PLACE].as_pointer()))
     value = ir.Constant(layout, None)  # no owners
-    for n, own in enumerate([elements, CELL(size), address], start=OWNERS):
-        value = builder.insert_value(value, own, n)
+    for n, field in enumerate([elements, CELL(size), address], start=OWNERS):
+        value = builder.insert_value(value, field, n)
     for n in range(kind.ndim):
         value = builder.insert_value(value, shape[n], [PLACE + 1, n])
         value = builder.insert_value(value, strides[n], [PLACE + 2, n])

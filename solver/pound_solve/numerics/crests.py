@@ -93,17 +93,17 @@ def may_exceed(values: Array, low: Array, high: Array) -> Doubts:
     low, high : ndarray, shape (n,)
         Smallest and largest values so far, these among them.
     """
-    found = [Doubts(np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))]
+    doubts = [Doubts(np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))]
     for some in some_rows(values):
-        own, known = values[some], (high[some], -low[some])
-        change = np.zeros(own.shape)
-        np.subtract(own[:, 1:], own[:, :-1], out=change[:, :-1])
+        chunk, known = values[some], (high[some], -low[some])
+        change = np.zeros(chunk.shape)
+        np.subtract(chunk[:, 1:], chunk[:, :-1], out=change[:, :-1])
         np.abs(change, out=change)
-        most = own.max(axis=1) - known[0], -own.min(axis=1) - known[1]
+        most = chunk.max(axis=1) - known[0], -chunk.min(axis=1) - known[1]
         rows = np.flatnonzero(np.maximum(*most) + MARGIN * change.max(axis=1) > 0.0)
         best = known[0][rows], known[1][rows]
-        found += _doubts(own[rows], change[rows], best, some.start + rows)
-    return Doubts(*map(np.concatenate, zip(*found)))
+        doubts += _doubts(chunk[rows], change[rows], best, some.start + rows)
+    return Doubts(*map(np.concatenate, zip(*doubts)))
 
 
 def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: Index) -> Iterator[Doubts]:
@@ -117,9 +117,9 @@ def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: In
         at = starts[group][:, None] + _AROUND
         bounds = _bounds(sign * values[row[:, None], np.clip(at, 0, count - 1)])
         within = at[:, BEFORE : BEFORE + GROUP] < count
-        own, cell = np.nonzero((bounds > known[row][:, None]) & within)
-        doubtful = numbers[row[own]], starts[group[own]] + cell, bounds[own, cell]
-        yield Doubts(np.full(len(own), sign), *doubtful)
+        which, cell = np.nonzero((bounds > known[row][:, None]) & within)
+        doubtful = numbers[row[which]], starts[group[which]] + cell, bounds[which, cell]
+        yield Doubts(np.full(len(which), sign), *doubtful)
 
 
 def near(values: Array, best: Array) -> Flags:
@@ -149,10 +149,10 @@ def _bounds(values: Array) -> Array:
 
 def _beside(x: Array) -> Array:
     """The largest of every column and of those next to it."""
-    out = x.copy()
-    np.maximum(out[:, 1:], x[:, :-1], out=out[:, 1:])
-    np.maximum(out[:, :-1], x[:, 1:], out=out[:, :-1])
-    return out
+    largest = x.copy()
+    np.maximum(largest[:, 1:], x[:, :-1], out=largest[:, 1:])
+    np.maximum(largest[:, :-1], x[:, 1:], out=largest[:, :-1])
+    return largest
 
 
 def crests(values: Array) -> tuple[Array, Array]:
@@ -163,9 +163,9 @@ def crests(values: Array) -> tuple[Array, Array]:
     values : ndarray, shape (n, DEGREE + 1)
         At the `NODES`.
     """
-    found = values @ _ON_GRID.T
-    at = np.argmax(found, axis=1)
-    top, x = found[np.arange(len(at)), at], _GRID[at]
+    sampled = values @ _ON_GRID.T
+    at = np.argmax(sampled, axis=1)
+    top, x = sampled[np.arange(len(at)), at], _GRID[at]
     c = _FIT @ values.T
     slope = np.polynomial.chebyshev.chebder(c)
     bend = np.polynomial.chebyshev.chebder(slope)

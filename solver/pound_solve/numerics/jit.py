@@ -81,9 +81,9 @@ def subscripts(function: Function) -> set[str]:
     """Names of globals by which a function indexes."""
     code = itertools.pairwise(dis.get_instructions(function))
     return {
-        own.argval
-        for own, then in code
-        if own.opname == "LOAD_GLOBAL" and (then.opname == "BINARY_SUBSCR" or then.argrepr == "[]")
+        load.argval
+        for load, then in code
+        if load.opname == "LOAD_GLOBAL" and (then.opname == "BINARY_SUBSCR" or then.argrepr == "[]")
     }
 
 
@@ -96,17 +96,17 @@ def loose(function: Function) -> Function:
 @contextmanager
 def compiling() -> Iterator[None]:
     """Settings of numba while a kernel is called that may have to be compiled."""
-    found = numba()
-    if found is None:
+    module = numba()
+    if module is None:
         yield
         return
-    config = found.config
+    config = module.config
     before = config.OPT
     # rows of a sparse matrix are loops of one or two turns: unrolled, as higher levels do, they run slower
     config.OPT = type(before)(1)
     try:
         with warnings.catch_warnings():  # that functions as values are new
-            warnings.simplefilter("ignore", found.core.errors.NumbaExperimentalFeatureWarning)
+            warnings.simplefilter("ignore", module.core.errors.NumbaExperimentalFeatureWarning)
             yield
     finally:
         config.OPT = before
@@ -136,8 +136,8 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     callable
         The function itself where there is no numba.
     """
-    found = numba()
-    if found is None:
+    module = numba()
+    if module is None:
         return function
     scope, indices = dict(function.__globals__), subscripts(function)
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
@@ -157,8 +157,8 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     if "loose" in vars(function):
         how["fastmath"] = FASTMATH
     with compiling():
-        out: Function = found.njit(*([] if signature is None else [signature]), **how)(twin)
-    return out
+        kernel: Function = module.njit(*([] if signature is None else [signature]), **how)(twin)
+    return kernel
 
 
 def kinds_of(arguments: Iterable[Any]) -> tuple[Any, ...]:

@@ -40,14 +40,14 @@ def place() -> Place:
     """The folder of this version, which is made; versions beside it that are no longer used are deleted."""
     asked = os.environ.get(VARIABLE)
     for root in roots(asked):
-        own = root / digest()
+        folder = root / digest()
         try:
             claim(root, trusted=str(root) == asked)
-            claim(own, trusted=str(root) == asked)
+            claim(folder, trusted=str(root) == asked)
         except OSError:
             continue
         prune(root)
-        return Place(own, ELSEWHERE.format(asked, root) if asked and str(root) != asked else "")
+        return Place(folder, ELSEWHERE.format(asked, root) if asked and str(root) != asked else "")
     return Place(None, NOT_KEPT)
 
 
@@ -74,10 +74,10 @@ def user_cache() -> Path:
         from platformdirs import user_cache_path
     except ImportError:  # numba was installed without the extra `fast`
         return Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / NAME
-    found = user_cache_path(NAME, appauthor=False)
-    if not found.is_absolute():
+    folder = user_cache_path(NAME, appauthor=False)
+    if not folder.is_absolute():
         raise RuntimeError("the user has no home")
-    return found
+    return folder
 
 
 def claim(folder: Path, trusted: bool = False) -> None:

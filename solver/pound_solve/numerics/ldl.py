@@ -76,12 +76,12 @@ def order(n: int, i: Index, j: Index) -> Index:
     a.data[:] = 1.0
     a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
     symmetric = {"SymmetricMode": True}
-    found = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+    by_degree = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
     line = from_both_ends(reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64))
     banded = splu(a[line][:, line], permc_spec="NATURAL", diag_pivot_thresh=0.0, options=symmetric)
-    if banded.L.nnz <= found.L.nnz + SPARE * n:
+    if banded.L.nnz <= by_degree.L.nnz + SPARE * n:
         return line
-    return np.argsort(found.perm_c).astype(np.int64)
+    return np.argsort(by_degree.perm_c).astype(np.int64)
 
 
 def _order_of_few(n: int, i: Index, j: Index) -> Index:
@@ -92,8 +92,8 @@ def _order_of_few(n: int, i: Index, j: Index) -> Index:
             near[a].add(b)
             near[b].add(a)
     line = from_both_ends(np.array(ordering.along_a_line(near), np.int64))
-    found = np.array(ordering.minimum_degree(near), np.int64)
-    return line if _fill(near, line) <= _fill(near, found) + SPARE * n else found
+    by_degree = np.array(ordering.minimum_degree(near), np.int64)
+    return line if _fill(near, line) <= _fill(near, by_degree) + SPARE * n else by_degree
 
 
 def from_both_ends(line: Index) -> Index:
@@ -104,18 +104,18 @@ def from_both_ends(line: Index) -> Index:
 def _fill(near: Sequence[set[int]], order: Index) -> int:
     """Entries of the factor in an order of elimination."""
     place = np.argsort(order).tolist()
-    own = [{place[x] for x in near[k] if place[x] > column} for column, k in enumerate(order.tolist())]
-    return sum(map(len, filled(own)))
+    coupled = [{place[x] for x in near[k] if place[x] > column} for column, k in enumerate(order.tolist())]
+    return sum(map(len, filled(coupled)))
 
 
 def analyse(n: int, i: Index, j: Index) -> Pattern:
     """Pattern of a matrix in its order of elimination, and of its factor; see `order`."""
-    own: list[set[int]] = [set() for _ in range(n)]
+    coupled: list[set[int]] = [set() for _ in range(n)]
     for a, b in zip(np.maximum(i, j).tolist(), np.minimum(i, j).tolist()):
         if a != b:
-            own[b].add(a)
-    ap, ai = _compressed([[column, *sorted(rows)] for column, rows in enumerate(own)])
-    below = filled(own)
+            coupled[b].add(a)
+    ap, ai = _compressed([[column, *sorted(rows)] for column, rows in enumerate(coupled)])
+    below = filled(coupled)
     lp, li = _compressed(below)
     rows: list[list[tuple[int, int]]] = [[] for _ in range(n)]  # of L: columns and positions
     for column in range(n):
@@ -153,7 +153,7 @@ def pointers(lists: Sequence[Sized]) -> Place:
 
 def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Place, Place]:
     """Pointers and entries of a list of lists in one array."""
-    return pointers(lists), np.array([x for own in lists for x in own], np.uint32)
+    return pointers(lists), np.array([x for row in lists for x in row], np.uint32)
 
 
 def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: E741

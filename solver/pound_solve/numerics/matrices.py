@@ -26,9 +26,9 @@ def gathered(
     """Matrix of that shape whose entries are sums of `values` at (`rows`, `columns`)."""
     i, j, x = np.asarray(rows, np.int64), np.asarray(columns, np.int64), np.asarray(values, float)
     if max(shape) <= most_dense:
-        out = np.zeros(shape)
-        np.add.at(out, (i, j), x)
-        return out
+        matrix = np.zeros(shape)
+        np.add.at(matrix, (i, j), x)
+        return matrix
     from scipy.sparse import coo_array  # not for small decks: slow to import
 
     return coo_array((x, (i, j)), shape).tocsr()
@@ -67,12 +67,12 @@ def layers(a: Matrix) -> list[tuple[Index, Array]]:
     """Columns and values of the first entry of every row, of the second, ...; zero where there is none."""
     i, j, x = entries(a)
     place = np.arange(len(i)) - np.searchsorted(i, i)
-    out = []
+    pairs = []
     for k in range(place.max(initial=-1) + 1):
         columns, values = np.zeros(a.shape[0], np.int64), np.zeros(a.shape[0])
         columns[i[place == k]], values[i[place == k]] = j[place == k], x[place == k]
-        out.append((columns, values))
-    return out
+        pairs.append((columns, values))
+    return pairs
 
 
 def at(a: Matrix, rows: Index, columns: Index) -> Array:
@@ -90,9 +90,9 @@ def used_rows(a: Matrix) -> Flags:
     if isinstance(a, np.ndarray):
         used: Flags = np.any(a != 0.0, axis=1)
         return used
-    out = np.zeros(a.shape[0], bool)
-    out[entries(a)[0]] = True
-    return out
+    flags = np.zeros(a.shape[0], bool)
+    flags[entries(a)[0]] = True
+    return flags
 
 
 def used_columns(a: Matrix) -> Flags:

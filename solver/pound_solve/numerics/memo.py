@@ -39,13 +39,13 @@ def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
         @wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> R:
             key = digest([*args, *kwargs.items()])
-            found = kept.pop(key, None)  # other threads may ask meanwhile: they compute their own
-            if found is None:
-                found = function(*args, **kwargs)
-            kept[key] = found
+            result = kept.pop(key, None)  # other threads may ask meanwhile: they compute their own
+            if result is None:
+                result = function(*args, **kwargs)
+            kept[key] = result
             for oldest in list(kept)[: max(len(kept) - most, 0)]:
                 kept.pop(oldest, None)
-            return found
+            return result
 
         return call
 
@@ -54,15 +54,15 @@ def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 def digest(values: Any) -> bytes:
     """Digest of numbers, texts, arrays and matrices, and of sequences of them."""
-    found = hashlib.sha256()
+    hasher = hashlib.sha256()
     for value in values:
         if isinstance(value, list | tuple):
-            found.update(b"(" + digest(value))
+            hasher.update(b"(" + digest(value))
         elif hasattr(value, "shape"):
-            own = [value] if isinstance(value, np.ndarray) else entries(value)
-            found.update(f"{value.shape} {[x.dtype.str for x in own]}".encode())
-            for x in own:
-                found.update(x.tobytes())
+            arrays = [value] if isinstance(value, np.ndarray) else entries(value)
+            hasher.update(f"{value.shape} {[x.dtype.str for x in arrays]}".encode())
+            for x in arrays:
+                hasher.update(x.tobytes())
         else:
-            found.update(f"{type(value).__name__} {value!r};".encode())
-    return found.digest()
+            hasher.update(f"{type(value).__name__} {value!r};".encode())
+    return hasher.digest()

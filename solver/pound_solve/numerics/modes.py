@@ -51,8 +51,8 @@ def massless(m: Matrix) -> Flags:
 
 def scaling(k: Matrix) -> Array:
     """Factors that make a diagonal of ones of K, shape (n,)."""
-    own = np.abs(diagonal(k))
-    return 1.0 / np.sqrt(np.where(own > 0.0, own, 1.0))
+    stiffness = np.abs(diagonal(k))
+    return 1.0 / np.sqrt(np.where(stiffness > 0.0, stiffness, 1.0))
 
 
 def softest(a: Matrix) -> tuple[float, Array]:
@@ -255,14 +255,14 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
         more = max(wanted + MORE - len(values), 1)
         start = follow(m @ _generic(len(at)))
         try:
-            found, x = eigsh(
+            eigenvalues, x = eigsh(
                 k, more, m, -shift, "LM", start, OPinv=LinearOperator(k.shape, follow), tol=0, ncv=None
             )
         except ArpackError:
             return None
         x = factor.solve(m @ x)  # without massless components
         x /= np.sqrt((x * (m @ x)).sum(axis=0))
-        values, shapes = np.append(values, found), np.hstack([shapes, x])
+        values, shapes = np.append(values, eigenvalues), np.hstack([shapes, x])
         order = np.argsort(values, kind="stable")
         values, shapes = values[order], shapes[:, order]
         # the widest gap after those requested, and whether as many modes lie below it

@@ -18,16 +18,16 @@ Neighbours = Sequence[set[int]]
 
 def levels(near: Neighbours, start: int) -> list[list[int]]:
     """Unknowns by their distance from one of them, those with few neighbours first."""
-    out, seen = [[start]], {start}
+    tiers, seen = [[start]], {start}
     while True:
         further = []
-        for own in out[-1]:
-            fresh = sorted(near[own] - seen, key=lambda x: (len(near[x]), x))
+        for unknown in tiers[-1]:
+            fresh = sorted(near[unknown] - seen, key=lambda x: (len(near[x]), x))
             seen.update(fresh)
             further += fresh
         if not further:
-            return out
-        out.append(further)
+            return tiers
+        tiers.append(further)
 
 
 def along_a_line(near: Neighbours) -> list[int]:
@@ -35,16 +35,16 @@ def along_a_line(near: Neighbours) -> list[int]:
     order: list[int] = []
     left = set(range(len(near)))
     while left:
-        found = levels(near, min(left, key=lambda x: (len(near[x]), x)))
+        tiers = levels(near, min(left, key=lambda x: (len(near[x]), x)))
         while True:  # a start that is farther away, until there is none
-            end = min(found[-1], key=lambda x: (len(near[x]), x))
+            end = min(tiers[-1], key=lambda x: (len(near[x]), x))
             again = levels(near, end)
-            if len(again) <= len(found):
+            if len(again) <= len(tiers):
                 break
-            found = again
-        own = [x for level in found for x in level]
-        left.difference_update(own)
-        order += own
+            tiers = again
+        unknowns = [x for level in tiers for x in level]
+        left.difference_update(unknowns)
+        order += unknowns
     return order[::-1]
 
 

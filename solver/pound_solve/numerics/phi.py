@@ -32,13 +32,13 @@ def _series(degree: int, of_duhamel: bool) -> Array:
     ``K_k = k! sum z^n / (n + k + 1)!`` and ``J_k = sum z^n / (n! (n + k + 1))``; see `_near`.
     """
     count = _near(degree)[1]
-    out = np.empty((count, degree + 1))
+    coefs = np.empty((count, degree + 1))
     for k in range(degree + 1):
         for n in range(count):
-            out[n, k] = (
+            coefs[n, k] = (
                 factorial(k) / factorial(n + k + 1) if of_duhamel else 1.0 / (factorial(n) * (n + k + 1))
             )
-    return out
+    return coefs
 
 
 def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
@@ -54,27 +54,27 @@ def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
 def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:
     """Return ``K_0 .. K_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
     z = np.asarray(z, complex)
-    out = np.empty((degree + 1, *z.shape), complex)
+    integrals = np.empty((degree + 1, *z.shape), complex)
     small = np.abs(z) < _near(degree)[0]
     safe = np.where(small, 1.0, z)
-    out[0] = np.expm1(z) / safe if exp_z is None else (exp_z - 1.0) / safe
+    integrals[0] = np.expm1(z) / safe if exp_z is None else (exp_z - 1.0) / safe
     for k in range(1, degree + 1):
-        out[k] = (k * out[k - 1] - 1.0) / safe
+        integrals[k] = (k * integrals[k - 1] - 1.0) / safe
     if small.any():
-        out[:, small] = _sum_series(z[small], degree, True)
-    return out
+        integrals[:, small] = _sum_series(z[small], degree, True)
+    return integrals
 
 
 def moments(z: Complex, degree: int) -> Complex:
     """Return ``J_0 .. J_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
     z = np.asarray(z, complex)
-    out = np.empty((degree + 1, *z.shape), complex)
+    integrals = np.empty((degree + 1, *z.shape), complex)
     small = np.abs(z) < _near(degree)[0]
     safe = np.where(small, 1.0, z)
     exp_z = np.exp(z)
-    out[0] = (exp_z - 1.0) / safe
+    integrals[0] = (exp_z - 1.0) / safe
     for k in range(1, degree + 1):
-        out[k] = (exp_z - k * out[k - 1]) / safe
+        integrals[k] = (exp_z - k * integrals[k - 1]) / safe
     if small.any():
-        out[:, small] = _sum_series(z[small], degree, False)
-    return out
+        integrals[:, small] = _sum_series(z[small], degree, False)
+    return integrals

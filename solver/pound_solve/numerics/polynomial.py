@@ -42,11 +42,11 @@ def shift(coefs: Array, t: float | Array) -> Array:
     if np.ndim(t) == 0:
         table, power = _binomials(len(coefs))
         return np.asarray((table * float(t) ** power) @ coefs.reshape(len(coefs), -1)).reshape(coefs.shape)
-    out = np.array(coefs)
-    for k in range(len(out) - 1):  # Horner's divisions, which need no room beside the coefficients
-        for i in range(len(out) - 2, k - 1, -1):
-            out[i] += t * out[i + 1]
-    return out
+    shifted = np.array(coefs)
+    for k in range(len(shifted) - 1):  # Horner's divisions, which need no room beside the coefficients
+        for i in range(len(shifted) - 2, k - 1, -1):
+            shifted[i] += t * shifted[i + 1]
+    return shifted
 
 
 def value(coefs: Array, t: float, order: int = 0) -> Array:
@@ -55,10 +55,10 @@ def value(coefs: Array, t: float, order: int = 0) -> Array:
     if order >= n:
         return np.zeros(coefs.shape[1:])
     factors = _falling(n, order).tolist()
-    out = factors[-1] * coefs[-1]
-    for factor, own in zip(factors[-2::-1], coefs[-2::-1]):
-        out = out * t + factor * own
-    return np.asarray(out)
+    total = factors[-1] * coefs[-1]
+    for factor, coef in zip(factors[-2::-1], coefs[-2::-1]):
+        total = total * t + factor * coef
+    return np.asarray(total)
 
 
 def on(coefs: Array, t: Array, order: int = 0) -> Array:
@@ -77,12 +77,12 @@ def on(coefs: Array, t: Array, order: int = 0) -> Array:
     _, terms, n = coefs.shape
     if order >= terms:
         return np.zeros((n, *t.shape))
-    own = coefs[:, order:].transpose(1, 2, 0)[..., None]  # power, polynomial, set
+    powers = coefs[:, order:].transpose(1, 2, 0)[..., None]  # power, polynomial, set
     factors = _falling(terms, order).tolist()
-    out = np.broadcast_to(factors[-1] * own[-1], (n, *t.shape))
-    for factor, x in zip(factors[-2::-1], own[-2::-1]):
-        out = out * t + factor * x
-    return out
+    sums = np.broadcast_to(factors[-1] * powers[-1], (n, *t.shape))
+    for factor, x in zip(factors[-2::-1], powers[-2::-1]):
+        sums = sums * t + factor * x
+    return sums
 
 
 def values(coefs: Array, t: Array, order: int = 0) -> Array:

@@ -77,9 +77,9 @@ def provider() -> Provider:
     """What makes the kernels of this process ready."""
     if os.environ.get("POUND_COMPILE") == "0":
         return Interpreter("")
-    found = library.load(library.FOLDER)
-    if found is not None:
-        return found
+    loaded = library.load(library.FOLDER)
+    if loaded is not None:
+        return loaded
     told = library.REFUSED if library.present(library.FOLDER) else ""
     return Numba(told) if find_spec("numba") else Interpreter("; ".join(filter(None, [told, INTERPRETED])))
 

@@ -10,5 +10,5 @@ import numpy as np
 def record(kind: type) -> Any:
     """A numpy record with the fields of a protocol, whole numbers and real ones, all zero."""
     numbers = {int: np.int64, float: np.float64}
-    fields = [(name, numbers[own]) for name, own in get_type_hints(kind).items()]
+    fields = [(name, numbers[hint]) for name, hint in get_type_hints(kind).items()]
     return np.zeros(1, np.dtype(fields, align=True)).view(np.recarray)[0]
