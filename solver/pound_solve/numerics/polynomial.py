@@ -77,10 +77,10 @@ def on(coefs: Array, t: Array, order: int = 0) -> Array:
     _, terms, n = coefs.shape
     if order >= terms:
         return np.zeros((n, *t.shape))
-    powers = coefs[:, order:].transpose(1, 2, 0)[..., None]  # power, polynomial, set
+    by_power = coefs[:, order:].transpose(1, 2, 0)[..., None]  # power, polynomial, set
     factors = _falling(terms, order).tolist()
-    sums = np.broadcast_to(factors[-1] * powers[-1], (n, *t.shape))
-    for factor, x in zip(factors[-2::-1], powers[-2::-1]):
+    sums = np.broadcast_to(factors[-1] * by_power[-1], (n, *t.shape))
+    for factor, x in zip(factors[-2::-1], by_power[-2::-1]):
         sums = sums * t + factor * x
     return sums
 

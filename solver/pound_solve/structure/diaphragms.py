@@ -71,10 +71,10 @@ def sides(
     `members` are the numbers of the elements at each node.
     """
     element = structure.model.elements[spring.element]
-    known = structure.model.props[element.prop]["DIAPHRAGMS"]
+    stiffness = structure.model.props[element.prop]["DIAPHRAGMS"]
     first, second = map(Diaphragm, spring.facts["masses"])
-    if known is not None:
-        return Diaphragm(first.mass, known[0]), Diaphragm(second.mass, (*known, math.inf)[1])
+    if stiffness is not None:
+        return Diaphragm(first.mass, stiffness[0]), Diaphragm(second.mass, (*stiffness, math.inf)[1])
     (nx, ny), _ = axes(spring.facts["angle"])
     first = _behind(structure, members, element.i, (-nx, -ny)) or first
     if element.j is not None:

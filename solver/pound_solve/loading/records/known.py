@@ -202,9 +202,9 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
 
 def _cure(record: Known) -> str:
     """How a known record is had with the package and without it, and what runs without it."""
-    without = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
+    by_hand = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
     return (
-        f"{_EXTRA} brings it: {record.description}; or {without}. SINE, TABLE and SYNTHETIC motions "
+        f"{_EXTRA} brings it: {record.description}; or {by_hand}. SINE, TABLE and SYNTHETIC motions "
         "and most of the examples (pound-solve example) need no record"
     )
 

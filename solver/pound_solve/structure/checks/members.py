@@ -202,12 +202,12 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
             continue
         assert spring.strengths is not None
         if card.spec.name not in MEMBERS or card.values.get("KH") is not None:
-            new = list(_rotation(model, card, spring))
+            doubts = list(_rotation(model, card, spring))
         elif card["I"]:
-            new = [*_strain(model, card, element, spring.strengths), *_ductility(card)]
+            doubts = [*_strain(model, card, element, spring.strengths), *_ductility(card)]
         else:
             continue
-        for d in new:
+        for d in doubts:
             problems.setdefault(card.label, d)
     return list(problems.values())
 
