@@ -110,10 +110,10 @@ def _family(name: str) -> tuple[str, str, str]:
 
 
 def _overview(known: Catalog) -> list[str]:
-    out = []
+    lines = []
     for family in _ordered(known):
-        out += [*_members(family, known.family(family).values()), ""]
-    return [*out, "pound-solve list FAMILY NAME shows the items of one of them."]
+        lines += [*_members(family, known.family(family).values()), ""]
+    return [*lines, "pound-solve list FAMILY NAME shows the items of one of them."]
 
 
 def _members(family: str, members: Iterable[Spec]) -> list[str]:
@@ -129,11 +129,11 @@ def _with_items(family: str, members: Iterable[Spec]) -> list[str]:
     """Members with the names of their items."""
     specs = list(members)
     wide = max(len(_coded(s)) for s in specs)
-    out = [f"{family}: {_family(family)[2]}"]
+    lines = [f"{family}: {_family(family)[2]}"]
     for s in specs:
         items = f" ({' '.join(f.name for f in s.fields)})" if s.fields else ""
-        out += _wrapped(f"   {_coded(s).ljust(wide)}   ", s.title + items)
-    return out
+        lines += _wrapped(f"   {_coded(s).ljust(wide)}   ", s.title + items)
+    return lines
 
 
 def _coded(spec: Spec) -> str:
@@ -142,14 +142,14 @@ def _coded(spec: Spec) -> str:
 
 def _sheet(spec: Spec) -> list[str]:
     """Lines on one Spec."""
-    out = [f"{spec.name}: {spec.title}", ""]
-    out += _wrapped("write      ", usage(spec))
-    out += [f"code       {spec.code}, in place of the name"] if spec.code is not None else []
-    out += _wrapped("reference  ", spec.reference) if spec.reference else []
-    out += _wrapped("example    ", spec.sample) if spec.sample else []
+    lines = [f"{spec.name}: {spec.title}", ""]
+    lines += _wrapped("write      ", usage(spec))
+    lines += [f"code       {spec.code}, in place of the name"] if spec.code is not None else []
+    lines += _wrapped("reference  ", spec.reference) if spec.reference else []
+    lines += _wrapped("example    ", spec.sample) if spec.sample else []
     if not spec.fields:
-        return [*out, "", "It has no items."]
-    return [*out, "", *_items(spec.fields), "", *_wrapped("", _legend(spec.fields))]
+        return [*lines, "", "It has no items."]
+    return [*lines, "", *_items(spec.fields), "", *_wrapped("", _legend(spec.fields))]
 
 
 def _items(fields: Sequence[Field]) -> list[str]:
@@ -158,15 +158,15 @@ def _items(fields: Sequence[Field]) -> list[str]:
     wide = [max(len(row[i]) for row in rows) for i in range(4)]
     # long limits are wrapped: a column as wide as them would leave no room for the meaning
     wide[3] = min(wide[3], 24)
-    out = []
+    lines = []
     for row in rows:
         start = "  ".join(row[i].ljust(wide[i]) for i in range(3)) + "  "
         limits = textwrap.wrap(row[3], wide[3], break_long_words=False) or [""]
         meaning = textwrap.wrap(row[4], WIDTH - len(start) - wide[3] - 2) or [""]
         for n, (left, right) in enumerate(itertools.zip_longest(limits, meaning, fillvalue="")):
             head = start if n == 0 else " " * len(start)
-            out.append((head + left.ljust(wide[3]) + "  " + right).rstrip())
-    return out
+            lines.append((head + left.ljust(wide[3]) + "  " + right).rstrip())
+    return lines
 
 
 def _wrapped(head: str, text: str) -> list[str]:
@@ -243,21 +243,21 @@ def _limits(f: Field) -> str:
 def deck_page() -> str:
     """Text of ``manual/deck-reference.md``."""
     known = vocabulary()
-    out = [_RULES.strip(), ""]
+    lines = [_RULES.strip(), ""]
     for family in _ordered(known):
         heading, _, where = _family(family)
-        out += [f"## {heading}", ""]
+        lines += [f"## {heading}", ""]
         if family == "section":
-            out += [_SECTIONS.strip(), ""]
+            lines += [_SECTIONS.strip(), ""]
         elif where:
-            out += [f"{where[0].upper()}{where[1:]}.", ""]
+            lines += [f"{where[0].upper()}{where[1:]}.", ""]
         for spec in known.family(family).values():
-            out += [*_chapter(spec), ""]
-    return "\n".join(out).rstrip() + "\n"
+            lines += [*_chapter(spec), ""]
+    return "\n".join(lines).rstrip() + "\n"
 
 
 def _chapter(spec: Spec) -> list[str]:
-    out = [
+    lines = [
         f"### {spec.name}",
         "",
         f"{spec.title[0].upper()}{spec.title[1:]}.",
@@ -268,14 +268,14 @@ def _chapter(spec: Spec) -> list[str]:
     ]
     facts = [f"Old code: {spec.code}."] if spec.code is not None else []
     facts += [f"Reference: {spec.reference}."] if spec.reference else []
-    out += ["", " ".join(facts)] if facts else []
+    lines += ["", " ".join(facts)] if facts else []
     if not spec.fields:
-        return [*out, "", "No items."]
-    out += ["", "| item | unit | default | takes | meaning |", "|---|---|---|---|---|"]
+        return [*lines, "", "No items."]
+    lines += ["", "| item | unit | default | takes | meaning |", "|---|---|---|---|---|"]
     for f in spec.fields:
         name, unit, default, choice, doc = (cell.replace("|", r"\|") for cell in _row(f))
-        out.append(f"| `{name}` | {f'`{unit}`' if unit else ''} | {default} | {choice} | {doc} |")
-    return out
+        lines.append(f"| `{name}` | {f'`{unit}`' if unit else ''} | {default} | {choice} | {doc} |")
+    return lines
 
 
 _RULES: Final = r"""

@@ -79,9 +79,10 @@ def export_columns(
     """
     heads, columns = [_head("time", results.history_units("time")[0])], [results.time]
     for name, texts in choices:
-        own = results.coordinates(name)
+        coordinates = results.coordinates(name)
         at = {
-            key: next((v for v in own.get(key, ()) if str(v) == text), text) for key, text in texts.items()
+            key: next((v for v in coordinates.get(key, ()) if str(v) == text), text)
+            for key, text in texts.items()
         }
         labels, units = results.labels(name), results.history_units(name)
         places = results.places(name, **at)
@@ -117,8 +118,8 @@ def _extremes(results: Results, name: str, folder: Path) -> Path:
     bounds, low, high = results.extreme(name)
     unit = results.history_units("time")[0]
     heads, columns = [_head("from", unit), _head("to", unit)], [bounds[:-1], bounds[1:]]
-    own = (x.reshape(len(x), len(results.labels(name))).T for x in (low, high))
-    for label, of, *both in zip(results.labels(name), results.history_units(name), *own):
+    values = (x.reshape(len(x), len(results.labels(name))).T for x in (low, high))
+    for label, of, *both in zip(results.labels(name), results.history_units(name), *values):
         heads += [_head(f"{label} min", of), _head(f"{label} max", of)]
         columns += both
     return _write(folder / f"extremes_{name.replace('/', '_')}.csv", heads, _blocks(columns))
@@ -131,7 +132,7 @@ def _blocks(columns: Sequence[Array]) -> Iterator[list[float]]:
 
 
 def _write(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
-    with whole(path) as own, own.open("w", newline="", encoding="utf-8") as file:
+    with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(heads)
         writer.writerows(rows)

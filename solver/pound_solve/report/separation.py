@@ -67,7 +67,7 @@ def rows(record: SeparationRecord) -> list[Row]:
     early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
     met = any(row["closures"] > 0 for row in summary.values())  # that changed all displacements
     note = (MET if met else FREE) + early
-    out = []
+    separations = []
     for law in results.table("contact_laws"):
         direction, nodes = axes(law["angle"])[0], ends[law["contact"]]
         u1, u2 = (_peak(results, node, direction) for node in nodes)
@@ -78,8 +78,8 @@ def rows(record: SeparationRecord) -> list[Row]:
         gap = float(law["gap"])
         closure = NAN if met else gap - float(summary[law["contact"]]["min_gap"])
         sums = (u1 + u2, math.hypot(u1, u2), ddc)
-        out.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, note + remark))
-    return out
+        separations.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, note + remark))
+    return separations
 
 
 def _check(results: Results) -> None:
@@ -105,9 +105,9 @@ def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:
     if node == 0:
         return 0.0
     envelope = results.table("node_envelope")
-    own = envelope[(envelope["node"] == node) & (envelope["quantity"] == "displacement")]
+    displacements = envelope[(envelope["node"] == node) & (envelope["quantity"] == "displacement")]
     if 0.0 in direction:
-        axis = own[own["direction"] == ("X" if direction[0] else "Y")]
+        axis = displacements[displacements["direction"] == ("X" if direction[0] else "Y")]
         return float(max(abs(axis["max"][0]), abs(axis["min"][0]))) if len(axis) else NAN
     if "node/u" not in results.histories or node not in results.attributes("node/u")["nodes"]:
         return NAN
@@ -120,9 +120,11 @@ def _mode(results: Results, node: int, direction: tuple[float, float]) -> tuple[
     if not {"modes", "mode_shapes"} <= set(results.tables):
         return NAN, NAN
     shapes, modes = results.table("mode_shapes"), results.table("modes")
-    own = shapes[shapes["node"] == node]
-    chosen = modes[np.isin(modes["mode"], own["mode"])]
-    return own_mode(own["x"] * direction[0] + own["y"] * direction[1], chosen["period"], chosen["damping"])
+    shape = shapes[shapes["node"] == node]
+    chosen = modes[np.isin(modes["mode"], shape["mode"])]
+    return own_mode(
+        shape["x"] * direction[0] + shape["y"] * direction[1], chosen["period"], chosen["damping"]
+    )
 
 
 TABLE = Table(

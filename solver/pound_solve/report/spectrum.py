@@ -44,17 +44,17 @@ def rows(curves: Sequence[Curve]) -> Iterator[Row]:
 def text(units: Units, curves: Sequence[Curve]) -> str:
     """Tables of all curves, each below the name, the peak acceleration and the damping."""
     kinds = [(c.name, "O" if c.is_text else "f8") for c in TABLE.columns]
-    out = []
+    lines = []
     for curve in curves:
-        found = np.array(list(rows([curve])), dtype=kinds)
+        spectrum = np.array(list(rows([curve])), dtype=kinds)
         t, peak = curve.acceleration.peak()
         head = (
             f"{curve.name}: peak acceleration {abs(peak):.4g} {units.text('L/T^2')} at {t:.6g} {units.time}"
         )
-        for one in np.split(found, len(curve.spectrum.damping)):
-            own = one[[c.name for c in TABLE.columns[2:]]]
-            out += [f"{head}; damping {one['damping'][0]:g} %", "", *block(units, TABLE, own), "", ""]
-    return "\n".join(line.rstrip() for line in out).rstrip()
+        for one in np.split(spectrum, len(curve.spectrum.damping)):
+            columns = one[[c.name for c in TABLE.columns[2:]]]
+            lines += [f"{head}; damping {one['damping'][0]:g} %", "", *block(units, TABLE, columns), "", ""]
+    return "\n".join(line.rstrip() for line in lines).rstrip()
 
 
 def write_csv(path: Path, units: Units, curves: Sequence[Curve]) -> None:

@@ -129,11 +129,11 @@ def incomplete(results: Results) -> tuple[str, ...]:
 def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     """Lines of one table of the file with its notes; none when it has no rows."""
     lines = []
-    for own in shown(results, table, limit):
-        lines += ["", *([_INDENT + own.title, ""] if own.title else [])]
-        lines += _body(results.units, own.table, own.rows)
-        if own.more:
-            lines += ["", _INDENT + own.more]
+    for part in shown(results, table, limit):
+        lines += ["", *([_INDENT + part.title, ""] if part.title else [])]
+        lines += _body(results.units, part.table, part.rows)
+        if part.more:
+            lines += ["", _INDENT + part.more]
     return _with_notes(lines[1:], table, results.note(table.name))
 
 
@@ -163,7 +163,8 @@ def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]
     if view is None:
         return [Shown("", table, *_excerpt(results, table, limit))]
     return [
-        Shown(own.title, replace(table, columns=own.columns, group=""), own.rows) for own in view(results)
+        Shown(part.title, replace(table, columns=part.columns, group=""), part.rows)
+        for part in view(results)
     ]
 
 
@@ -202,8 +203,8 @@ def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
 
 def printed(units: Units, table: Table[Any], rows: Iterable[Row], note: str = "") -> list[str]:
     """Lines of a table that no file holds, from its rows; see `block`."""
-    own = np.array(list(rows), dtype=table.kinds)
-    return [line.rstrip() for line in block(units, table, own, note)]
+    records = np.array(list(rows), dtype=table.kinds)
+    return [line.rstrip() for line in block(units, table, records, note)]
 
 
 class Formatted(NamedTuple):
@@ -261,10 +262,10 @@ def _groups(table: Table[Any], rows: NDArray[Any]) -> list[list[int]]:
     """Row numbers by value of the group column, in order of first appearance."""
     if not table.group:
         return [list(range(len(rows)))]
-    found: dict[Any, list[int]] = {}
+    groups: dict[Any, list[int]] = {}
     for number, key in enumerate(rows[table.group].tolist()):
-        found.setdefault(key, []).append(number)
-    return list(found.values())
+        groups.setdefault(key, []).append(number)
+    return list(groups.values())
 
 
 def _wrap(columns: Sequence[Column], heads: dict[str, str], cells: dict[str, list[str]]) -> None:
@@ -350,9 +351,9 @@ def _decimals(fmt: str, values: list[float]) -> list[str]:
         return [f"{v:.0f}" for v in values]
     if fmt == "percent":
         return [_unsigned_zero(f"{v:.2f}") for v in values]
-    given = fmt == "given"
-    dust = _TINY if given else max(_TINY, _DUST * max(map(abs, values), default=0.0))
-    return _numbers([v if abs(v) > dust else 0.0 for v in values], _DIGITS[fmt], given)
+    as_given = fmt == "given"
+    dust = _TINY if as_given else max(_TINY, _DUST * max(map(abs, values), default=0.0))
+    return _numbers([v if abs(v) > dust else 0.0 for v in values], _DIGITS[fmt], as_given)
 
 
 def _times(values: list[float]) -> list[str]:

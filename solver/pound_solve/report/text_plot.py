@@ -54,8 +54,8 @@ def letters(curve: Curve, width: int = 68, height: int = 22) -> str:
     if y0 < 0.0 < y1 and 0 < row < height - 1:
         names[row] = "0"
     wide = max(len(name) for name in names.values())
-    out = [f"{names.get(n, ''):>{wide}} {''.join(line)}".rstrip() for n, line in enumerate(field)]
-    return "\n".join([*out, " " * (wide + 1) + _foot(x0, x1, column, width)])
+    lines = [f"{names.get(n, ''):>{wide}} {''.join(line)}".rstrip() for n, line in enumerate(field)]
+    return "\n".join([*lines, " " * (wide + 1) + _foot(x0, x1, column, width)])
 
 
 def _stroke(field: list[list[str]], start: tuple[int, int], end: tuple[int, int]) -> None:
@@ -99,7 +99,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
     def down(y: float) -> float:
         return bottom - (y - y0) / (y1 - y0) * (bottom - _TOP)
 
-    out = [
+    elements = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}">',
         f'<style>{_STYLE}</style><rect width="100%" height="100%" fill="#fff"/>',
         *(
@@ -109,14 +109,16 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
     ]
     for value in _ticks(x0, x1):
         x = _px(across(value))
-        out.append(f'<path class="{"a" if value == 0 else "g"}" d="M{x} {_TOP}V{bottom}"/>')
-        out.append(f'<text class="t" x="{x}" y="{bottom + 16}" text-anchor="middle">{value:g}</text>')
+        elements.append(f'<path class="{"a" if value == 0 else "g"}" d="M{x} {_TOP}V{bottom}"/>')
+        elements.append(f'<text class="t" x="{x}" y="{bottom + 16}" text-anchor="middle">{value:g}</text>')
     for value in _ticks(y0, y1):
         y = _px(down(value))
-        out.append(f'<path class="{"a" if value == 0 else "g"}" d="M{_LEFT} {y}H{right}"/>')
-        out.append(f'<text class="t" x="{_LEFT - 6}" y="{y}" text-anchor="end" dy=".35em">{value:g}</text>')
+        elements.append(f'<path class="{"a" if value == 0 else "g"}" d="M{_LEFT} {y}H{right}"/>')
+        elements.append(
+            f'<text class="t" x="{_LEFT - 6}" y="{y}" text-anchor="end" dy=".35em">{value:g}</text>'
+        )
     middle, wide, high = (_TOP + bottom) // 2, right - _LEFT, bottom - _TOP
-    out += [
+    elements += [
         f'<rect class="a" x="{_LEFT}" y="{_TOP}" width="{wide}" height="{high}" fill="none"/>',
         f'<text x="{(_LEFT + right) // 2}" y="{_HEIGHT - 10}" text-anchor="middle">{escape(x_name)}</text>',
         f'<text transform="translate(16 {middle}) rotate(-90)" text-anchor="middle">'
@@ -124,7 +126,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
         f'<path class="c" d="{_path([(across(x), down(y)) for x, y in curve])}"/>',
         "</svg>",
     ]
-    return "\n".join(out) + "\n"
+    return "\n".join(elements) + "\n"
 
 
 def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:

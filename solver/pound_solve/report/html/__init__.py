@@ -117,7 +117,7 @@ def _figure(place: str, picture: Picture) -> str:
 
 def _table(results: Results, table: Table[Any], number: str, limit: int | None) -> Iterator[str]:
     """A table with its notes, in one part or several; nothing where it has nothing to show."""
-    parts = [line for own in shown(results, table, limit) for line in _part(results, own)]
+    parts = [line for part in shown(results, table, limit) for line in _part(results, part)]
     if not parts:
         return
     yield f"<h3>{number} {escape(table.title)}</h3>\n"

@@ -121,8 +121,8 @@ def _structure(results: Results) -> Iterator[Picture]:
 
 def _lines(name: str, ends: Sequence[tuple[int, int]], place: dict[int, Array], colour: str) -> Trace:
     """Straight lines between nodes that have a place, as one curve with gaps."""
-    own = [(place[i], place[j]) for i, j in ends if i in place and j in place]
-    x, y = (_numbers(chain.from_iterable((i[k], j[k], math.nan) for i, j in own)) for k in (0, 1))
+    segments = [(place[i], place[j]) for i, j in ends if i in place and j in place]
+    x, y = (_numbers(chain.from_iterable((i[k], j[k], math.nan) for i, j in segments)) for k in (0, 1))
     return {"name": name, "mode": "lines", "line": {"color": colour}, "x": x, "y": y, "hoverinfo": "skip"}
 
 
@@ -136,14 +136,14 @@ def _profiles(results: Results) -> Iterator[Picture]:
         traces = []
         rows = table[table["quantity"] == quantity]
         for n, building in enumerate(dict.fromkeys(rows["building"])):
-            own = rows[rows["building"] == building]
-            y = _numbers(levels[building, storey] for storey in own["storey"])
+            storeys = rows[rows["building"] == building]
+            y = _numbers(levels[building, storey] for storey in storeys["storey"])
             colour = COLOURS[n % len(COLOURS)]
             for side, column, dash in (("to the right", "max", "solid"), ("to the left", "min", "dash")):
                 line = {"color": colour, "dash": dash}
                 label = f"{_plain(building)}, {side}"
                 curve = {"name": label, "mode": "lines+markers", "line": line, "y": y}
-                traces.append(curve | {"x": _numbers(own[column])})
+                traces.append(curve | {"x": _numbers(storeys[column])})
         unit = rows["unit"][0] if len(rows) else ""
         yield Picture(title, "", f"{name} [{unit}]", f"level [{length}]", traces)
 
@@ -168,8 +168,8 @@ def _courses(results: Results) -> Iterator[Picture]:
 
 
 def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
-    own = {"name": _plain(name), "mode": "lines", "x": _numbers(x), "y": _numbers(y)}
-    return own if shown else own | {"visible": "legendonly"}
+    curve = {"name": _plain(name), "mode": "lines", "x": _numbers(x), "y": _numbers(y)}
+    return curve if shown else curve | {"visible": "legendonly"}
 
 
 def _peaks(results: Results) -> Iterator[Trace]:
@@ -193,15 +193,15 @@ def _loops(results: Results) -> Iterator[Picture]:
     along = results.history_units("spring/deformation")
     work = np.abs(np.diff(deformation, axis=0) * 0.5 * (force[1:] + force[:-1])).sum(axis=0)
     for unit in dict.fromkeys(units):
-        own = [k for k in np.argsort(work)[::-1].tolist() if units[k] == unit][:MOST_LOOPS]
-        traces = [_curve(labels[k], deformation[:, k], force[:, k], n == 0) for n, k in enumerate(own)]
-        kind = "Moment" if along[own[0]] == "rad" else "Force"
-        note = "At first the one with the most work is shown. " if len(own) > 1 else ""
+        shown = [k for k in np.argsort(work)[::-1].tolist() if units[k] == unit][:MOST_LOOPS]
+        traces = [_curve(labels[k], deformation[:, k], force[:, k], n == 0) for n, k in enumerate(shown)]
+        kind = "Moment" if along[shown[0]] == "rad" else "Force"
+        note = "At first the one with the most work is shown. " if len(shown) > 1 else ""
         note += "The corners are those of the stored instants."
         yield Picture(
             f"{kind}s of springs and hinges",
             note,
-            f"deformation [{along[own[0]]}]",
+            f"deformation [{along[shown[0]]}]",
             f"{kind.lower()} [{unit}]",
             traces,
         )
@@ -223,8 +223,8 @@ def thinned(t: Array, values: Array) -> tuple[Array, Array]:
     size = -(-2 * len(t) // MOST_POINTS)
     keep = {0, len(t) - 1}
     for start in range(0, len(t), size):
-        own = values[start : start + size]
-        keep |= {start + int(np.argmin(own)), start + int(np.argmax(own))}
+        window = values[start : start + size]
+        keep |= {start + int(np.argmin(window)), start + int(np.argmax(window))}
     chosen = sorted(keep)
     return t[chosen], values[chosen]
 

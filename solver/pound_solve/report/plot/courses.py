@@ -81,11 +81,11 @@ def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any
     if "collisions" not in results.tables:
         return np.empty(0, dtype=[(c, float) for c in ("t_start", "t_end", "peak_force", "t_peak")])
     table = results.table("collisions")
-    own = table[[str(c) == name for c in table["contact"]]]
+    collisions = table[[str(c) == name for c in table["contact"]]]
     if choice.between is None:
-        return own
-    end = np.where(np.isnan(own["t_end"]), np.inf, own["t_end"])
-    return own[(own["t_start"] <= choice.between[1]) & (end >= choice.between[0])]
+        return collisions
+    end = np.where(np.isnan(collisions["t_end"]), np.inf, collisions["t_end"])
+    return collisions[(collisions["t_start"] <= choice.between[1]) & (end >= choice.between[0])]
 
 
 def with_peaks(t: Array, force: Array, own: NDArray[Any]) -> tuple[Array, Array]:
@@ -93,9 +93,9 @@ def with_peaks(t: Array, force: Array, own: NDArray[Any]) -> tuple[Array, Array]
     hard = own[np.isfinite(own["peak_force"])]
     ended, none = hard["t_end"][np.isfinite(hard["t_end"])], np.zeros(len(hard))
     at = np.concatenate([hard["t_start"], t, hard["t_peak"], ended])
-    found = np.concatenate([none, force, hard["peak_force"], none[: len(ended)]])
+    forces = np.concatenate([none, force, hard["peak_force"], none[: len(ended)]])
     order = np.argsort(at, kind="stable")
-    return at[order], found[order]
+    return at[order], forces[order]
 
 
 def force_curve(
@@ -105,12 +105,12 @@ def force_curve(
     t, force = results.course("contact/force")
     rows = choice.span(results, t)
     name = results.labels("contact/force")[column]
-    own = of_contact(results, name, choice)
-    at, force = with_peaks(t[rows], force[rows, column], own)
+    collisions = of_contact(results, name, choice)
+    at, force = with_peaks(t[rows], force[rows, column], collisions)
     axes.plot(at, force, **look, label=style.short(name))
-    peaks = own[np.isfinite(own["peak_force"])]
+    peaks = collisions[np.isfinite(collisions["peak_force"])]
     axes.plot(
         peaks["t_peak"], peaks["peak_force"], "o", color=look["color"], fillstyle="none", markersize=4
     )
-    impacts = own[np.isnan(own["peak_force"])]
+    impacts = collisions[np.isnan(collisions["peak_force"])]
     axes.plot(impacts["t_start"], np.zeros(len(impacts)), "|", color=look["color"], markersize=10)

@@ -140,8 +140,8 @@ class DrawnStructure:
     def feet(self, lowest: int, base: float) -> list[int]:
         """Nodes at the base of the building that has a node [L]."""
         of = self.buildings()
-        own = [n for n in self.place if of[n] == of[lowest] and "X" in self.fixed[n]]
-        return [n for n in own if abs(self.place[n][1] - base) <= 1e-3 * self.size]
+        supported = [n for n in self.place if of[n] == of[lowest] and "X" in self.fixed[n]]
+        return [n for n in supported if abs(self.place[n][1] - base) <= 1e-3 * self.size]
 
 
 def contact_name(element: Any) -> str:

@@ -121,19 +121,19 @@ def _drawn(axes: Any) -> tuple[Array, Array]:
         if line.get_marker() not in ("None", "", None):
             half = max(POINT, 0.5 * line.get_markersize() * axes.figure.dpi / 72.0)
             points.append(np.hstack([xy - half, xy + half]))
-    found, marked = np.concatenate(pieces), np.concatenate(points)
-    return found[np.isfinite(found).all(axis=1)], marked[np.isfinite(marked).all(axis=1)]
+    drawn, marked = np.concatenate(pieces), np.concatenate(points)
+    return drawn[np.isfinite(drawn).all(axis=1)], marked[np.isfinite(marked).all(axis=1)]
 
 
 def _overlap(box: Array, others: Array) -> Flags:
     """Which boxes a box overlaps."""
-    out: Flags = (
+    overlaps: Flags = (
         (others[:, 0] < box[2])
         & (others[:, 2] > box[0])
         & (others[:, 1] < box[3])
         & (others[:, 3] > box[1])
     )
-    return out
+    return overlaps
 
 
 def _nearer(box: Array, own: Array, anchors: Array) -> bool:
@@ -151,5 +151,5 @@ def _crossed(box: Array, lines: Array) -> Flags:
     within = (start >= box[:2]) & (start <= box[2:])
     enter = np.where(step == 0.0, np.where(within, -np.inf, np.inf), np.fmin(a, b)).max(axis=1)
     leave = np.where(step == 0.0, np.where(within, np.inf, -np.inf), np.fmax(a, b)).min(axis=1)
-    out: Flags = (enter <= leave) & (enter <= 1.0) & (leave >= 0.0)
-    return out
+    crossed: Flags = (enter <= leave) & (enter <= 1.0) & (leave >= 0.0)
+    return crossed

@@ -80,7 +80,7 @@ def refuse(results: Results, choice: Choice, kinds: Sequence[str]) -> None:
     """
     known = {kind: _words(results, kind) for kind in kinds}
     for word in choice.member:
-        if not any(word.lower() in words for found in known.values() for words in found):
+        if not any(word.lower() in words for names in known.values() for words in names):
             listed = "; ".join(f"{kind}s {_listed(results, kind)}" for kind in kinds if known[kind])
             raise ChoiceError(f"there is no {' or '.join(kinds)} {word!r}; there are: {listed or 'none'}")
 
@@ -160,11 +160,11 @@ def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Itera
         along = (j - i) / max(float(np.hypot(*(j - i))), 1e-300)
         first, last = blocks.get(str(e["property"]), (0.0, 0.0))
         i, j = i + first * along, j - last * along
-        own = {quantity: v for (n, quantity), v in values.items() if n == number}
-        x, found = along_member(own, float(np.hypot(*(j - i))), along, points.get(number, []))
-        low = {q: v.min(axis=0) for q, v in found.items()}
-        high = {q: v.max(axis=0) for q, v in found.items()}
-        for q, (_, *ends) in ((q, QUANTITIES[q]) for q in found):
+        at_ends = {quantity: v for (n, quantity), v in values.items() if n == number}
+        x, forces = along_member(at_ends, float(np.hypot(*(j - i))), along, points.get(number, []))
+        low = {q: v.min(axis=0) for q, v in forces.items()}
+        high = {q: v.max(axis=0) for q, v in forces.items()}
+        for q, (_, *ends) in ((q, QUANTITIES[q]) for q in forces):
             for end, name, sign, share in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
                 if (number, name) in extremes:
                     least, most = sorted(sign * v for v in extremes[number, name])
@@ -209,21 +209,21 @@ def along_member(
     right = [np.arange(len(x)) > np.flatnonzero(x == a)[0] for a, _ in points]
     across = np.array([-along[1], along[0]])
     parts = [(a, float(p @ along), float(p @ across), beyond) for (a, p), beyond in zip(points, right)]
-    out = {}
+    forces = {}
     if "moment I" in ends:
         v, moment = ends["shear I"][:, None], (-ends["moment I"][:, None], ends["moment J"][:, None])
         w = -(v + ends["shear J"][:, None]) - sum(p for _, _, p, _ in parts)  # in all
-        out["M"] = moment[0] * (1.0 - x) + moment[1] * x - 0.5 * w * length * x * (1.0 - x)
-        out["V"] = v + w * x
+        forces["M"] = moment[0] * (1.0 - x) + moment[1] * x - 0.5 * w * length * x * (1.0 - x)
+        forces["V"] = v + w * x
         for a, _, p, beyond in parts:
-            out["M"] -= p * length * np.where(x < a, x * (1.0 - a), a * (1.0 - x))
-            out["V"] += p * beyond
+            forces["M"] -= p * length * np.where(x < a, x * (1.0 - a), a * (1.0 - x))
+            forces["V"] += p * beyond
     n = ends["axial I"][:, None]
     w = ends["axial J"][:, None] - n + sum(p for _, p, _, _ in parts)
-    out["N"] = n + w * x
+    forces["N"] = n + w * x
     for _, p, _, beyond in parts:
-        out["N"] -= p * beyond
-    return x, out
+        forces["N"] -= p * beyond
+    return x, forces
 
 
 def _values(results: Results, choice: Choice) -> dict[tuple[int, str], Array]:
@@ -250,21 +250,21 @@ def _extremes(results: Results, choice: Choice) -> dict[tuple[int, str], tuple[f
 
 def _blocks(results: Results) -> dict[str, tuple[float, float]]:
     """Lengths of the rigid end blocks by property set [L]."""
-    out: dict[str, tuple[float, float]] = {}
+    blocks: dict[str, tuple[float, float]] = {}
     for row in results.table("properties"):
         if row["item"] in ("END1", "END2"):
-            first, last = out.get(row["property"], (0.0, 0.0))
+            first, last = blocks.get(row["property"], (0.0, 0.0))
             length = float(row["value"])
-            out[row["property"]] = (length, last) if row["item"] == "END1" else (first, length)
-    return out
+            blocks[row["property"]] = (length, last) if row["item"] == "END1" else (first, length)
+    return blocks
 
 
 def _point_loads(results: Results) -> dict[int, list[tuple[float, Array]]]:
     """Place and force of the point loads of every member, from the words of the table."""
-    out: dict[int, list[tuple[float, Array]]] = {}
+    loads: dict[int, list[tuple[float, Array]]] = {}
     for row in results.table("member_loads") if "member_loads" in results.tables else ():
         load: dict[str, Any] = dict(re.findall(r"(\w+) ([-+.\deE]+)", str(row["load"])))
         force = np.array([float(load.get("PX", 0.0)), float(load.get("PY", 0.0))])
         if force.any():
-            out.setdefault(int(row["element"]), []).append((float(load["AT"]), force))
-    return out
+            loads.setdefault(int(row["element"]), []).append((float(load["AT"]), force))
+    return loads

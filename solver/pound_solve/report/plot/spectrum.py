@@ -42,11 +42,11 @@ def _panel(axes: Any, curves: Sequence[Curve], quantity: str) -> None:
     """Draw one quantity of all curves; a single damping leaves the strokes to the motions."""
     several = any(len(curve.spectrum.damping) > 1 for curve in curves)
     for k, curve in enumerate(curves):
-        found = curve.spectrum
-        for i, values in enumerate(getattr(found, quantity.lower())):
+        spectrum = curve.spectrum
+        for i, values in enumerate(getattr(spectrum, quantity.lower())):
             look = style.stroke(k)
             if several:
                 look["linestyle"] = STROKES[i % len(STROKES)]
-            name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
-            axes.semilogx(found.periods, values, **look, label=name)
+            name = f"{curve.name}, {100.0 * spectrum.damping[i]:g} %" if several else curve.name
+            axes.semilogx(spectrum.periods, values, **look, label=name)
     axes.set_ylim(bottom=0.0)

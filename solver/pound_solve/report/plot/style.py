@@ -56,7 +56,7 @@ def _settings(path: Path) -> Any:
     """Settings of a style sheet: lines ``name: value``, comments after ``#``."""
     from matplotlib import RcParams, rcParams
 
-    out: Any = RcParams()
+    settings: Any = RcParams()
     for number, line in enumerate(contents(path).decode("utf-8", "replace").splitlines(), 1):
         name, colon, value = (part.strip() for part in line.partition("#")[0].partition(":"))
         where = f"{path}:{number}"
@@ -69,10 +69,10 @@ def _settings(path: Path) -> Any:
             hint = f"; did you mean {near[0]}?" if near else ""
             raise ChoiceError(f"{where}: matplotlib has no setting {name}{hint}")
         try:
-            out[name] = value
+            settings[name] = value
         except ValueError as err:
             raise ChoiceError(f"{where}: {err}") from None
-    return out
+    return settings
 
 
 def ready(folder: Path) -> None:
@@ -100,10 +100,10 @@ def figure(width: float = 7.0, height: float = 4.5, title: str = "") -> Any:
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    out = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(w_pad=EDGE, h_pad=EDGE))
+    picture = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(w_pad=EDGE, h_pad=EDGE))
     if title:
-        out.suptitle(wrapped(title, int(12 * width)))
-    return out
+        picture.suptitle(wrapped(title, int(12 * width)))
+    return picture
 
 
 def wrapped(text: str, width: int) -> str:
@@ -163,11 +163,11 @@ def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tu
     """A figure of `count` axes in up to four columns."""
     columns = min(4, max(1, round(count**0.5 + 0.2)))
     rows = -(-count // columns)
-    out = figure(each[0] * columns + 0.4, each[1] * rows + 0.5, title)
-    axes = [out.add_subplot(rows, columns, n + 1) for n in range(count)]
-    for own in axes:
-        own.locator_params(nbins=4)  # numbers that do not run into each other
-    return out, axes
+    picture = figure(each[0] * columns + 0.4, each[1] * rows + 0.5, title)
+    axes = [picture.add_subplot(rows, columns, n + 1) for n in range(count)]
+    for panel in axes:
+        panel.locator_params(nbins=4)  # numbers that do not run into each other
+    return picture, axes
 
 
 def patches(named: Sequence[tuple[str, str]]) -> list[Any]:
@@ -232,7 +232,7 @@ def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate
     literal(picture)
     writer = writers[name](fps=rate)
     try:
-        with whole(path) as own, writer.saving(picture, str(own), dpi=100):
+        with whole(path) as partial, writer.saving(picture, str(partial), dpi=100):
             for k in range(count):
                 show(k)
                 writer.grab_frame()

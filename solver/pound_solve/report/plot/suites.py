@@ -102,8 +102,8 @@ def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) ->
             axes.plot(values, case.levels, **style.stroke(k), label=name)
         axes.set_title(case.title)
     for axes in all_axes:  # alike, so that cases compare
-        axes.set_xlim(0.0, max(own.get_xlim()[1] for own in all_axes))
-        axes.set_ylim(0.0, max(own.get_ylim()[1] for own in all_axes))
+        axes.set_xlim(0.0, max(panel.get_xlim()[1] for panel in all_axes))
+        axes.set_ylim(0.0, max(panel.get_ylim()[1] for panel in all_axes))
     style.legend_below(figure, all_axes)
     style.save(figure, path)
 
@@ -113,11 +113,11 @@ def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
     """Draw the curves with what was observed, and the median with its interval; see `incremental`."""
     figure = style.figure(6.4, 4.2)
     axes = style.grid(figure.add_subplot(), level, "probability [-]")
-    for k, own in enumerate(found):
+    for k, fragility in enumerate(found):
         look = style.stroke(k)
-        axes.plot(own.levels, own.probability, **look, label=own.title)
-        axes.plot(*own.observed, "o", color=look["color"], markersize=3)
-        axes.plot(own.interval, (0.5, 0.5), "|-", color=look["color"], linewidth=1.0)
+        axes.plot(fragility.levels, fragility.probability, **look, label=fragility.title)
+        axes.plot(*fragility.observed, "o", color=look["color"], markersize=3)
+        axes.plot(fragility.interval, (0.5, 0.5), "|-", color=look["color"], linewidth=1.0)
     axes.set_ylim(0.0, 1.0)
     axes.set_xlim(left=0.0)
     style.legend(axes)
@@ -128,17 +128,17 @@ def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
 def separations(found: Sequence[Contacts], gap: str, path: Path) -> None:
     """Draw the probability of contact against the gap, with the gaps of the rules; see `incremental`."""
     figure, all_axes = style.panels(len(found), "", (4.2, 3.4))
-    for n, (axes, own) in enumerate(zip(all_axes, found)):
+    for n, (axes, case) in enumerate(zip(all_axes, found)):
         style.grid(axes, gap, "" if n else "probability of contact [-]")
-        share, low, high = own.seen.T
-        axes.fill_between(own.gaps, low, high, color="0.88", step="post", label="interval")
-        axes.step(own.gaps, share, where="post", color="0.35", label="runs")
-        axes.plot(own.gaps, own.fitted, "--", color="0.35", linewidth=1.0, label="lognormal")
-        for k, (name, at) in enumerate(own.rules):
+        share, low, high = case.seen.T
+        axes.fill_between(case.gaps, low, high, color="0.88", step="post", label="interval")
+        axes.step(case.gaps, share, where="post", color="0.35", label="runs")
+        axes.plot(case.gaps, case.fitted, "--", color="0.35", linewidth=1.0, label="lognormal")
+        for k, (name, at) in enumerate(case.rules):
             look = style.stroke(k)
             axes.axvline(at, color=look["color"], linestyle=look["linestyle"], linewidth=1.2, label=name)
         axes.set_ylim(0.0, 1.0)
         axes.set_xlim(left=0.0)
-        axes.set_title(own.title)
+        axes.set_title(case.title)
     style.legend_below(figure, all_axes)
     style.save(figure, path)

@@ -22,12 +22,12 @@ DIGITS: Final = 4  #: of probabilities that are printed
 def rows(found: Sequence[Fitted]) -> Iterator[Row]:
     """One row for each fragility."""
     for f in found:
-        own = f.fragility
-        if own is None:
+        fit = f.fragility
+        if fit is None:
             yield f.case, f.limit, f.method, 0, *([math.nan] * 6), f.remark
         else:
-            ends = own.median, *own.median_interval, own.dispersion, *own.dispersion_interval
-            yield f.case, f.limit, f.method, own.count, *map(_finite, ends), f.remark
+            ends = fit.median, *fit.median_interval, fit.dispersion, *fit.dispersion_interval
+            yield f.case, f.limit, f.method, fit.count, *map(_finite, ends), f.remark
 
 
 def _finite(x: float) -> float:
@@ -67,7 +67,7 @@ def _probable(found: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:
 
 def drawn(found: Sequence[Fitted]) -> list[suites.Fragilities]:
     """What a picture shows of the fragilities that could be fitted."""
-    out = []
+    curves = []
     most = max((x for f in found for x, _, _ in f.observed), default=0.0)
     at = np.linspace(0.0, most, POINTS)[1:]
     for f in found:
@@ -75,11 +75,11 @@ def drawn(found: Sequence[Fitted]) -> list[suites.Fragilities]:
             limit = "" if math.isnan(f.limit) else f"limit {f.limit:g}"
             level, exceeded, runs = np.array(f.observed, np.float64).T
             title = ", ".join(filter(None, [f.case, limit])) or "collapse"
-            own, seen = f.fragility, (level, exceeded / runs) if f.method == "stripes" else (at[:0], at[:0])
-            out.append(
-                suites.Fragilities(title, at, own.probability(at), seen, own.median, own.median_interval)
+            fit, seen = f.fragility, (level, exceeded / runs) if f.method == "stripes" else (at[:0], at[:0])
+            curves.append(
+                suites.Fragilities(title, at, fit.probability(at), seen, fit.median, fit.median_interval)
             )
-    return out
+    return curves
 
 
 def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:

@@ -65,8 +65,8 @@ def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
     units = units_of(sweep)
     table = fractile_table(measure(sweep), unit_of(sweep, asked))
     yield f"Demand: {asked.quantity} {asked.label}".rstrip()
-    for case, own in by_case(curves(sweep, asked)).items():
-        analysis = Analysis(own, rules)
+    for case, records in by_case(curves(sweep, asked)).items():
+        analysis = Analysis(records, rules)
         yield from ("", case) if case else ("",)
         yield from printed(units, CAPACITIES, capacities(analysis))
         yield ""
@@ -76,16 +76,16 @@ def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
 
 def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
     """What a picture of the analysis shows of every case."""
-    out = []
-    for case, own in by_case(curves(sweep, asked)).items():
-        analysis = Analysis(own, rules)
+    cases = []
+    for case, records in by_case(curves(sweep, asked)).items():
+        analysis = Analysis(records, rules)
         at = np.append(0.0, levels(analysis))
-        found = np.vstack([np.zeros(len(FRACTILES)), fractiles(analysis, at[1:])])
+        demands = np.vstack([np.zeros(len(FRACTILES)), fractiles(analysis, at[1:])])
         named = [
-            (f"{100 * q:.0f} %", np.where(np.isfinite(x), x, np.nan)) for q, x in zip(FRACTILES, found.T)
+            (f"{100 * q:.0f} %", np.where(np.isfinite(x), x, np.nan)) for q, x in zip(FRACTILES, demands.T)
         ]
-        out.append(suites.Curves(case, [_line(c, rules) for c in own], at, named))
-    return out
+        cases.append(suites.Curves(case, [_line(c, rules) for c in records], at, named))
+    return cases
 
 
 def _line(curve: Curve, rules: Rules) -> tuple[Array, Array]:

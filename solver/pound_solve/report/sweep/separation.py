@@ -27,8 +27,8 @@ def needs(found: Sequence[Group]) -> Iterator[Row]:
         row: list[float] = [math.nan] * 3
         if len(g.needed) and not len(g.met):
             row = fractiles_of(g.needed).tolist()
-        own = g.fitted
-        fit = (own.median, *own.median_interval, own.dispersion) if own else [math.nan] * 4
+        fitted = g.fitted
+        fit = (fitted.median, *fitted.median_interval, fitted.dispersion) if fitted else [math.nan] * 4
         row.append(float(g.needed.max(initial=0.0)) if not len(g.met) else math.nan)
         counts = len(g.needed), len(g.met)
         yield g.case, g.level, g.contact, *counts, *row, *map(_finite, fit), _remark(g)
@@ -40,12 +40,12 @@ def _finite(x: float) -> float:
 
 def _remark(g: Group) -> str:
     """What is missing."""
-    out = []
+    remarks = []
     if len(g.met):
-        out.append(f"met at a gap of {g.met.min():.6g} or more: wider gaps are not known")
+        remarks.append(f"met at a gap of {g.met.min():.6g} or more: wider gaps are not known")
     if g.left_out:
-        out.append(f"{g.left_out} runs stopped, failed or are missing")
-    return "; ".join(out)
+        remarks.append(f"{g.left_out} runs stopped, failed or are missing")
+    return "; ".join(remarks)
 
 
 def probabilities(found: Sequence[Group], options: Options) -> Iterator[Row]:
@@ -92,7 +92,7 @@ def variables(sweep: Sweep, found: Sequence[Group], options: Options) -> dict[st
 
 def drawn(sweep: Sweep, found: Sequence[Group], options: Options) -> list[suites.Contacts]:
     """What a picture shows: every case and level with all its contacts together."""
-    out = []
+    panels = []
     for g in _together(found):
         rules: dict[float, list[str]] = {}
         for rule, gap in zip(RULES, g.rules):
@@ -103,8 +103,8 @@ def drawn(sweep: Sweep, found: Sequence[Group], options: Options) -> list[suites
         seen = np.array([share(*g.contacts(x), options.level) for x in gaps])
         title = ", ".join(filter(None, [g.case, f"{measure(sweep)} {g.level:g}"]))
         named = [(", ".join(names), gap) for gap, names in rules.items()]
-        out.append(suites.Contacts(title, gaps, seen, np.array([g.by_fit(x) for x in gaps]), named))
-    return out
+        panels.append(suites.Contacts(title, gaps, seen, np.array([g.by_fit(x) for x in gaps]), named))
+    return panels
 
 
 def _keys(measure: str) -> tuple[Column, ...]:

@@ -50,13 +50,13 @@ def write(path: Path, sweep: Sweep, title: str, more: Iterable[str] = ()) -> Pat
     ResultsError
         It cannot be written.
     """
-    out = path.with_suffix(".rpt")
+    report = path.with_suffix(".rpt")
     try:
-        with whole(out) as own:
-            own.write_text(text(sweep, title, more), encoding="ascii", errors="replace", newline="\n")
+        with whole(report) as partial:
+            partial.write_text(text(sweep, title, more), encoding="ascii", errors="replace", newline="\n")
     except OSError as err:
         raise ResultsError(f"{err.filename}: {err.strerror}") from err
-    return out
+    return report
 
 
 def text(sweep: Sweep, title: str, more: Iterable[str] = ()) -> str:
@@ -115,9 +115,9 @@ def _line(word: str, told: str) -> list[str]:
 
 def _values(values: Sequence[Any]) -> str:
     """Distinct values, or what they lie between."""
-    own = list(dict.fromkeys(values))
-    numbers = all(isinstance(v, float) for v in own)
-    words = [f"{v:.6g}" for v in sorted(own)] if numbers else [str(v) for v in own]
+    distinct = list(dict.fromkeys(values))
+    numbers = all(isinstance(v, float) for v in distinct)
+    words = [f"{v:.6g}" for v in sorted(distinct)] if numbers else [str(v) for v in distinct]
     if len(words) <= VALUES:
         return ", ".join(words)
     return f"{len(words)} from {words[0]} to {words[-1]}" if numbers else f"{len(words)}, {words[0]} first"
@@ -126,14 +126,14 @@ def _values(values: Sequence[Any]) -> str:
 def failures(sweep: Sweep) -> list[Row]:
     """One row for each run that is not done."""
     titles = _titles(sweep)
-    out = [
+    failed = [
         (run, title, status, (message.splitlines() or [""])[0])
         for run, title, status, message in zip(
             sweep[RUN].tolist(), titles, sweep["status"].tolist(), sweep["message"].tolist()
         )
         if status != DONE
     ]
-    return out[:ROWS] + [(0, f"and {len(out) - ROWS} more", "", "")] * (len(out) > ROWS)
+    return failed[:ROWS] + [(0, f"and {len(failed) - ROWS} more", "", "")] * (len(failed) > ROWS)
 
 
 def _titles(sweep: Sweep) -> list[str]:
@@ -180,11 +180,11 @@ def fractiles(sweep: Sweep) -> Iterator[Row]:
     """One row for each quantity and group."""
     groups = _groups(sweep)
     for name, values in _shown(sweep):
-        for key, own in groups.items():
-            found = values[own]
-            found = found[~np.isnan(found)]
-            if len(found):
-                yield name, key, len(found), *fractiles_of(found).tolist()
+        for key, runs in groups.items():
+            known = values[runs]
+            known = known[~np.isnan(known)]
+            if len(known):
+                yield name, key, len(known), *fractiles_of(known).tolist()
 
 
 class _Worst(NamedTuple):
@@ -199,10 +199,10 @@ class _Worst(NamedTuple):
 def _worst(sweep: Sweep) -> Iterator[_Worst]:
     for name, values in _shown(sweep):
         at = int(np.nanargmax(np.where(np.isfinite(values), values, np.nan)))
-        own = sweep.variables[name]
+        variable = sweep.variables[name]
         label = ""
-        if own.axis:
-            label = sweep.labels[own.axis][int(np.nanargmax(np.abs(own.values[at])))]
+        if variable.axis:
+            label = sweep.labels[variable.axis][int(np.nanargmax(np.abs(variable.values[at])))]
         yield _Worst(name, at, float(values[at]), label)
 
 
@@ -222,22 +222,22 @@ def worst(sweep: Sweep) -> Iterator[Row]:
 
 def _fractiles(sweep: Sweep, units: Units) -> list[str]:
     """The table of fractiles, one part for each quantity with its unit."""
-    rows, out = list(fractiles(sweep)), list[str]()
+    rows, lines = list(fractiles(sweep)), list[str]()
     for name in dict.fromkeys(row[0] for row in rows):
         unit = sweep.variables[name].unit
-        out += [f"  {name} [{unit or '-'}]", ""]
-        out += [*printed(units, FRACTILE_TABLE, [row[1:] for row in rows if row[0] == name]), ""]
-    return out[:-1]
+        lines += [f"  {name} [{unit or '-'}]", ""]
+        lines += [*printed(units, FRACTILE_TABLE, [row[1:] for row in rows if row[0] == name]), ""]
+    return lines[:-1]
 
 
 def _checks(sweep: Sweep, units: Units) -> Iterator[str]:
     """The largest energy residual, and runs whose checks call for a look."""
     if "energy_residual" in sweep.variables:
-        own = np.asarray(sweep["energy_residual"], np.float64)
-        if not np.isnan(own).all():
-            at = int(np.nanargmax(own))
+        residuals = np.asarray(sweep["energy_residual"], np.float64)
+        if not np.isnan(residuals).all():
+            at = int(np.nanargmax(residuals))
             what = "largest energy residual over the largest energy of its run"
-            yield f"  {what}: {own[at]:.1e}, run {sweep[RUN][at]}"
+            yield f"  {what}: {residuals[at]:.1e}, run {sweep[RUN][at]}"
     looked = [(run, what) for run, what in zip(sweep[RUN].tolist(), sweep["doubt"].tolist()) if what]
     yield f"  runs whose checks call for a look: {len(looked)} of {len(sweep)}"
     if looked:

@@ -40,23 +40,23 @@ def member_loads(results: Results) -> list[Part]:
 
 def properties(results: Results) -> list[Part]:
     """One row for each kind of item of a set: all items that are given, then those of default value."""
-    found: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
+    sets: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
     for r in results.table("properties"):
         unit = f" {r['unit']}" if r["unit"] else ""
-        own = found.setdefault((r["property"], r["kind"]), ([], []))
-        own[r["default"] == "*"].append(f"{r['item']} {r['value']}{unit}")
+        items = sets.setdefault((r["property"], r["kind"]), ([], []))
+        items[r["default"] == "*"].append(f"{r['item']} {r['value']}{unit}")
     columns = Column("property"), Column("kind"), Column("given"), Column("default", "default (*)")
-    rows = ((*key, ", ".join(given), ", ".join(default)) for key, (given, default) in found.items())
+    rows = ((*key, ", ".join(given), ", ".join(default)) for key, (given, default) in sets.items())
     return [part(columns, rows)]
 
 
 def _ranges(results: Results, name: str) -> Part:
     """Rows of a table of the deck, those that step evenly in one."""
     columns, rows = _stored(results, name)
-    out = []
+    ranges = []
     for first, last, count in stepping(rows):
-        out.append(tuple(_cell(c, a, b, count) for c, a, b in zip(columns, first, last)))
-    return part([Column(c.name, c.head, c.unit) for c in columns], out)
+        ranges.append(tuple(_cell(c, a, b, count) for c, a, b in zip(columns, first, last)))
+    return part([Column(c.name, c.head, c.unit) for c in columns], ranges)
 
 
 def _stored(results: Results, name: str) -> tuple[list[Column], list[tuple[Any, ...]]]:
@@ -84,8 +84,8 @@ def _cell(column: Column, first: Any, last: Any, count: int) -> str:
 def _equal(results: Results, name: str) -> Part:
     """Rows of a table of the deck, those of equal values in one, with the numbers of all."""
     (key, *columns), rows = _stored(results, name)
-    found: dict[tuple[Any, ...], list[int]] = {}
+    groups: dict[tuple[Any, ...], list[int]] = {}
     for owner, *values in rows:
-        found.setdefault(tuple(values), []).append(owner)
+        groups.setdefault(tuple(values), []).append(owner)
     owners = Column(key.name, f"{key.name}s")
-    return part([owners, *columns], ((numbers(own), *values) for values, own in found.items()))
+    return part([owners, *columns], ((numbers(group), *values) for values, group in groups.items()))

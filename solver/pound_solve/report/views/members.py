@@ -43,36 +43,36 @@ END_COLUMNS: Final = (
 def envelopes(results: Results) -> list[Part]:
     """One row for each end of a member, with what happened to its hinge; then all other forces."""
     rows = results.table("member_envelope")
-    found = {(r["element"], r["quantity"]): extremes(r) for r in rows}
-    hinges, own = _hinges(results), set[tuple[int, str]]()
-    digits, out = decimals(rows), []
+    envelope = {(r["element"], r["quantity"]): extremes(r) for r in rows}
+    hinges, listed = _hinges(results), set[tuple[int, str]]()
+    digits, lines = decimals(rows), []
     for element, end, names in ends(rows):
-        axial, shear, moment, hinge = (found.get((element, name), NONE) for name in names)
-        own.update((element, name) for name in names[:3])
+        axial, shear, moment, hinge = (envelope.get((element, name), NONE) for name in names)
+        listed.update((element, name) for name in names[:3])
         if _same(hinge, moment):
-            own.add((element, names[3]))
+            listed.add((element, names[3]))
         bent = (moment[0], round(moment[1], digits), moment[2], round(moment[3], digits))
         forces = axial[0], axial[2], shear[0], shear[2], *bent
-        out.append((element, end, *forces, *hinges.get((element, end), NONE[:3])))
-    rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in own]
+        lines.append((element, end, *forces, *hinges.get((element, end), NONE[:3])))
+    rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in listed]
     stored = TABLES["member_envelope"].columns
-    return [part(END_COLUMNS, out)] * bool(out) + [Part(stored, rows[rest])] * bool(rest)
+    return [part(END_COLUMNS, lines)] * bool(lines) + [Part(stored, rows[rest])] * bool(rest)
 
 
 def static_forces(results: Results) -> list[Part]:
     """One row for each end of a member; then all other forces."""
     rows = results.table("static_force")
-    found = {(r["element"], r["quantity"]): float(r["value"]) for r in rows}
-    own, out = set[tuple[int, str]](), []
+    forces = {(r["element"], r["quantity"]): float(r["value"]) for r in rows}
+    listed, lines = set[tuple[int, str]](), []
     for element, end, names in ends(rows):
-        axial, shear, moment, hinge = (found.get((element, name), math.nan) for name in names)
-        own.update((element, name) for name in names[:3])
+        axial, shear, moment, hinge = (forces.get((element, name), math.nan) for name in names)
+        listed.update((element, name) for name in names[:3])
         if abs(hinge) == abs(moment):
-            own.add((element, names[3]))
-        out.append((element, end, axial, shear, moment))
-    rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in own]
+            listed.add((element, names[3]))
+        lines.append((element, end, axial, shear, moment))
+    rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in listed]
     stored = TABLES["static_force"].columns
-    return [part(STATIC_COLUMNS, out)] * bool(out) + [Part(stored, rows[rest])] * bool(rest)
+    return [part(STATIC_COLUMNS, lines)] * bool(lines) + [Part(stored, rows[rest])] * bool(rest)
 
 
 def ends(rows: Any) -> Iterator[tuple[int, str, tuple[str, ...]]]:
@@ -98,13 +98,13 @@ def _hinges(results: Results) -> dict[tuple[int, str], tuple[float, float, float
     index: dict[tuple[int, str], float] = {}
     if "damage" in results.tables:
         index = {(r["element"], r["component"]): r["index"] for r in results.table("damage")}
-    out: dict[tuple[int, str], tuple[float, float, float]] = {}
+    hinges: dict[tuple[int, str], tuple[float, float, float]] = {}
     for r in results.table("spring_envelope") if "spring_envelope" in results.tables else ():
         kind, _, end = r["component"].partition(" ")
         if kind == "hinge":
             key = (r["element"], r["component"])
-            out[r["element"], end] = (r["ductility"], r["yield_events"], index.get(key, math.nan))
-    return out
+            hinges[r["element"], end] = (r["ductility"], r["yield_events"], index.get(key, math.nan))
+    return hinges
 
 
 def extremes(row: Any) -> tuple[float, float, float, float]:

@@ -25,13 +25,13 @@ REACTION: Final = (("force X", "F"), ("force Y", "F"), ("moment", "F*L"))
 def motion(results: Results) -> list[Part]:
     """For each quantity: one row for each node, its directions side by side."""
     rows = results.table("node_envelope")
-    out = []
+    parts = []
     for quantity, dimensions in MOTION.items():
-        own = rows[rows["quantity"] == quantity]
-        if len(own):
+        envelope = rows[rows["quantity"] == quantity]
+        if len(envelope):
             heads = [(d, unit) for d, unit in zip("XYR", dimensions)]
-            out.append(_beside(own, "direction", heads, quantity))
-    return out
+            parts.append(_beside(envelope, "direction", heads, quantity))
+    return parts
 
 
 def reactions(results: Results) -> list[Part]:
@@ -50,12 +50,12 @@ def _beside(rows: Any, by: str, quantities: Sequence[tuple[str, str]], title: st
             Column(f"{name} min", f"{name}\nmin", unit, "num"),
             time_column(f"{name} t_min", "at time", ""),
         ]
-    found = {(r["node"], r[by]): extremes(r) for r in rows}
+    envelope = {(r["node"], r[by]): extremes(r) for r in rows}
 
     def values(owner: int) -> Iterator[float]:
         for name, _ in present:
-            high, t_high, low, t_low = found.get((owner, name), NONE)
+            high, t_high, low, t_low = envelope.get((owner, name), NONE)
             yield from (high, round(t_high, digits), low, round(t_low, digits))
 
-    out = [(owner, *values(owner)) for owner in dict.fromkeys(rows["node"].tolist())]
-    return part(columns, out)._replace(title=title)
+    lines = [(owner, *values(owner)) for owner in dict.fromkeys(rows["node"].tolist())]
+    return part(columns, lines)._replace(title=title)

@@ -10,16 +10,16 @@ CLOSE = 1e-9  #: share of the larger of two numbers by which steps of one range 
 
 def numbers(given: Sequence[int]) -> str:
     """Whole numbers in their order, three or more of equal distance, or two neighbours, as a range."""
-    out, i = list[str](), 0
+    ranges, i = list[str](), 0
     while i < len(given):
         end = _run(given, i)
         if end - i > 2 or (end - i == 2 and given[i + 1] - given[i] == 1):
-            out.append(between(given[i], given[end - 1], given[i + 1] - given[i]))
+            ranges.append(between(given[i], given[end - 1], given[i + 1] - given[i]))
         else:
             end = i + 1
-            out.append(str(given[i]))
+            ranges.append(str(given[i]))
         i = end
-    return ", ".join(out)
+    return ", ".join(ranges)
 
 
 def between(first: int, last: int, step: int) -> str:
@@ -41,16 +41,16 @@ def stepping(rows: Sequence[tuple[Cell, ...]]) -> list[tuple[tuple[Cell, ...], t
 
     Two rows are a range only if the first column steps by one and at most one other real number changes.
     """
-    out, i = [], 0
+    ranges, i = [], 0
     while i < len(rows):
         end = i + 1
         while end < len(rows) and _continues(rows, i, end):
             end += 1
         if end - i == 2 and not _neighbours(rows[i], rows[i + 1]):
             end = i + 1
-        out.append((rows[i], rows[end - 1], end - i))
+        ranges.append((rows[i], rows[end - 1], end - i))
         i = end
-    return out
+    return ranges
 
 
 def _continues(rows: Sequence[tuple[Cell, ...]], start: int, at: int) -> bool:

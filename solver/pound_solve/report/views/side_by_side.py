@@ -28,12 +28,14 @@ def shapes(results: Results) -> list[Part]:
     """Modes side by side, one row for each node: X, Y and R one below the other."""
     rows, stored = results.table("mode_shapes"), TABLES["mode_shapes"].columns
     modes = dict.fromkeys(rows["mode"].tolist())
-    out = []
+    parts = []
     for column in stored[2:]:
-        own = (Column(f"{n}", f"{column.title}\nmode {n}", column.unit, "short") for n in modes)
-        columns = [NODE, *own]
-        found = {(r["node"], r["mode"]): float(r[column.name]) for r in rows}
-        if any(found.values()):
+        mode_columns = (Column(f"{n}", f"{column.title}\nmode {n}", column.unit, "short") for n in modes)
+        columns = [NODE, *mode_columns]
+        ordinates = {(r["node"], r["mode"]): float(r[column.name]) for r in rows}
+        if any(ordinates.values()):
             owners = dict.fromkeys(rows["node"].tolist())
-            out.append(part(columns, [(n, *(found.get((n, m), math.nan) for m in modes)) for n in owners]))
-    return out
+            parts.append(
+                part(columns, [(n, *(ordinates.get((n, m), math.nan) for m in modes)) for n in owners])
+            )
+    return parts

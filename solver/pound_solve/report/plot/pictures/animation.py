@@ -81,13 +81,13 @@ def film(results: Results, choice: Choice) -> Film:
 
 def _closed(results: Results, name: str, time: Array) -> Flags:
     """Whether a contact was closed between each frame and the one before, shape (n,)."""
-    out = np.zeros(len(time), bool)
+    closed = np.zeros(len(time), bool)
     if "collisions" in results.tables:
         table = results.table("collisions")
-        for own in table[[str(c) == name for c in table["contact"]]]:
-            end = own["t_end"] if np.isfinite(own["t_end"]) else np.inf
-            out |= (time >= own["t_start"]) & (np.roll(time, 1) <= end) & (np.arange(len(time)) > 0)
-    return out
+        for hit in table[[str(c) == name for c in table["contact"]]]:
+            end = hit["t_end"] if np.isfinite(hit["t_end"]) else np.inf
+            closed |= (time >= hit["t_start"]) & (np.roll(time, 1) <= end) & (np.arange(len(time)) > 0)
+    return closed
 
 
 class Stage:
@@ -118,17 +118,17 @@ class Stage:
 
     def show(self, k: int) -> None:
         """Draw the frame of a number."""
-        own, s = self.film, self.structure
-        moved = dict(zip(own.nodes, own.moved[k]))
+        film, s = self.film, self.structure
+        moved = dict(zip(film.nodes, film.moved[k]))
         self.members.set_data(*s.path(shift=moved))
         points = [
             np.mean([s.place[n] + moved.get(n, np.zeros(2)) for n in ends if n], axis=0)
             for ends in self.ends
         ]
-        hit = own.closed[k]
+        hit = film.closed[k]
         for line, chosen in ((self.open, ~hit), (self.closed, hit)):
             line.set_data(*np.array([p for p, c in zip(points, chosen) if c]).reshape(-1, 2).T)
-        self.axes.set_title(caption(own, k))
+        self.axes.set_title(caption(film, k))
 
 
 def caption(own: Film, k: int) -> str:
@@ -149,14 +149,14 @@ def animation(results: Results, choice: Choice) -> Any:
 
 def write(results: Results, choice: Choice, path: Path) -> None:
     """Write the film in the format of the file's ending."""
-    own = film(results, choice)
+    animation = film(results, choice)
     if path.suffix == ".html":
-        write_text(path, page(own))
+        write_text(path, page(animation))
         return
-    stage = Stage(own)
+    stage = Stage(animation)
     stage.show(0)
     style.arrange(stage.figure)
-    style.film(stage.figure, stage.show, len(own.time), path, RATE)
+    style.film(stage.figure, stage.show, len(animation.time), path, RATE)
 
 
 def page(own: Film) -> str:

@@ -35,9 +35,9 @@ def moves(results: Results, quantity: str = "shear X") -> bool:
     """
     table = results.table("base_envelope")
     largest = {
-        q: float(np.abs(np.append(own["max"], own["min"])).max(initial=0.0))
+        q: float(np.abs(np.append(envelope["max"], envelope["min"])).max(initial=0.0))
         for q in set(table["quantity"])
-        for own in [table[table["quantity"] == q]]
+        for envelope in [table[table["quantity"] == q]]
     }
     forces = [largest.get(q, 0.0) for q in ("shear X", "force Y")]
     for name in ("contact_summary", "reaction_envelope"):
@@ -57,10 +57,10 @@ def panel(
     rows = choice.span(results)
     t, values = results.time[rows], results.history("building/base")[rows]
     all_labels, units = results.labels("building/base"), results.history_units("building/base")
-    own = [k for k, label in enumerate(all_labels) if label.endswith(f" {quantity}")]
-    unit = ", ".join(dict.fromkeys(units[k] for k in own))
+    columns = [k for k, label in enumerate(all_labels) if label.endswith(f" {quantity}")]
+    unit = ", ".join(dict.fromkeys(units[k] for k in columns))
     style.grid(axes, f"time [{results.units.time}]" if last else "", f"{TITLES[quantity]}\n[{unit}]")
-    for n, k in enumerate(own):
+    for n, k in enumerate(columns):
         name, look = all_labels[k].removesuffix(f" {quantity}"), style.stroke(n)
         courses.shade(axes, results, "building/base", k, look, choice)
         axes.plot(t, values[:, k], **look, label=style.short(name))
@@ -72,8 +72,11 @@ def panel(
 def _peaks(results: Results, name: str, quantity: str, choice: Choice) -> Any:
     """Times and values of the envelope, shape (2, n)."""
     table = results.table("base_envelope")
-    own = table[(table["building"] == name) & (table["quantity"] == quantity)]
-    times, values = np.concatenate([own["t_max"], own["t_min"]]), np.concatenate([own["max"], own["min"]])
+    envelope = table[(table["building"] == name) & (table["quantity"] == quantity)]
+    times, values = (
+        np.concatenate([envelope["t_max"], envelope["t_min"]]),
+        np.concatenate([envelope["max"], envelope["min"]]),
+    )
     low, high = choice.between or (-np.inf, np.inf)
     within = (times >= low) & (times <= high)
     return np.array([times[within], values[within]])

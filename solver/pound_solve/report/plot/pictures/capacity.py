@@ -53,13 +53,13 @@ def curve(axes: Any, results: Results) -> None:
 def kinds(results: Results, events: NDArray[Any]) -> list[str]:
     """What happens at each event, in words: a contact closes or opens, others by their branch."""
     contacts = {int(e["element"]) for e in results.table("elements") if e["kind"] == "CONTACT"}
-    out = []
+    words = []
     for row in events:
         if int(row["element"]) in contacts and "open" in (row["before"], row["after"]):
-            out.append("opens" if row["after"] == "open" else "closes")
+            words.append("opens" if row["after"] == "open" else "closes")
         else:
-            out.append(str(row["after"]).rstrip("+- "))
-    return out
+            words.append(str(row["after"]).rstrip("+- "))
+    return words
 
 
 def first_ones(words: list[str]) -> list[int]:

@@ -19,8 +19,8 @@ def collisions(results: Results, choice: Choice) -> Any:
     names = list(results.labels("contact/force"))
     figure = style.figure(9.5, 0.3 * len(names) + 3.4, "Collisions")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 0.3 * len(names) + 0.5))
-    found = results.table("collisions")
-    impacts = bool(np.isnan(found["peak_force"]).all())
+    table = results.table("collisions")
+    impacts = bool(np.isnan(table["peak_force"]).all())
     column, when = ("impulse", "t_start") if impacts else ("peak_force", "t_peak")
     unit = results.units.text("F*T") if impacts else results.units.force
     style.grid(top, "", f"{'impulse' if impacts else 'peak force'} [{unit}]")
@@ -28,14 +28,14 @@ def collisions(results: Results, choice: Choice) -> Any:
     end = results.last_time
     for n, name in enumerate(names):
         colour = style.stroke(n)["color"]
-        own = courses.of_contact(results, name, choice)
-        last = np.where(np.isnan(own["t_end"]), end, own["t_end"])
-        if len(own):
-            top.vlines(own[when], 0.0, own[column], color=colour, linewidth=0.9)
-            top.plot(own[when], own[column], "o", color=colour, label=style.short(name))
+        closures = courses.of_contact(results, name, choice)
+        last = np.where(np.isnan(closures["t_end"]), end, closures["t_end"])
+        if len(closures):
+            top.vlines(closures[when], 0.0, closures[column], color=colour, linewidth=0.9)
+            top.plot(closures[when], closures[column], "o", color=colour, label=style.short(name))
         # a collision is short: no bar is thinner than a line
-        width = np.maximum(last - own["t_start"], 0.002 * end)
-        bottom.barh(np.full(len(own), n), width, left=own["t_start"], color=colour, height=0.6)
+        width = np.maximum(last - closures["t_start"], 0.002 * end)
+        bottom.barh(np.full(len(closures), n), width, left=closures["t_start"], color=colour, height=0.6)
     top.set_xlim(*(choice.between or (results.time[0], end)))
     top.set_ylim(bottom=0.0)
     style.legend(top)

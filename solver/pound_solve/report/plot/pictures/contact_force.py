@@ -41,11 +41,11 @@ def contact_force(results: Results, choice: Choice) -> Any:
 
 def _caption(results: Results, name: str, choice: Choice) -> str:
     """How often a contact closed, and its largest force."""
-    own, units = courses.of_contact(results, name, choice), results.units
-    times = {0: "not closed", 1: "closed once"}.get(len(own), f"closed {len(own)} times")
-    peaks = own[np.isfinite(own["peak_force"])]
+    collisions, units = courses.of_contact(results, name, choice), results.units
+    times = {0: "not closed", 1: "closed once"}.get(len(collisions), f"closed {len(collisions)} times")
+    peaks = collisions[np.isfinite(collisions["peak_force"])]
     if not len(peaks):
-        return f"{name}: {times}" + (", impacts in no time (bars)" if len(own) else "")
+        return f"{name}: {times}" + (", impacts in no time (bars)" if len(collisions) else "")
     top = peaks[np.argmax(peaks["peak_force"])]
     return (
         f"{name}: {times}, largest force {top['peak_force']:.5g} {units.force} at {top['t_peak']:.6g} "

@@ -40,8 +40,8 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     near = gap <= max(0.0, 0.2 * float(-gap.min()))
     x, y = np.where(near, -gap, np.nan), np.where(near, force, np.nan)
     axes.plot(x, y, ".", color=style.RED, markersize=3)
-    for own in courses.of_contact(results, name, choice):
-        closed = (t >= own["t_start"]) & ~(t > own["t_end"])
+    for collision in courses.of_contact(results, name, choice):
+        closed = (t >= collision["t_start"]) & ~(t > collision["t_end"])
         if closed.sum() >= DENSE:
             axes.plot(x[closed], y[closed], color=style.RED, linestyle="-", linewidth=0.8)
     peak, overlap, closures = _peaks(results, name)

@@ -21,8 +21,8 @@ UNITS = {"M": "F*L", "V": "F", "N": "F"}
 def diagrams(results: Results, choice: Choice) -> Any:
     """Draw the three beside or below each other, at an instant or as envelopes."""
     s = geometry.DrawnStructure(results)
-    found = list(lines(results, s.place, choice))
-    shown = [q for q in QUANTITIES if any(q in own.low for own in found)]
+    chosen = list(lines(results, s.place, choice))
+    shown = [q for q in QUANTITIES if any(q in line.low for line in chosen)]
     if not shown:
         raise Nothing("members with forces at both ends")
     width, height = s.shape()
@@ -33,7 +33,7 @@ def diagrams(results: Results, choice: Choice) -> Any:
     figure = style.figure(*size, title=_title(results, choice))
     for n, quantity in enumerate(shown):
         axes = figure.add_subplot(*((1, len(shown)) if upright else (len(shown), 1)), n + 1)
-        panel(axes, s, [own for own in found if quantity in own.low], quantity)
+        panel(axes, s, [line for line in chosen if quantity in line.low], quantity)
     return figure
 
 
@@ -55,22 +55,22 @@ def panel(axes: Any, s: geometry.DrawnStructure, found: list[Line], quantity: st
     """Draw one force along all members; the largest and the smallest of each bear their values."""
     s.frame(axes, 0.06 + SHARE)
     s.draw(axes, color="0.6", linewidth=0.8)
-    low = min(float(own.low[quantity].min()) for own in found)
-    high = max(float(own.high[quantity].max()) for own in found)
+    low = min(float(line.low[quantity].min()) for line in found)
+    high = max(float(line.high[quantity].max()) for line in found)
     top = max(abs(low), abs(high)) or 1.0
-    lengths = [float(np.hypot(*(own.j - own.i))) for own in found]
+    lengths = [float(np.hypot(*(line.j - line.i))) for line in found]
     factor = min(SHARE * s.size, WIDEST * float(np.median(lengths))) / top
-    one = all(np.array_equal(own.low[quantity], own.high[quantity]) for own in found)
-    for own in found:
-        both = ((own.high[quantity], style.BLUE), (own.low[quantity], style.RED))
+    one = all(np.array_equal(line.low[quantity], line.high[quantity]) for line in found)
+    for line in found:
+        both = ((line.high[quantity], style.BLUE), (line.low[quantity], style.RED))
         for values, colour in both[: 1 if one else 2]:
-            base, edge = _outline(own, values, quantity, factor)
+            base, edge = _outline(line, values, quantity, factor)
             axes.fill(*np.hstack([edge, base[:, ::-1]]), color=colour, alpha=0.18, linewidth=0)
             axes.plot(*np.hstack([base[:, :1], edge, base[:, -1:]]), color=colour, linestyle="-",
                       linewidth=0.8)  # fmt: skip
     order = sorted(found, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max()))
-    for own in order[:MOST]:
-        _values(axes, own, quantity, factor, 0.02 * top)
+    for line in order[:MOST]:
+        _values(axes, line, quantity, factor, 0.02 * top)
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
     told = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
         not one

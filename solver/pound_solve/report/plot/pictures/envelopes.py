@@ -56,9 +56,9 @@ def _drifts(axes: Any, results: Results) -> None:
 def _columns(results: Results) -> list[Array]:
     """Heights, smallest and largest displacements X of the nodes above each other, shape (3, n) each."""
     place, table = DrawnStructure(results).place, results.table("node_envelope")
-    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
+    envelope = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
     lines: dict[float, list[tuple[float, float, float]]] = {}
-    for row in own:
+    for row in envelope:
         x, y = place[int(row["node"])].tolist()
         lines.setdefault(x, []).append((y, float(row["min"]), float(row["max"])))
     return [np.array(sorted(line)).T for line in lines.values() if len({y for y, _, _ in line}) > 1]

@@ -62,10 +62,10 @@ def panel(
         key = (float(at[0]), float(at[1]))
         worst[key] = max(worst.get(key, -math.inf), float(row[column]))
     for n, (_, word) in enumerate(reversed(classes)):
-        own = [at for at, value in worst.items() if state(value, classes) == word]
-        if own:
+        points = [at for at, value in worst.items() if state(value, classes) == word]
+        if points:
             look = {"markersize": 6, "markeredgecolor": "0.2", "markeredgewidth": 0.6, "zorder": 3 + n}
-            axes.plot(*np.transpose(own), "o", color=COLOURS[n], **look)
+            axes.plot(*np.transpose(points), "o", color=COLOURS[n], **look)
     named = [(COLOURS[n], word) for n, (_, word) in enumerate(reversed(classes))]
     style.legend(axes, style.patches(named))
 

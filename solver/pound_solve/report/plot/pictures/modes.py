@@ -23,10 +23,10 @@ def modes(results: Results, choice: Choice) -> Any:
         len(numbers), "Mode shapes", (max(2.5, 0.45 * width), max(2.0, 0.45 * height))
     )
     for axes, number in zip(all_axes, numbers):
-        own = shapes[shapes["mode"] == number]
-        size = max(float(np.hypot(own["x"], own["y"]).max()), 1e-300)
+        shape = shapes[shapes["mode"] == number]
+        size = max(float(np.hypot(shape["x"], shape["y"]).max()), 1e-300)
         factor = geometry.SHARE * s.size / size
-        moved = {int(r["node"]): factor * np.array([r["x"], r["y"]]) for r in own}
+        moved = {int(r["node"]): factor * np.array([r["x"], r["y"]]) for r in shape}
         s.frame(axes, 0.06 + geometry.SHARE)
         s.draw(axes, color="0.8", linewidth=0.8)
         s.draw(axes, moved, color=style.BLUE, linewidth=1.2)

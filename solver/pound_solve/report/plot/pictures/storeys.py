@@ -48,18 +48,18 @@ def panel(axes: Any, results: Results, names: list[str], quantity: str) -> None:
     style.grid(axes, f"{words} [{unit}]", f"height [{results.units.length}]")
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     for n, name in enumerate(names):
-        own = table[table["building"] == name]
+        storeys = table[table["building"] == name]
         high, low = extremes(results, name, quantity)
         look = {"color": style.stroke(n)["color"], "linewidth": 1.2}
         for values, dashes in ((high, "-"), (low, "--")):
             label = style.short(name) if dashes == "-" else None
             if quantity == "floor acceleration":
-                at = [_base(own), *own["level"]]
+                at = [_base(storeys), *storeys["level"]]
                 base = base_acceleration(results, name)
                 shown = [base[0] if dashes == "-" else base[1], *values]
                 axes.plot(shown, at, dashes, marker=".", **look, label=label)
             else:
-                steps = np.column_stack([own["level"] - own["height"], own["level"]]).ravel()
+                steps = np.column_stack([storeys["level"] - storeys["height"], storeys["level"]]).ravel()
                 axes.plot(factor * np.repeat(values, 2), steps, dashes, **look, label=label)
     axes.margins(x=0.06, y=0.03)
     axes.locator_params(axis="x", nbins=6)
@@ -72,19 +72,19 @@ def _base(own: NDArray[Any]) -> float:
 def extremes(results: Results, name: str, quantity: str) -> tuple[Array, Array]:
     """Largest and smallest values of the storeys of a building from below, shape (n,) each."""
     table = results.table("storey_extremes")
-    own = table[(table["building"] == name) & (table["quantity"] == quantity)]
-    return own["max"], own["min"]
+    rows = table[(table["building"] == name) & (table["quantity"] == quantity)]
+    return rows["max"], rows["min"]
 
 
 def base_acceleration(results: Results, building: str) -> tuple[float, float]:
     """Largest and smallest acceleration of the supports at the base, NaN where none is recorded."""
     rows = {row["building"]: row for row in results.table("buildings")}
-    own, table = rows[building], results.table("node_envelope")
-    feet = DrawnStructure(results).feet(int(own["node"]), float(own["base"]))
-    found = table[
+    entry, table = rows[building], results.table("node_envelope")
+    feet = DrawnStructure(results).feet(int(entry["node"]), float(entry["base"]))
+    motion = table[
         (table["quantity"] == "acceleration") & (table["direction"] == "X") & np.isin(table["node"], feet)
     ]
-    return (float(found["max"].max()), float(found["min"].min())) if len(found) else (np.nan, np.nan)
+    return (float(motion["max"].max()), float(motion["min"].min())) if len(motion) else (np.nan, np.nan)
 
 
 SPEC = Picture(

@@ -28,10 +28,11 @@ def study(results: Results, choice: Choice) -> Any:
         axes = figure.add_subplot(1, len(over), n + 1)
         style.grid(axes, name, "" if n else "largest error")
         for k, method in enumerate(dict.fromkeys(table["method"].tolist())):
-            own = (table["method"] == method) & (table[column] > 0)
-            if own.any():
+            runs = (table["method"] == method) & (table[column] > 0)
+            if runs.any():
                 axes.loglog(
-                    table[column][own], worst[own], **{**style.stroke(k), "marker": MARKS[k % len(MARKS)]},
+                    table[column][runs], worst[runs],
+                    **{**style.stroke(k), "marker": MARKS[k % len(MARKS)]},
                     markersize=4, linewidth=0.9, label=method,
                 )  # fmt: skip
         for target in results.table("study_advice")["target"]:

@@ -40,8 +40,8 @@ def summary(results: Results, choice: Choice) -> Any:
         0.0, 1.0, "\n".join(told), va="top", fontsize=SIZE, transform=text.transAxes, linespacing=SPACING
     )
     if rows:
-        for draw, own in zip(rows, middle.subplots(len(rows), 1, squeeze=False, sharex=True).ravel()):
-            draw(own)
+        for draw, panel in zip(rows, middle.subplots(len(rows), 1, squeeze=False, sharex=True).ravel()):
+            draw(panel)
     if profiles:
         _profiles(low, results)
     foot.text(0.01, 0.5, _foot(results, profiles), fontsize=6.5, color="0.4", va="center")
@@ -54,14 +54,14 @@ def _rows(results: Results) -> list[Any]:
         if results.holds("capacity_curve"):
             return [partial(capacity.curve, results=results)]
         return [partial(_moments, results=results)] if members(results) else []
-    out: list[Any] = []
+    panels: list[Any] = []
     for name in ("ground", "drift", "base", "contact/force"):
         if name == "base":
             if all(map(results.holds, base_shear.SPEC.needs)) and base_shear.moves(results):
-                out.append(partial(base_shear.panel, results=results, last=False))
+                panels.append(partial(base_shear.panel, results=results, last=False))
         elif results.holds(name):
-            out.append(partial(courses.panel, results=results, name=name, last=False))
-    return [*out[:-1], partial(out[-1], last=True)] if out else []
+            panels.append(partial(courses.panel, results=results, name=name, last=False))
+    return [*panels[:-1], partial(panels[-1], last=True)] if panels else []
 
 
 def _moments(axes: Any, results: Results) -> None:
@@ -105,11 +105,11 @@ def _profiles(part: Any, results: Results) -> None:
 
 
 def _foot(results: Results, profiles: bool) -> str:
-    own = f"pound-solve {__version__}, {results.path.name}"
+    imprint = f"pound-solve {__version__}, {results.path.name}"
     rings = ["rings: true peaks"] if len(results.time) else []
     sides = ["profiles: lines to the right, dashes to the left"] if profiles else []
-    own += f", digest {results.digest[:16]}" if results.digest else ""
-    return "\n".join(filter(None, ["; ".join(rings + sides), own]))
+    imprint += f", digest {results.digest[:16]}" if results.digest else ""
+    return "\n".join(filter(None, ["; ".join(rings + sides), imprint]))
 
 
 SPEC = Picture(
