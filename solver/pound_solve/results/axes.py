@@ -35,10 +35,10 @@ def axes_of(name: str, attributes: Mapping[str, Any]) -> tuple[Axis, ...]:
     if not sources or not attributes.keys() >= set(sources.values()):  # a file of another version
         plain = Axis(f"{name.rpartition('/')[2]}_label", labels, {})
         return (Axis("node", attributes["nodes"], {}), plain) if "nodes" in attributes else (plain,)
-    given = {axis: attributes[source] for axis, source in sources.items()}
-    if len(given) == 1 or "nodes" in attributes:
-        return tuple(Axis(axis, values, {}) for axis, values in given.items())
-    return (Axis("_".join(given), labels, given),)
+    coordinates = {axis: attributes[source] for axis, source in sources.items()}
+    if len(coordinates) == 1 or "nodes" in attributes:
+        return tuple(Axis(axis, values, {}) for axis, values in coordinates.items())
+    return (Axis("_".join(coordinates), labels, coordinates),)
 
 
 def coordinates(axes: Sequence[Axis]) -> dict[str, tuple[Any, ...]]:

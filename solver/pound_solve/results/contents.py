@@ -22,12 +22,12 @@ _FOLDERS: Final = tuple(map(import_module, dict.fromkeys(m.__package__ or "" for
 
 def _found(kind: type, modules: Iterable[ModuleType]) -> list[tuple[ModuleType, Any]]:
     """Objects of a kind at the top of modules, by place, with the first module that holds each."""
-    out: dict[int, tuple[ModuleType, Any]] = {}
+    objects: dict[int, tuple[ModuleType, Any]] = {}
     for module in modules:
         for x in vars(module).values():
             if isinstance(x, kind):
-                out.setdefault(id(x), (module, x))
-    return sorted(out.values(), key=lambda pair: pair[1].place)
+                objects.setdefault(id(x), (module, x))
+    return sorted(objects.values(), key=lambda pair: pair[1].place)
 
 
 _TABLES: Final = _found(Table, _MODULES)

@@ -59,17 +59,17 @@ def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = N
     data : ndarray or str, optional
         Left out: that of the attributes, to be updated with the bytes of numbers.
     """
-    own = {
+    texts = {
         key: [v.decode() if isinstance(v, bytes) else str(v) for v in np.atleast_1d(attributes[key])]
         for key in sorted(attributes)
         if key not in (DIGEST, DIGEST_OF_THE_DAY, *FOR_OTHERS)
     }
-    out = blake2b(storable(repr(own)).encode(), digest_size=8)
+    digest = blake2b(storable(repr(texts)).encode(), digest_size=8)
     if isinstance(data, str):
-        out.update(storable(data).encode())
+        digest.update(storable(data).encode())
     elif data is not None:
-        out.update(storable(repr(data.tolist())).encode() if data.dtype.names else data.tobytes())
-    return out
+        digest.update(storable(repr(data.tolist())).encode() if data.dtype.names else data.tobytes())
+    return digest
 
 
 #: digest of a part that differs between two runs of a deck: of the whole file it is one by being there
@@ -79,7 +79,7 @@ THERE: Final = digest_of({})
 def digest_of_file(parts: Mapping[str, str], attributes: Mapping[str, Any]) -> str:
     """Digest of a results file from those of its datasets, by their paths, and from its own attributes."""
     head = digest_of({key: attributes[key] for key in HEAD}).hexdigest()
-    told = "\n".join(f"{name} {own}" for name, own in sorted({**parts, "/": head}.items()))
+    told = "\n".join(f"{name} {digest}" for name, digest in sorted({**parts, "/": head}.items()))
     return blake2b(told.encode(), digest_size=8).hexdigest()
 
 

@@ -35,11 +35,11 @@ def library(name: str) -> Any:
 
 def frame(rows: NDArray[Any], units: Mapping[str, str], title: str) -> pandas.DataFrame:
     """A table: one column for each field of the rows; title and units are in ``attrs``."""
-    out: pandas.DataFrame = library("pandas").DataFrame(
+    table: pandas.DataFrame = library("pandas").DataFrame(
         {name: rows[name] for name in rows.dtype.names or ()}
     )
-    out.attrs = {"title": title, "units": dict(units)}
-    return out
+    table.attrs = {"title": title, "units": dict(units)}
+    return table
 
 
 def labelled(
@@ -71,18 +71,18 @@ def labelled(
             coordinates |= zip(axes[0].coordinates, grid)
     if len(coordinates) == 1:
         coordinates |= {axis.name: _plain(axis.labels) for axis in axes}
-    out: xarray.DataArray = library("xarray").DataArray(
+    array: xarray.DataArray = library("xarray").DataArray(
         values, coordinates, tuple(coordinates), name.rpartition("/")[2], dict(attributes)
     )
-    return out
+    return array
 
 
 def _dense(values: Array, pairs: Sequence[tuple[Any, Any]]) -> tuple[Array, tuple[Any, Any]]:
     """Columns of pairs as a grid of both labels."""
-    first, second = (list(dict.fromkeys(own)) for own in zip(*pairs))
-    out = np.full((len(values), len(first), len(second)), np.nan)
-    out[:, [first.index(a) for a, _ in pairs], [second.index(b) for _, b in pairs]] = values
-    return out, (_plain(first), _plain(second))
+    first, second = (list(dict.fromkeys(labels)) for labels in zip(*pairs))
+    grid = np.full((len(values), len(first), len(second)), np.nan)
+    grid[:, [first.index(a) for a, _ in pairs], [second.index(b) for _, b in pairs]] = values
+    return grid, (_plain(first), _plain(second))
 
 
 def _plain(labels: Sequence[Any]) -> NDArray[Any]:

@@ -40,19 +40,19 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
     ResultsError
         The report cannot be written, or another program holds one of the older files.
     """
-    own, text = partial(results), results.with_suffix(".rpt")
+    temporary, text = partial(results), results.with_suffix(".rpt")
     try:
         for path in (results, text):
             make_way(path, partial(path))
         _lay(partial(text), report)
         if not whole and (results.exists() or text.exists()):
-            return own
+            return temporary
         text.unlink(missing_ok=True)  # a kill between two renames would leave the report of other results
         for path in (results, text):
             os.replace(partial(path), path)
     except OSError as err:
         raise ResultsError(
-            f"{err.filename or text}: {err.strerror}; the results of this run are in {own}"
+            f"{err.filename or text}: {err.strerror}; the results of this run are in {temporary}"
         ) from err
     return results
 
@@ -69,5 +69,5 @@ def _lay(own: Path, report: str) -> None:
 
 def digest_in(report: Path) -> str:
     """Digest of the results that a report was made from; empty where it has none."""
-    found = _DIGEST.search(contents(report).decode("ascii", "replace")) if report.is_file() else None
-    return found[0].split()[-1] if found else ""
+    match = _DIGEST.search(contents(report).decode("ascii", "replace")) if report.is_file() else None
+    return match[0].split()[-1] if match else ""

@@ -166,20 +166,20 @@ class Results:
 
     def _own_digest(self) -> str:
         """Digest of the file from those that its parts name."""
-        out: dict[str, str] = {}
+        parts: dict[str, str] = {}
 
         def take(name: str, item: h5py.Dataset | h5py.Group) -> None:
             if DIGEST in item.attrs:
-                out[name] = _plain(item.attrs[DIGEST])
+                parts[name] = _plain(item.attrs[DIGEST])
             elif DIGEST_OF_THE_DAY in item.attrs:
-                out[name] = THERE.hexdigest()
+                parts[name] = THERE.hexdigest()
 
         for group in self._file:
             if group != "history" and isinstance(self._file[group], h5py.Group):
                 self._file[group].visititems(lambda name, item, group=group: take(f"{group}/{name}", item))
         for name, dataset in self._datasets.items():
             take(f"history/{name}", dataset)
-        return digest_of_file(out, self._file.attrs)
+        return digest_of_file(parts, self._file.attrs)
 
     def _collect(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
         if isinstance(item, h5py.Dataset) and "labels" in item.attrs and name.rpartition("/")[2] != "time":
@@ -252,13 +252,13 @@ class Results:
             stored = dataset[()]
             fields = [stored.dtype[f] for f in stored.dtype.names]
             plain = [(f, "O" if t.kind == "O" else t) for f, t in zip(stored.dtype.names, fields)]
-            out = np.empty(len(stored), dtype=plain)
+            rows = np.empty(len(stored), dtype=plain)
             for field, kind in zip(stored.dtype.names, fields):
                 column = stored[field]
-                out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
-            if self._judges_columns and name in TABLES and out.dtype != TABLES[name].kinds:
+                rows[field] = [_plain(v) for v in column] if kind.kind == "O" else column
+            if self._judges_columns and name in TABLES and rows.dtype != TABLES[name].kinds:
                 raise self._damaged(f"{name} does not have the columns of such a table")
-            self._read[name] = self._as_written(name, dataset, out, name in TABLES)
+            self._read[name] = self._as_written(name, dataset, rows, name in TABLES)
         return self._read[name].copy()
 
     @property
@@ -302,13 +302,13 @@ class Results:
         NoSuchPartError
             The file has no history of that name, or the history no such number; a KeyError, too.
         """
-        out: Array = self._dataset(name)[: self._length]
-        if out.dtype != float or math.prod(out.shape[1:]) != len(self.labels(name)):
+        values: Array = self._dataset(name)[: self._length]
+        if values.dtype != float or math.prod(values.shape[1:]) != len(self.labels(name)):
             raise self._damaged(f"{name} does not have the columns that its labels name")
-        self._as_written(name, self._dataset(name), out, self._complete)
+        self._as_written(name, self._dataset(name), values, self._complete)
         if not at:
-            return out
-        columns = out.reshape(len(out), -1)[:, self.places(name, **at)]
+            return values
+        columns = values.reshape(len(values), -1)[:, self.places(name, **at)]
         return columns[:, 0] if columns.shape[1] == 1 else columns
 
     @_sound
@@ -326,15 +326,15 @@ class Results:
         NoSuchPartError
             The file has no history of that name, or the history no such number; a KeyError, too.
         """
-        own = self.coordinates(name)
+        coordinates = self.coordinates(name)
         left = list(range(len(self.labels(name))))
         for key, value in at.items():
-            if key not in own:
+            if key not in coordinates:
                 raise NoSuchPartError(
-                    f"history {name!r} has no {key!r}; it has: {', '.join(own) or 'none'}"
+                    f"history {name!r} has no {key!r}; it has: {', '.join(coordinates) or 'none'}"
                 )
-            there = dict.fromkeys(own[key][i] for i in left)
-            left = [i for i in left if own[key][i] == value]
+            there = dict.fromkeys(coordinates[key][i] for i in left)
+            left = [i for i in left if coordinates[key][i] == value]
             if not left:
                 has = ", ".join(map(str, there))
                 raise NoSuchPartError(f"history {name!r} has no number of {key}={value!r}; it has: {has}")
@@ -385,8 +385,8 @@ class Results:
         t, rows = self.time, self.history(name)
         if name not in self.closeups:
             return t, rows
-        near, own = self.closeup(name)
-        t, rows = np.concatenate([t, near]), np.concatenate([rows, own])
+        near, near_rows = self.closeup(name)
+        t, rows = np.concatenate([t, near]), np.concatenate([rows, near_rows])
         order = np.argsort(t, kind="stable")
         t, rows = t[order], rows[order]
         new = np.append(True, np.diff(t) > 0.0)
@@ -411,8 +411,8 @@ class Results:
     def attributes(self, name: str) -> dict[str, list[Any]]:
         """All attributes of a history (``nodes``, ``element``, ``quantity``, ...), each as a list."""
         attrs = self._dataset(name).attrs
-        own = [key for key in attrs if key not in FOR_OTHERS]
-        return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in own}
+        keys = [key for key in attrs if key not in FOR_OTHERS]
+        return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in keys}
 
     def to_pandas(self, table: str) -> pandas.DataFrame:
         """Table as a DataFrame, with its title and the units of its columns in ``attrs`` (extra ``data``).
@@ -458,15 +458,15 @@ class Results:
                 groups.setdefault(f"/{group}", {})[leaf] = self._labelled(name)
         attributes = {"title": self.title, "status": self.status, "program_version": self.program_version}
         kit = library("xarray")
-        tree: xarray.DataTree = kit.DataTree.from_dict({k: kit.Dataset(own) for k, own in groups.items()})
+        tree: xarray.DataTree = kit.DataTree.from_dict({k: kit.Dataset(data) for k, data in groups.items()})
         tree.attrs = attributes
         return tree
 
     def _labelled(self, name: str) -> xarray.DataArray:
-        own, axes = self.attributes(name), axes_of(name, self.attributes(name))
-        units = own["unit"]
+        stored, axes = self.attributes(name), axes_of(name, self.attributes(name))
+        units = stored["unit"]
         if len(set(units)) > 1:
-            named = own.get("quantity") or own["labels"]
+            named = stored.get("quantity") or stored["labels"]
             units = [f"{c}: {u}" for c, u in dict(zip(named, units)).items()]
         attributes = {"units": ", ".join(dict.fromkeys(units))}
         if name in HISTORIES:

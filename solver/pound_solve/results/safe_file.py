@@ -96,9 +96,9 @@ class SafeFile:
 
     def read(self, count: int) -> bytes:
         """What stands at the place."""
-        out = bytearray(count)
-        self.readinto(memoryview(out))
-        return bytes(out)
+        buffer = bytearray(count)
+        self.readinto(memoryview(buffer))
+        return bytes(buffer)
 
     def write(self, data: memoryview) -> int:
         """Keep data that belongs to the place."""

@@ -43,8 +43,8 @@ def holds(file: IO[bytes]) -> bool | None:
     if end < 0:
         return None
     file.seek(end)
-    found = file.read(LENGTH)
-    if not found.startswith(_MARK):
+    stored = file.read(LENGTH)
+    if not stored.startswith(_MARK):
         return None
-    size = _SEAL.unpack(found)[1]
-    return size <= end and seal(list(checksums(file, 0, size)), size) == found
+    size = _SEAL.unpack(stored)[1]
+    return size <= end and seal(list(checksums(file, 0, size)), size) == stored

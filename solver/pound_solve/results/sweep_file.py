@@ -119,11 +119,11 @@ class Sweep:
 
     def columns(self) -> Iterator[tuple[str, Sequence[Any]]]:
         """Every column of a flat table with its name; that of a quantity with labels is ``name label``."""
-        for name, own in self.variables.items():
-            if not own.axis:
-                yield name, own.values.tolist()
+        for name, variable in self.variables.items():
+            if not variable.axis:
+                yield name, variable.values.tolist()
             else:
-                for label, values in zip(self.labels[own.axis], own.values.T):
+                for label, values in zip(self.labels[variable.axis], variable.values.T):
                     yield f"{name} {label}", values.tolist()
 
     def to_pandas(self) -> DataFrame:
@@ -166,9 +166,9 @@ class Sweep:
         try:
             with h5py.File(str(self.path), "r") as file:
                 group = file[f"{HISTORIES}/{run}"]
-                own = group[name.replace("/", "_")]
-                labels = tuple(str(_plain(v)) for v in own.attrs.get("labels", ()))
-                return group["time"][:], own[:], labels
+                dataset = group[name.replace("/", "_")]
+                labels = tuple(str(_plain(v)) for v in dataset.attrs.get("labels", ()))
+                return group["time"][:], dataset[:], labels
         except _DAMAGE as err:
             raise ResultsError(f"{self.path}: no history {name} of run {run}") from err
 
@@ -216,10 +216,10 @@ def write_table(path: Path, columns: Mapping[str, Variable], about: Mapping[str,
         count = len(next(iter(columns.values())).values) if columns else 0
         scale = _dataset(file, ROW, Variable(np.arange(1, count + 1)))
         scale.make_scale(ROW)
-        for name, own in columns.items():
-            _dataset(file, name, own).dims[0].attach_scale(scale)
+        for name, variable in columns.items():
+            _dataset(file, name, variable).dims[0].attach_scale(scale)
 
-    _put(path, fill, {name: own.values.tolist() for name, own in columns.items()})
+    _put(path, fill, {name: variable.values.tolist() for name, variable in columns.items()})
 
 
 def _put(path: Path, fill: Callable[[h5py.File], None], columns: Mapping[str, Sequence[Any]]) -> None:
@@ -250,10 +250,10 @@ def _write(file: h5py.File, sweep: Sweep) -> None:
     for axis, labels in sweep.labels.items():
         scales[axis] = _dataset(file, axis, Variable(np.array(labels, object)))
         scales[axis].make_scale(axis)
-    for name, own in sweep.variables.items():
+    for name, variable in sweep.variables.items():
         if name != RUN:
-            dataset = _dataset(file, name, own)
-            for at, axis in enumerate((RUN, own.axis) if own.axis else (RUN,)):
+            dataset = _dataset(file, name, variable)
+            for at, axis in enumerate((RUN, variable.axis) if variable.axis else (RUN,)):
                 dataset.dims[at].attach_scale(scales[axis])
 
 
@@ -261,11 +261,11 @@ def _dataset(file: h5py.Group, name: str, own: Variable) -> h5py.Dataset:
     """One dataset with its unit and its meaning."""
     texts = own.values.dtype.kind == "O"
     data = np.array([storable(v) for v in own.values.tolist()], object) if texts else own.values
-    out = file.create_dataset(name, data=data, dtype=_TEXT if texts else None)
+    dataset = file.create_dataset(name, data=data, dtype=_TEXT if texts else None)
     for key, value in (("units", own.unit), ("long_name", own.doc)):
         if value:
-            out.attrs[key] = value
-    return out
+            dataset.attrs[key] = value
+    return dataset
 
 
 def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[Any]]) -> None:
@@ -292,8 +292,8 @@ def _read(file: h5py.File) -> tuple[dict[str, Variable], dict[str, tuple[str, ..
     variables, axes = dict[str, Variable](), dict[str, None]()
     for name in map(_plain, file.attrs[ORDER]):
         item = file[name]
-        own = [_plain(v) for v in item[:]] if item.dtype.kind == "O" else item[:]
-        values = np.array(own, object) if item.dtype.kind == "O" else item[:]
+        plain = [_plain(v) for v in item[:]] if item.dtype.kind == "O" else item[:]
+        values = np.array(plain, object) if item.dtype.kind == "O" else item[:]
         axis = _plain(item.dims[1].keys()[0]) if len(item.shape) > 1 else ""
         told = (str(_plain(item.attrs.get(key, ""))) for key in ("units", "long_name"))
         variables[name] = Variable(values, axis, *told)

@@ -97,28 +97,28 @@ def _grid(results: Results) -> tuple[Grid, list[int]]:
     point = {node: number for number, node in enumerate(nodes)}
     elements, ends = [], []
     for row in results.table("elements"):
-        own = [int(n) for n in (row["i"], row["j"]) if n]
-        if point.keys() >= set(own):
+        joined = [int(n) for n in (row["i"], row["j"]) if n]
+        if point.keys() >= set(joined):
             elements.append(int(row["element"]))
-            ends.append(tuple(point[n] for n in own))
+            ends.append(tuple(point[n] for n in joined))
     points = np.array([place[n] for n in nodes], float)
     return Grid(points, nodes, elements, ends), [n for n in place if n not in point]
 
 
 def _of_points(results: Results) -> dict[str, Array]:
     """Histories of the nodes, shape (nt, n_points, 3) or (nt, n_points)."""
-    out = {}
+    histories = {}
     for history, name in MOTIONS:
         if history in results.histories:
             values = results.history(history)
-            out[name] = np.concatenate([values[:, :, :2], np.zeros_like(values[:, :, :1])], axis=2)
-    out["rotation"] = results.history("node/u")[:, :, 2]
-    return out
+            histories[name] = np.concatenate([values[:, :, :2], np.zeros_like(values[:, :, :1])], axis=2)
+    histories["rotation"] = results.history("node/u")[:, :, 2]
+    return histories
 
 
 def _of_cells(results: Results, grid: Grid) -> dict[str, Array]:
     """Histories of the elements, shape (nt, n_cells)."""
-    out: dict[str, Array] = {}
+    histories: dict[str, Array] = {}
     named = {str(e["name"] or e["element"]): int(e["element"]) for e in results.table("elements")}
     cell = {element: number for number, element in enumerate(grid.elements)}
     for history, axis, quantity in (
@@ -130,15 +130,15 @@ def _of_cells(results: Results, grid: Grid) -> dict[str, Array]:
     ):
         if history not in results.histories:
             continue
-        values, own = results.history(history), results.coordinates(history)
-        components = own.get("component", ("",) * values.shape[1])
-        for column, (element, component) in enumerate(zip(own[axis], components)):
+        values, coordinates = results.history(history), results.coordinates(history)
+        components = coordinates.get("component", ("",) * values.shape[1])
+        for column, (element, component) in enumerate(zip(coordinates[axis], components)):
             number = cell.get(named.get(element, -1) if axis == "contact" else int(element))
             if number is not None:
                 name = quantity.format(component)
-                there = out.setdefault(name, np.full((len(values), len(cell)), np.nan))
+                there = histories.setdefault(name, np.full((len(values), len(cell)), np.nan))
                 there[:, number] = values[:, column]
-    return out
+    return histories
 
 
 def _write_grid(root: h5py.Group, grid: Grid) -> None:
@@ -149,9 +149,9 @@ def _write_grid(root: h5py.Group, grid: Grid) -> None:
         "NumberOfCells": np.array([len(grid.ends)]),
         "NumberOfConnectivityIds": offsets[-1:],
         "Points": grid.points,
-        "Connectivity": np.array([n for own in grid.ends for n in own], np.int64),
+        "Connectivity": np.array([n for cell in grid.ends for n in cell], np.int64),
         "Offsets": offsets,
-        "Types": np.array([LINE if len(own) == 2 else VERTEX for own in grid.ends], np.uint8),
+        "Types": np.array([LINE if len(cell) == 2 else VERTEX for cell in grid.ends], np.uint8),
     }
     for name, values in parts.items():
         root.create_dataset(name, data=values)

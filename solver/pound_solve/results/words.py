@@ -40,5 +40,5 @@ def contact_name(model: Model, element: int) -> str:
 
 def damped_part(card: Card) -> str:
     """Part of the structure that a card of DAMPING is for."""
-    own = [f.name for f in card.spec.fields if f.name in ("BUILDING", "NODES", "PROPS") and card[f.name]]
-    return "; ".join(f"{name.lower()} {text_of(card[name])}" for name in own) or "all"
+    names = [f.name for f in card.spec.fields if f.name in ("BUILDING", "NODES", "PROPS") and card[f.name]]
+    return "; ".join(f"{name.lower()} {text_of(card[name])}" for name in names) or "all"

@@ -145,7 +145,7 @@ class Writer:
             self._history = {
                 name: self._file["history"][name] for name in self._history if name in self._file["history"]
             }
-            self._digests = {name: own for name, own in self._digests.items() if name in self._file}
+            self._digests = {name: digest for name, digest in self._digests.items() if name in self._file}
             self._stored.clear()
             raise
         self._digests |= self._stored
@@ -212,10 +212,10 @@ class Writer:
         dtype = _TEXT if isinstance(data, str) else None
         sums = np.ndim(data) > 0 and np.size(data) > 0  # HDF5 keeps them for chunks of an array only
         dataset = place.create_dataset(name, data=data, dtype=dtype, fletcher32=sums)
-        own = digest_of(attributes, data)
+        digest = digest_of(attributes, data)
         dataset.attrs.update(attributes)
-        dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = own.hexdigest()
-        self._stored[f"{group}/{name}"] = THERE if name in OF_THE_DAY else own
+        dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = digest.hexdigest()
+        self._stored[f"{group}/{name}"] = THERE if name in OF_THE_DAY else digest
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.
@@ -252,10 +252,10 @@ class Writer:
             raise ValueError("the histories are started already")
         with undisturbed():
             self._create("time", HistoryLayout((), {"unit": "T"}), packed)
-            for name, own in layout.items():
+            for name, form in layout.items():
                 if name == "time" or name not in HISTORIES:
                     raise ValueError(f"no history {name!r} in HISTORIES")
-                self._create(name, HistoryLayout(*own), packed)
+                self._create(name, HistoryLayout(*form), packed)
             self._commit()
 
     def _create(self, name: str, layout: HistoryLayout, packed: bool) -> None:
@@ -321,8 +321,8 @@ class Writer:
         """
         with undisturbed():
             for name in blocks[0] if blocks else ():
-                own = HistoryLayout((), {"unit": "T"}) if name == "time" else layout[name]
-                self._aside("closeup", name, own, np.concatenate([block[name] for block in blocks]))
+                form = HistoryLayout((), {"unit": "T"}) if name == "time" else layout[name]
+                self._aside("closeup", name, form, np.concatenate([block[name] for block in blocks]))
             self._commit()
 
     def extremes(
@@ -413,7 +413,7 @@ class Writer:
         """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
-        parts = {name: own.hexdigest() for name, own in self._digests.items()}
+        parts = {name: digest.hexdigest() for name, digest in self._digests.items()}
         with undisturbed():
             for name, dataset in self._history.items():
                 dataset.attrs[DIGEST] = parts[f"history/{name}"]
@@ -446,26 +446,30 @@ def _complete(name: str, layout: HistoryLayout) -> dict[str, Any]:
     """Attributes of a history with its labels, and one unit for each column; ValueError where they are not
     as many as the columns.
     """
-    shape, out = layout.shape, dict(layout.attributes)
+    shape, attributes = layout.shape, dict(layout.attributes)
     width = shape[-1] if shape else 1
-    if "labels" not in out and {"element", "quantity"} <= out.keys():
-        out["labels"] = [f"{e} {q}" for e, q in zip(out["element"], out["quantity"])]
-    labels = out.setdefault("labels", [name] if not shape else None)
+    if "labels" not in attributes and {"element", "quantity"} <= attributes.keys():
+        attributes["labels"] = [f"{e} {q}" for e, q in zip(attributes["element"], attributes["quantity"])]
+    labels = attributes.setdefault("labels", [name] if not shape else None)
     if labels is None or len(labels) != width:
         raise ValueError(f"history {name!r}: {width} labels are needed")
-    if len(shape) == 2 and len(out.get("nodes", ())) != shape[0]:
+    if len(shape) == 2 and len(attributes.get("nodes", ())) != shape[0]:
         raise ValueError(f"history {name!r}: {shape[0]} node numbers are needed")
-    unit = out.get("unit", "")
-    out["unit"] = [unit] * width if isinstance(unit, str) else list(unit)
-    if len(out["unit"]) != width:
+    unit = attributes.get("unit", "")
+    attributes["unit"] = [unit] * width if isinstance(unit, str) else list(unit)
+    if len(attributes["unit"]) != width:
         raise ValueError(f"history {name!r}: one unit or {width} are needed")
-    return out
+    return attributes
 
 
 def _checked(table: str, column: Column, values: Sequence[Any]) -> Sequence[Any]:
     """The values of one column, ready to store."""
     kind: type = {"text": str, "int": Integral}.get(column.fmt, Real)
-    wrong = {own for own in set(map(type, values)) if not issubclass(own, kind) or issubclass(own, bool)}
+    wrong = {
+        actual
+        for actual in set(map(type, values))
+        if not issubclass(actual, kind) or issubclass(actual, bool)
+    }
     for number, value in enumerate(values if wrong else ()):
         if type(value) in wrong:
             name = kind.__name__.lower()

@@ -21,8 +21,8 @@ def layout(items: RecordedItems) -> HistoryLayout:
 def values(block: SampleBlock) -> Array:
     """Drifts, shape (n_times, n_drifts)."""
     d = block.items.drifts
-    out: Array = (d.rows @ block.u + d.input_rows @ block.inputs + d.constants[:, None]).T
-    return out
+    drifts: Array = (d.rows @ block.u + d.input_rows @ block.inputs + d.constants[:, None]).T
+    return drifts
 
 
 DRIFT = History(

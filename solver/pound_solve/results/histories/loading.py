@@ -29,10 +29,10 @@ def ground_layout(items: RecordedItems) -> HistoryLayout:
 def ground(block: SampleBlock) -> Array:
     """Accelerations, shape (n_times, n_motions)."""
     motions = block.items.system.motions
-    out = np.empty((len(block.t), len(motions)))
-    for column, motion in zip(out.T, motions):
+    accelerations = np.empty((len(block.t), len(motions)))
+    for column, motion in zip(accelerations.T, motions):
         column[:] = motion.acceleration.value(block.t)
-    return out
+    return accelerations
 
 
 def force_layout(items: RecordedItems) -> HistoryLayout:

@@ -15,8 +15,8 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each DRIFT card."""
     from pound_solve.analyses.history import drift_heights  # which reading a report does not need
 
-    found, heights = run.history.returned.peaks.monitored, drift_heights(run.model)
-    for (name, ratio), e, h in zip(run.history.drift_ratios(), found, heights):
+    monitored, heights = run.history.returned.peaks.monitored, drift_heights(run.model)
+    for (name, ratio), e, h in zip(run.history.drift_ratios(), monitored, heights):
         yield name, e.high, e.t_high, e.low, e.t_low, h, ratio
 
 

@@ -20,14 +20,14 @@ QUANTITIES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each quantity of each recorded node that is not zero throughout."""
     units, items = run.model.units, run.history.items
-    found = {q: e.rows() for q, e in run.history.recorder.envelopes.node.items()}
+    envelopes = {q: e.rows() for q, e in run.history.recorder.envelopes.node.items()}
     for i, node in enumerate(items.nodes):
         for axis, direction in enumerate("XYR"):
             for q, (word, dimension) in QUANTITIES.items():
-                extremes = found[q][3 * i + axis]
+                extremes = envelopes[q][3 * i + axis]
                 if extremes[0] != 0.0 or extremes[2] != 0.0:
-                    own = dimension.replace("L", "rad") if direction == "R" else dimension
-                    yield node, direction, word, units.text(own), *extremes
+                    unit = dimension.replace("L", "rad") if direction == "R" else dimension
+                    yield node, direction, word, units.text(unit), *extremes
 
 
 def remark(run: RunRecord) -> str:

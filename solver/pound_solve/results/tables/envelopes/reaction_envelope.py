@@ -14,10 +14,10 @@ QUANTITIES = (("force X", "F"), ("force Y", "F"), ("moment", "F*L"))  #: of a su
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each direction in which a recorded support has a force."""
-    units, found = run.model.units, run.history.recorder.envelopes.total["reaction"].rows()
+    units, envelope = run.model.units, run.history.recorder.envelopes.total["reaction"].rows()
     for i, node in enumerate(run.history.items.supports):
         for d, (quantity, dimension) in enumerate(QUANTITIES):
-            extremes = found[3 * i + d]
+            extremes = envelope[3 * i + d]
             if extremes[0] != 0.0 or extremes[2] != 0.0:
                 yield node, quantity, units.text(dimension), *extremes
 

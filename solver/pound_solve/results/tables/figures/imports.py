@@ -15,13 +15,13 @@ LIBRARIES: Final = ("lark", "numpy", "scipy", "numba", "llvmlite", "h5py", "tabu
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """Modules of this program, by package, and of libraries, and kernels of this process."""
-    own: dict[str, list[str]] = {}
+    packages: dict[str, list[str]] = {}
     for name in sorted(sys.modules):
         program, _, rest = name.partition(".")
         if program in ("pound_solve", "pound_deck") and rest:
             package, _, module = rest.rpartition(".")
-            own.setdefault(f"{program}.{package}".rstrip("."), []).append(module)
-    for package, modules in own.items():  # a package is a module too, which its parent's list names
+            packages.setdefault(f"{program}.{package}".rstrip("."), []).append(module)
+    for package, modules in packages.items():  # a package is a module too, which its parent's list names
         yield package, len(modules), ", ".join(modules)
     loaded = [name.partition(".")[0] for name in sys.modules]
     for library in LIBRARIES:
@@ -35,10 +35,10 @@ def kernels() -> tuple[int, int]:
     """Kernels of this program that numba compiled in this process, and those it took from its cache."""
     if "numba" not in sys.modules:
         return 0, 0
-    found = list(_statistics())
+    statistics = list(_statistics())
     return (
-        sum(sum(s.cache_misses.values()) for s in found),
-        sum(sum(s.cache_hits.values()) for s in found),
+        sum(sum(s.cache_misses.values()) for s in statistics),
+        sum(sum(s.cache_hits.values()) for s in statistics),
     )
 
 

@@ -13,9 +13,9 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """Nodes with mass, the members' shares included."""
     mass = run.structure.nodal_mass
     for node in run.structure.model.nodes:
-        own = [mass.get((node, d), 0.0) for d in range(3)]
-        if any(own):
-            yield node, *own
+        masses = [mass.get((node, d), 0.0) for d in range(3)]
+        if any(masses):
+            yield node, *masses
 
 
 TABLE = Table(

@@ -29,9 +29,9 @@ def _dimensions(card: Card, field: Field) -> tuple[str, ...]:
     rules = [spec for specs in card.laws.values() for spec in specs if spec.family == "hysteresis"]
     if field.unit != "L" or not any(field in rule.fields for rule in rules):
         return (field.unit,)
-    given = [f for f in card.spec.fields if card[f.name] is not None]
-    moments = any(f.name in ("MI", "MJ", "MR") for f in given)
-    forces = any(f.name in ("FX", "FY") for f in given)
+    items = [f for f in card.spec.fields if card[f.name] is not None]
+    moments = any(f.name in ("MI", "MJ", "MR") for f in items)
+    forces = any(f.name in ("FX", "FY") for f in items)
     return ("L", "rad") if moments and forces else ("rad",) if moments else ("L",)
 
 

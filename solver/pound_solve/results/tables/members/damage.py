@@ -10,16 +10,16 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> list[Row] | None:
     """One row for each component with an ultimate ductility, and the structure, if there are any."""
-    found = [(r.spring, r.damage, r.loss) for r in run.history.springs if r.damage is not None]
-    if not found:
+    damaged = [(r.spring, r.damage, r.loss) for r in run.history.springs if r.damage is not None]
+    if not damaged:
         return None
-    losses = [loss for *_, loss in found]
+    losses = [loss for *_, loss in damaged]
     total = sum(losses) or math.nan
-    out: list[Row] = [
+    components: list[Row] = [
         (spring.element, spring.component, *index, index.total, loss / total)
-        for spring, index, loss in found
+        for spring, index, loss in damaged
     ]
-    return [*out, (0, "", *[math.nan] * 4, run.history.overall_damage, sum(losses) / total)]
+    return [*components, (0, "", *[math.nan] * 4, run.history.overall_damage, sum(losses) / total)]
 
 
 TABLE = Table(

@@ -12,8 +12,8 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each force of each recorded member."""
-    found = run.history.recorder.envelopes.output.rows()
-    for o, extremes in zip(run.history.items.outputs, found):
+    envelope = run.history.recorder.envelopes.output.rows()
+    for o, extremes in zip(run.history.items.outputs, envelope):
         yield o.element, o.quantity, run.model.units.text(o.unit), *extremes
 
 

@@ -13,14 +13,14 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each change of a spring, hinge or contact."""
     laws = run.pushover.structure.laws
     for p, c in run.pushover.ladder:
-        own = laws[c.law]
+        spring = laws[c.law]
         yield (
             p.changes,
             p.displacement,
             p.shear,
             p.factor,
-            own.element,
-            own.component,
+            spring.element,
+            spring.component,
             c.before,
             c.after,
         )

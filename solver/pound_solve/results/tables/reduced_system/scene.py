@@ -13,15 +13,15 @@ def rows(run: RunRecord) -> list[Row] | None:
             return None
         return [("free vibration", "no modes", "no degree of freedom that has mass has stiffness too")]
     system = run.recorded.system
-    out = [(d.subject, d.decision, d.why) for d in system.decisions]
+    decisions = [(d.subject, d.decision, d.why) for d in system.decisions]
     if system.total and any(e.j is None for e in run.model.elements.values()):
         why = "SUPPORTS moves the listed nodes only"
-        out.append(("elements with one node", "end at a fixed point", why))
+        decisions.append(("elements with one node", "end at a fixed point", why))
     if system.total:
-        out.append(("displacements", "total displacements", "supports move relative to each other"))
+        decisions.append(("displacements", "total displacements", "supports move relative to each other"))
     else:
-        out.append(("displacements", "relative to the ground", "one motion for the whole base"))
-    return out
+        decisions.append(("displacements", "relative to the ground", "one motion for the whole base"))
+    return decisions
 
 
 TABLE = Table(

@@ -28,8 +28,10 @@ def rows(study: StudyRecord) -> list[Row]:
 
 def remark(study: StudyRecord) -> str:
     """Tell what the errors are measured against, and whether the times can be trusted."""
-    own = ", ".join(f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e))
-    errors = f"; its own errors are about {own}." if own else "."
+    own_errors = ", ".join(
+        f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e)
+    )
+    errors = f"; its own errors are about {own_errors}." if own_errors else "."
     times = " Times are CPU times of the history alone, in a process that has loaded what it needs."
     return f"The reference is {study.reference.how}{errors}{times} {study.warning}".rstrip()
 

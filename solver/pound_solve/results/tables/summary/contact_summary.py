@@ -25,19 +25,19 @@ def rows(run: RunRecord) -> Iterator[Row]:
         closest = law.gap - closure.high
         if law.law.rigid and abs(closest) <= ROUNDING * (law.gap + farthest):
             closest = 0.0
-        own = [c for c in peaks.collisions if c.law == i]
-        best = max(own, key=lambda c: (c.peak == c.peak, c.peak), default=None)  # NaN: an impact
-        ends = [c.t_end if math.isfinite(c.t_end) else recorder.reached for c in own]
+        collisions = [c for c in peaks.collisions if c.law == i]
+        best = max(collisions, key=lambda c: (c.peak == c.peak, c.peak), default=None)  # NaN: an impact
+        ends = [c.t_end if math.isfinite(c.t_end) else recorder.reached for c in collisions]
         yield (
             contact_name(run.model, law.element),
-            len(own),
+            len(collisions),
             best.peak if best else 0.0,
             best.t_peak if best else math.nan,
             max(-closest, 0.0),
-            sum(c.impulse for c in own),
+            sum(c.impulse for c in collisions),
             recorder.losses[i] + peaks.dashpot_losses[i],
             closest,
-            sum(end - c.t_start for c, end in zip(own, ends)),
+            sum(end - c.t_start for c, end in zip(collisions, ends)),
         )
 
 

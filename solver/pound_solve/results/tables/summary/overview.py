@@ -42,9 +42,9 @@ def periods(run: RunRecord) -> Iterator[Row]:
     modal = getattr(run, "modal", None)
     if modal is None:
         return
-    own = {s.building: s.mode for s in reversed(modal.shares) if s.kinetic > 50.0}
+    longest = {s.building: s.mode for s in reversed(modal.shares) if s.kinetic > 50.0}
     period = {mode.number: mode.period for mode in modal.modes}
-    for building, mode in sorted(own.items()):
+    for building, mode in sorted(longest.items()):
         if math.isfinite(period[mode]):
             yield f"longest period of {building}", f"{period[mode]:.4g} {run.model.units.time}"
 
@@ -52,20 +52,20 @@ def periods(run: RunRecord) -> Iterator[Row]:
 def damping(run: RunRecord) -> str:
     """The damping beside that of elements."""
     cards = [(card.spec.name, damped_part(card), text) for card, text in run.structure.damping_texts]
-    found = [f"{kind}{'' if part == 'all' else ' of ' + part}: {text}" for kind, part, text in cards]
-    return _few(found, "cards") if found else "none but that of contacts and dampers"
+    texts = [f"{kind}{'' if part == 'all' else ' of ' + part}: {text}" for kind, part, text in cards]
+    return _few(texts, "cards") if texts else "none but that of contacts and dampers"
 
 
 def contact_law(run: RunRecord) -> str:
     """Laws of the contacts, their stiffness and restitution."""
-    found, units = dict[str, None](), run.model.units
+    kinds, units = dict[str, None](), run.model.units
     for s in run.structure.laws:
         if s.role.collides:
             k, e = s.facts["k"], s.facts["e_given"]
             stiff = math.isfinite(k) and k > 0.0  # a rigid contact has none that is finite
             stiffness = f", {k:.5g} {units.text(s.facts['k_unit'])}" if stiff else ""
-            found[f"{s.rule}{stiffness}" + ("" if math.isnan(e) else f", restitution {e:.3g}")] = None
-    return _few(list(found), "kinds")
+            kinds[f"{s.rule}{stiffness}" + ("" if math.isnan(e) else f", restitution {e:.3g}")] = None
+    return _few(list(kinds), "kinds")
 
 
 def _few(found: list[str], what: str) -> str:
@@ -135,10 +135,10 @@ def error_of(outcome: Outcome) -> str:
 
 def _collisions(run: RunRecord) -> str:
     """Number of collisions and their largest force; an impact of a rigid contact has an impulse instead."""
-    found, units = run.history.returned.peaks.collisions, run.model.units
-    lasting = [c for c in found if c.peak == c.peak]
-    count = str(len(found))
-    if impacts := len(found) - len(lasting):
+    collisions, units = run.history.returned.peaks.collisions, run.model.units
+    lasting = [c for c in collisions if c.peak == c.peak]
+    count = str(len(collisions))
+    if impacts := len(collisions) - len(lasting):
         count += f", {impacts} of them impacts in no time, without a force"
     if not lasting:
         return count

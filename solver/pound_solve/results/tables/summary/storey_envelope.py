@@ -19,8 +19,8 @@ def rows(run: RunRecord) -> Iterator[Row]:
     last = run.stored("storey/drift")[-1] if len(drift) else ()
     for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
         height, floor = b.levels[i] - b.levels[i - 1], b.floors[i - 1]
-        own = *drift[n], float(last[n]), *force[2 * n], *force[2 * n + 1], *motion[n]
-        yield b.name, i, floor.level, height, floor.mass, *own
+        peaks = *drift[n], float(last[n]), *force[2 * n], *force[2 * n + 1], *motion[n]
+        yield b.name, i, floor.level, height, floor.mass, *peaks
 
 
 def remark(run: RunRecord) -> str:

@@ -10,11 +10,13 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> list[Row] | None:
     """One row for each warning about the deck; none where there is nothing to warn of."""
-    out = []
-    for own in run.warnings:
-        place = f"{Path(own.span.file).name}:{own.span.line}" if own.span else ""
-        out.append((own.code, place, f"{own.message}; {own.hint}" if own.hint else own.message))
-    return out or None
+    listed = []
+    for warning in run.warnings:
+        place = f"{Path(warning.span.file).name}:{warning.span.line}" if warning.span else ""
+        listed.append(
+            (warning.code, place, f"{warning.message}; {warning.hint}" if warning.hint else warning.message)
+        )
+    return listed or None
 
 
 TABLE = Table(

@@ -26,9 +26,9 @@ def rows(run: RunRecord) -> list[Row] | None:
     for r in run.history.springs:
         kind = "hinge" if _end(r) else r.spring.component
         members.setdefault((r.spring.element, kind), []).append(r)
-    worst = [max(own, key=_rank) for own in members.values()]
+    worst = [max(ends, key=_rank) for ends in members.values()]
     other = {
-        id(w): [r.ductility for r in own if _end(r) != _end(w)] for w, own in zip(worst, members.values())
+        id(w): [r.ductility for r in ends if _end(r) != _end(w)] for w, ends in zip(worst, members.values())
     }
     yielded = sorted((r for r in worst if r.ductility > 1.0), key=_rank, reverse=True)
     return [_row(r, max(other[id(r)], default=math.nan)) for r in yielded[:MOST]] or None
@@ -36,8 +36,8 @@ def rows(run: RunRecord) -> list[Row] | None:
 
 def _row(r: SpringResponse, other: float) -> Row:
     s, index = r.spring, r.damage.total if r.damage else math.nan
-    own = s.element, s.component, s.rule, r.ductility, other, r.rotation, r.yields, r.loss
-    return *own, index, _state(r, index)
+    values = s.element, s.component, s.rule, r.ductility, other, r.rotation, r.yields, r.loss
+    return *values, index, _state(r, index)
 
 
 def _state(r: SpringResponse, index: float) -> str:
