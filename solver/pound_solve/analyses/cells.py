@@ -50,11 +50,11 @@ def among_equals(t: Array, lengths: Array) -> Flags:
     """
     slack, width = EQUAL * lengths[:-1], 2 * BEFORE + 1
     joined = (np.abs(np.diff(lengths)) <= slack) & (np.abs(np.diff(t) - lengths[:-1]) <= slack)
-    out = np.zeros(len(t), bool)
+    equals = np.zeros(len(t), bool)
     if len(t) > width:  # the sample at the end of the last one tells, too
         runs: Flags = np.all(np.lib.stride_tricks.sliding_window_view(joined, width), axis=1)
-        out[BEFORE : BEFORE + len(runs)] = runs
-    return out
+        equals[BEFORE : BEFORE + len(runs)] = runs
+    return equals
 
 
 def may_exceed_alone(values: Array, cells: Index, low: Array, high: Array) -> Doubts:
@@ -75,8 +75,8 @@ def may_exceed_alone(values: Array, cells: Index, low: Array, high: Array) -> Do
     looks = _LOOKS @ values[:, row, at]
     top, bottom = looks[:-2].max(axis=0), looks[:-2].min(axis=0)
     rest = np.abs(looks[-2:]).sum(axis=0) + EXCESS * (top - bottom)
-    found = []
+    doubts = []
     for sign, most, best in ((1.0, top + rest, high[row]), (-1.0, rest - bottom, -low[row])):
         more = most > best
-        found.append(Doubts(np.full(more.sum(), sign), row[more], cells[at[more]], most[more]))
-    return Doubts(*map(np.concatenate, zip(*found)))
+        doubts.append(Doubts(np.full(more.sum(), sign), row[more], cells[at[more]], most[more]))
+    return Doubts(*map(np.concatenate, zip(*doubts)))

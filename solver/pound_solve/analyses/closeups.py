@@ -144,14 +144,14 @@ class Closeups:
         wide = np.pad(forces, ((0, 0), (1, 1)), constant_values=-np.inf)
         row, top = np.nonzero((forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:]))
         at_instants = np.ones(len(row), bool)
-        found = Peaks(_at(course.motion, top), row, collisions[row, top], forces[row, top], at_instants)
+        peaks = Peaks(_at(course.motion, top), row, collisions[row, top], forces[row, top], at_instants)
         if course.within is None or not len(row):
-            return found
+            return peaks
         cells = np.unique(np.concatenate([top, np.maximum(top - 1, 0)]))
         motion = course.within(cells, NODES)
-        own = motion.law_forces[self.contacts].reshape(len(forces), len(cells), -1)
+        forces_within = motion.law_forces[self.contacts].reshape(len(forces), len(cells), -1)
         sides = [np.searchsorted(cells, c) for c in (top, np.maximum(top - 1, 0))]
-        (high, place), (high_before, place_before) = (crests(own[row, cell]) for cell in sides)
+        (high, place), (high_before, place_before) = (crests(forces_within[row, cell]) for cell in sides)
         earlier = high_before > high
         chosen = np.where(earlier, sides[1], sides[0])
         place = np.where(earlier, place_before, place)
@@ -164,12 +164,12 @@ class Closeups:
             return np.asarray((x.reshape(len(x), len(cells), -1)[:, chosen] * weights).sum(axis=2))
 
         between = replace(
-            found.at(inner),
+            peaks.at(inner),
             motion=Motion(t, *map(at, motion[1:])),
             height=np.maximum(high, high_before)[inner],
             own=np.zeros(len(t), bool),
         )
-        return joined_peaks([found.at(~inner), between])
+        return joined_peaks([peaks.at(~inner), between])
 
     def blocks(self) -> Iterator[Motion]:
         """What was kept, in the order of time."""

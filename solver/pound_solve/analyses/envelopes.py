@@ -35,20 +35,20 @@ class Envelope:
         """Count in values of all quantities, or of those with some numbers, shape (n, n_times)."""
         which = np.arange(len(values)) if which is None else which
         for some in some_rows(values):
-            own, number = values[some], which[some]
+            part, number = values[some], which[some]
             for new, value, time, place in (
-                (own.max(axis=1) > self.high[number], self.high, self.t_high, np.argmax),
-                (own.min(axis=1) < self.low[number], self.low, self.t_low, np.argmin),
+                (part.max(axis=1) > self.high[number], self.high, self.t_high, np.argmax),
+                (part.min(axis=1) < self.low[number], self.low, self.t_low, np.argmin),
             ):
-                higher, at = number[new], place(own[new], axis=1)
-                value[higher], time[higher] = own[new, at], t[at]
+                higher, at = number[new], place(part[new], axis=1)
+                value[higher], time[higher] = part[new, at], t[at]
 
     def part(self, which: slice) -> Envelope:
         """The envelope of some of the quantities, which it shares with this one."""
-        own = copy.copy(self)
+        shared = copy.copy(self)
         for name, values in vars(self).items():
-            setattr(own, name, values[which])
-        return own
+            setattr(shared, name, values[which])
+        return shared
 
     def best(self, which: Index, sign: Array) -> Array:
         """Largest and smallest values of some quantities by the sign of each, times that, shape (n,)."""
@@ -145,10 +145,10 @@ class Envelopes:
 
     def _clear(self) -> None:
         self._all = Envelope(self.quantities.count)
-        own = {name: self._all.part(part) for name, part in self.quantities.parts.items()}
-        self.node = {q: own.pop(q) for q in MOTION}
-        self.output = own.pop("output")
-        self.total = own
+        parts = {name: self._all.part(part) for name, part in self.quantities.parts.items()}
+        self.node = {q: parts.pop(q) for q in MOTION}
+        self.output = parts.pop("output")
+        self.total = parts
         self.seen, self.apart, self.searched = 0, 0.0, False
 
     def blank(self) -> Envelopes:
@@ -192,42 +192,44 @@ class Envelopes:
 
     def between(self, course: Course) -> None:
         """Count in the motion between samples (see `integrate.protocol.Recorder`), with its extremes."""
-        own, t = self.quantities, course.motion.t
+        quantities, t = self.quantities, course.motion.t
         self.seen += len(t)
         self.apart = max(self.apart, float(course.lengths.max(initial=0.0)))
         self.closeups.take(course)
-        proved = own.extremes(course, self._all.low[own.place], self._all.high[own.place])
+        proved = quantities.extremes(
+            course, self._all.low[quantities.place], self._all.high[quantities.place]
+        )
         if proved is None or self.extremes.low.size:
-            values = own.values(course.motion, own.inputs(t))
-            self.extremes.take(values, t, own.place)
+            values = quantities.values(course.motion, quantities.inputs(t))
+            self.extremes.take(values, t, quantities.place)
         if proved is not None:
             self.searched = True
             for sign, top, at in ((1.0, proved.high, proved.t_high), (-1.0, -proved.low, proved.t_low)):
-                self._count(own.place, np.full(len(top), sign), top, at)
+                self._count(quantities.place, np.full(len(top), sign), top, at)
             return
-        self._all.take(values, t, own.place)
+        self._all.take(values, t, quantities.place)
         if course.within is None or not len(t):
             return
         self.searched = True
-        found = self._doubts(course, values)
-        rest = np.ones(len(found.row), bool)
-        rest[first := found.first()] = False
-        for doubts in (found.some(first), found.some(rest)):  # these seldom exceed what the first hold
+        likely = self._doubts(course, values)
+        rest = np.ones(len(likely.row), bool)
+        rest[first := likely.first()] = False
+        for doubts in (likely.some(first), likely.some(rest)):  # these seldom exceed what the first hold
             self._search(course, doubts)
 
     def _doubts(self, course: Course, values: Array) -> Doubts:
         """Which quantities may exceed what is known of them, and in which cells, by their values at the
         starts of these and, where the cells around one tell nothing of it, within it.
         """
-        own, lone = self.quantities, ~among_equals(course.motion.t, course.lengths)
-        low, high = self._all.low[own.place], self._all.high[own.place]
-        found = may_exceed(values, low, high)
-        parts = [found.some(~lone[found.cell])]
+        quantities, lone = self.quantities, ~among_equals(course.motion.t, course.lengths)
+        low, high = self._all.low[quantities.place], self._all.high[quantities.place]
+        doubts = may_exceed(values, low, high)
+        parts = [doubts.some(~lone[doubts.cell])]
         at_once = max(AT_ONCE // (len(OWN_NODES) * max(len(values), 1)), 1)
         cells = np.flatnonzero(lone)
         for first in range(0, len(cells), at_once):
             some = cells[first : first + at_once]
-            within = np.moveaxis(own.within(course, some, OWN_NODES[1:]), 2, 0)
+            within = np.moveaxis(quantities.within(course, some, OWN_NODES[1:]), 2, 0)
             parts.append(may_exceed_alone(np.stack([values[:, some], *within]), some, low, high))
         return Doubts(*map(np.concatenate, zip(*parts)))
 
@@ -244,17 +246,17 @@ class Envelopes:
         """Count in the extremes of quantities within cells."""
         sign, row, cell, _ = doubts
         values = sign[:, None] * self.quantities.along(course, row, cell, NODES)
-        own = self.quantities.place[row]
-        close = np.flatnonzero(near(values, self._all.best(own, sign)))
+        place = self.quantities.place[row]
+        close = np.flatnonzero(near(values, self._all.best(place, sign)))
         top, at = crests(values[close])
         t = course.motion.t[cell[close]] + at * course.lengths[cell[close]]
-        self._count(own[close], sign[close], top, t)
+        self._count(place[close], sign[close], top, t)
 
     def _count(self, which: Index, sign: Array, top: Array, t: Array) -> None:
         """Count in extremes of some quantities, times the sign of each, and their times; NaN for none."""
         new = ~np.isnan(t)
-        for own in (self._all, self.extremes):
-            own.take_tops(which[new], sign[new], top[new], t[new])
+        for extremes in (self._all, self.extremes):
+            extremes.take_tops(which[new], sign[new], top[new], t[new])
 
     def take(self, motion: Motion, s: Sequence[Array]) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
@@ -272,11 +274,11 @@ class Envelopes:
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:
         """Values of all quantities, with what never moves, shape (n, nt)."""
-        out = np.zeros((self.quantities.count, len(motion.t)))
-        out[self.quantities.place] = self.quantities.values(motion, s)
-        return out
+        values = np.zeros((self.quantities.count, len(motion.t)))
+        values[self.quantities.place] = self.quantities.values(motion, s)
+        return values
 
     def told(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Values of nodes, members and sums, of those of all quantities."""
-        own = {name: whole[part] for name, part in self.quantities.parts.items()}
-        return {q: own.pop(q) for q in MOTION}, own.pop("output"), own
+        parts = {name: whole[part] for name, part in self.quantities.parts.items()}
+        return {q: parts.pop(q) for q in MOTION}, parts.pop("output"), parts

@@ -74,8 +74,8 @@ class SupportReactions:
         reactions = self.reactions(u, states)
         if nodes is not None:
             return -sum(reactions.get((node, d), 0.0) for node in nodes)
-        own, _ = self._held(*self._at(u, states))
-        return float(own[d]) - sum(r for (n, at), r in reactions.items() if at == d and n in self.own)
+        total, _ = self._held(*self._at(u, states))
+        return float(total[d]) - sum(r for (n, at), r in reactions.items() if at == d and n in self.own)
 
     def balance(self, u: Array, states: Sequence[State]) -> list[tuple[Any, ...]]:
         """Rows of the table ``equilibrium``: forces along x and y and moments about the origin."""

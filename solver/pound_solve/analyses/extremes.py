@@ -79,9 +79,9 @@ class Extremes:
     def _take(self, values: Array, place: Index, which: Index | None) -> None:
         place = np.clip(place, 0, self.low.shape[1] - 1)
         first = np.flatnonzero(np.append(True, np.diff(place) > 0))
-        own = slice(None) if which is None else which[:, None]
+        rows = slice(None) if which is None else which[:, None]
         for best, more in ((self.low, np.minimum), (self.high, np.maximum)):
-            best[own, place[first]] = more(best[own, place[first]], more.reduceat(values, first, axis=1))
+            best[rows, place[first]] = more(best[rows, place[first]], more.reduceat(values, first, axis=1))
 
     def take_tops(self, which: Index, sign: Array, top: Array, t: Array) -> None:
         """Count in extremes between instants of some quantities, times the sign of each."""

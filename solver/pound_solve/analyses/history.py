@@ -154,14 +154,14 @@ class HistoryResult:
     @property
     def overall_damage(self) -> float:
         """Damage index of the structure; NaN where no component has one."""
-        found = [(r.damage.total, r.loss) for r in self.springs if r.damage is not None]
-        return overall([index for index, _ in found], [loss for _, loss in found])
+        damaged = [(r.damage.total, r.loss) for r in self.springs if r.damage is not None]
+        return overall([index for index, _ in damaged], [loss for _, loss in damaged])
 
     @property
     def checks(self) -> list[Check]:
         """Self-checks: the balance of energy, and those of the method."""
-        own = [self._energy(), *self._balance(), *self._hinges(), *self._closeups()]
-        return own + self.returned.checks
+        checks = [self._energy(), *self._balance(), *self._hinges(), *self._closeups()]
+        return checks + self.returned.checks
 
     @property
     def figures(self) -> dict[str, object]:
@@ -223,7 +223,7 @@ class HistoryResult:
         ]
         least = 1e-3 * max((moment for _, moment in both), default=0.0)  # rounding below
         if least > 0.0:
-            above = max(max(0.0, own - moment) / max(moment, least) for own, moment in both)
+            above = max(max(0.0, hinge - moment) / max(moment, least) for hinge, moment in both)
             yield at_most(
                 Subject.PEAKS, HINGES, above, BEYOND, "no force of the member goes with that peak"
             )
@@ -246,7 +246,7 @@ class HistoryResult:
         heights = list(drift_heights(self.system.structure.model))
         storeys = [float(h) for b in self.items.buildings for h in np.diff(b.levels)]
         least = BEARING * max((h for h in (*heights, *storeys) if h == h), default=0.0)
-        return [own for own, h in zip(self.drift_ratios(), heights) if h >= least]
+        return [drift for drift, h in zip(self.drift_ratios(), heights) if h >= least]
 
     @property
     def items(self) -> RecordedItems:
@@ -355,8 +355,8 @@ def run(
         output.extremes(*recorder.extremes())
         outcome = restart.join(parts) if parts and recorder.started else None
         springs = [] if outcome is None else spring_responses(structure, recorder, outcome, stop is None)
-        found = HistoryResult(recorder, outcome, springs, stop, every, seconds, cpu_seconds)
-    return found
+        result = HistoryResult(recorder, outcome, springs, stop, every, seconds, cpu_seconds)
+    return result
 
 
 def _prepared(

@@ -75,6 +75,6 @@ def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
     idle &= ~used_columns(system.law_rows[damped])
     if idle.any() and pushed.any():
         k = system.stiffness + weighted(system.law_rows, [s.k0 for s in laws])
-        own, others = np.flatnonzero(idle), np.flatnonzero(~idle)
-        away = k[np.ix_(own, others)] @ pushed[others]
-        u[own] -= least_squares(k[np.ix_(own, own)], away)
+        followers, others = np.flatnonzero(idle), np.flatnonzero(~idle)
+        away = k[np.ix_(followers, others)] @ pushed[others]
+        u[followers] -= least_squares(k[np.ix_(followers, followers)], away)

@@ -75,10 +75,10 @@ class LoadPattern:
         if self.by_mode:
             try:
                 tied = path.ties.among
-                found = modes.solve(tied(path.tangent()), tied(self.structure_mass), SOUGHT)
+                vibration = modes.solve(tied(path.tangent()), tied(self.structure_mass), SOUGHT)
             except np.linalg.LinAlgError:
                 return self.forces  # a part without mass has become a mechanism
-            stiff = path.ties.whole(found.shapes[:, found.omega > 0.0])
+            stiff = path.ties.whole(vibration.shapes[:, vibration.omega > 0.0])
             if stiff.shape[1] >= self._stiff:  # else a motion has lost its resistance
                 self._stiff = stiff.shape[1]
                 effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2

@@ -120,9 +120,9 @@ def run(structure: Structure, state: static.StaticState, card: Card) -> ModalRes
     loaded = card["AFTER"] == "STATIC"
     if loaded:
         structure = static.after(structure, state)
-    found = natural_modes(structure, card["MODES"])
-    shapes = mode_shapes(structure, len(found)) if card["SHAPES"] == "YES" else None
-    return ModalResult(found, kinetic_shares(structure, len(found)), shapes, loaded)
+    modes = natural_modes(structure, card["MODES"])
+    shapes = mode_shapes(structure, len(modes)) if card["SHAPES"] == "YES" else None
+    return ModalResult(modes, kinetic_shares(structure, len(modes)), shapes, loaded)
 
 
 def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
@@ -143,7 +143,7 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
         ground if structure.basis is None else ground @ structure.basis,
     )
     c = structure.initial_damping[:n, :n]
-    out = []
+    modes = []
     for i in range(min(len(vibration.omega), sought)):
         w, shape = float(vibration.omega[i]), vibration.shapes[:, i]
         damping = float(shape @ c @ shape) / (2 * w) if w > 0 else float("nan")
@@ -152,8 +152,8 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
             gamma = float(shape @ ground[d])
             gamma = 0.0 if gamma**2 < 1e-20 * total[d] else gamma  # rounding of a mode that takes no part
             row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
-        out.append(Mode(i + 1, *row))
-    return out
+        modes.append(Mode(i + 1, *row))
+    return modes
 
 
 def kinetic_shares(structure: Structure, count: int) -> list[Share]:
@@ -165,13 +165,13 @@ def kinetic_shares(structure: Structure, count: int) -> list[Share]:
     """
     shapes, n = structure.vibration(count).shapes[:, :count], structure.n_free
     energy = shapes * (structure.mass[:n, :n] @ shapes)
-    found = buildings(structure)
-    columns = columns_of(structure.model, structure.dofs.free, [b.nodes for b in found])
-    shares = 100.0 * np.array([energy[own].sum(axis=0) for own in columns]) / energy.sum(axis=0)
+    all_buildings = buildings(structure)
+    columns = columns_of(structure.model, structure.dofs.free, [b.nodes for b in all_buildings])
+    shares = 100.0 * np.array([energy[unknowns].sum(axis=0) for unknowns in columns]) / energy.sum(axis=0)
     return [
         Share(i + 1, b.name, float(share))
         for i in range(count)
-        for b, share in zip(found, shares[:, i])
+        for b, share in zip(all_buildings, shares[:, i])
         if share >= TELLING
     ]
 
@@ -181,11 +181,11 @@ def mode_shapes(structure: Structure, count: int) -> Array:
     shapes = structure.vibration(count).shapes
     every = structure.dofs.matrix([(node, d) for node in structure.model.nodes for d in range(3)])
     pad = len(structure.dofs.moved)
-    out = np.zeros((count, len(structure.model.nodes), 3))
+    at_nodes = np.zeros((count, len(structure.model.nodes), 3))
     for i in range(count):
         full = np.concatenate([shapes[:, i], np.zeros(pad)])
         scale = np.abs(shapes[:, i]).max()
         x = every @ full / scale
         x[np.abs(x) < 1e-12] = 0.0  # rounding
-        out[i] = x.reshape(-1, 3)
-    return out
+        at_nodes[i] = x.reshape(-1, 3)
+    return at_nodes

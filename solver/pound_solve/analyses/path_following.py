@@ -225,9 +225,9 @@ class EquilibriumPath:
         try:
             if self._lost.any():
                 return self._redistribute()
-            while (found := self._increment(marks) if self.curved else self._segment(marks)) is None:
+            while (hit := self._increment(marks) if self.curved else self._segment(marks)) is None:
                 pass
-            return found
+            return hit
         except InstabilityError as err:
             if self.factor == 0.0:
                 raise
@@ -270,12 +270,12 @@ class EquilibriumPath:
 
     def _segment(self, marks: Sequence[Mark]) -> PathEvent | int:
         """Move along a straight segment to its end."""
-        du, rise, best, found = self._ahead(marks)
-        if found is None:
+        du, rise, best, hit = self._ahead(marks)
+        if hit is None:
             raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
         if best > 0.0:
             self._move(self.u + best * du, self.factor + best * rise)
-        return found
+        return hit
 
     def _redistribute(self) -> PathEvent | None:
         """Redistribute the forces that laws have released, at fixed control."""
@@ -286,11 +286,11 @@ class EquilibriumPath:
                 raise InstabilityError("no equilibrium for the force that a law has released", "A507")
             self._move(*there[0])
             return None
-        du, rise, best, found = self._ahead(())
+        du, rise, best, hit = self._ahead(())
         share = min(best, 1.0)
         self._lost = (1.0 - share) * self._lost
         self._move(self.u + share * du, self.factor + share * rise)
-        return found if isinstance(found, PathEvent) and best < 1.0 else None
+        return hit if isinstance(hit, PathEvent) and best < 1.0 else None
 
     def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
         """Rates of displacements and load factor, distance to the first mark or event, and which it is."""
@@ -301,19 +301,19 @@ class EquilibriumPath:
                 raise
             return 0.0 * self.u, 0.0, 0.0, event
         best = np.inf
-        found: PathEvent | int | None = None
+        hit: PathEvent | int | None = None
         for j, (row, share, value) in enumerate(marks):
             slope = float(row @ du) + share * rise
             if slope > 0.0:
                 at = max((value - float(row @ self.u) - share * self.factor) / slope, 0.0)
                 if at < best:
-                    best, found = at, j
+                    best, hit = at, j
         if np.isfinite(best) and not np.isfinite(self._longest):
             self._longest = self._stride = best / INCREMENTS
         for event, at in self._events(rate, noise):
             if at < best:
-                best, found = at, event
-        return du, rise, best, found
+                best, hit = at, event
+        return du, rise, best, hit
 
     def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float]]:
         """Events that lie ahead at these rates of what they depend on, and their distances."""
@@ -367,11 +367,11 @@ class EquilibriumPath:
         """
         stiffness = self._stiffnesses(self.deformations(u, factor))
         control = np.zeros(len(u)) if self.control is None else self.control
-        given = np.concatenate(
+        key = np.concatenate(
             [stiffness, self._lost, self.load, control, [self.sign], self.ties.laws], dtype=float
         )
-        if self._rates is None or self.curved or not np.array_equal(given, self._given):
-            self._given, self._rates = given, self._rates_with(u, stiffness)
+        if self._rates is None or self.curved or not np.array_equal(key, self._given):
+            self._given, self._rates = key, self._rates_with(u, stiffness)
         return self._rates
 
     def _rates_with(self, u: Array, stiffness: Array) -> Rates:
@@ -399,9 +399,9 @@ class EquilibriumPath:
 
     def _increment(self, marks: Sequence[Mark]) -> PathEvent | int | None:
         """Move one increment along a curved segment, or to its end; None where there was no event."""
-        du, rise, best, found = self._ahead(marks)
+        du, rise, best, hit = self._ahead(marks)
         if best == 0.0:
-            return found
+            return hit
         span = min(best, self._stride)
         if not np.isfinite(span):
             raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
@@ -442,7 +442,7 @@ class EquilibriumPath:
         """Functions that rise to zero at marks, then at events of all laws; rounding counts as zero."""
         now_at, sizes = self._arguments(u, factor)
         _, _, rate, noise = self.rates(u, factor)
-        out = [float(row @ u) + share * factor - value for row, share, value in marks]
+        values = [float(row @ u) + share * factor - value for row, share, value in marks]
         for branch, di, vi, least, size in zip(
             self.branches, now_at.tolist(), rate.tolist(), noise.tolist(), sizes.tolist()
         ):
@@ -451,8 +451,8 @@ class EquilibriumPath:
                 now, small = (
                     (b * vi, abs(b) * least) if reversal else (a * di + c, NEAR * (abs(a) * size + abs(c)))
                 )
-                out.append(0.0 if abs(now) <= small else now)
-        return out
+                values.append(0.0 if abs(now) <= small else now)
+        return values
 
     def _point(
         self, span: float, du: Array, rise: float, marks: Sequence[Mark]
@@ -543,8 +543,8 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     loose = ~held & (load != 0.0)
     if loose.any():
         first = int(np.flatnonzero(loose)[0])
-        own = dense(structure.law_rows[:, [first]]).ravel()
-        touched = any(s.role.collides and x != 0.0 for s, x in zip(structure.laws, own))
+        coupling = dense(structure.law_rows[:, [first]]).ravel()
+        touched = any(s.role.collides and x != 0.0 for s, x in zip(structure.laws, coupling))
         hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
         why = f"{name_of(structure, first)} is loaded, but nothing holds it{hint}"
         raise InstabilityError(why, motion=np.where(loose, load, 0.0))
@@ -576,9 +576,9 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
 
 def _placed(x: Array, at: Index, n: int) -> Array:
     """Values at some of `n` places, zeros elsewhere, shape (n,)."""
-    out = np.zeros(n)
-    out[at] = x
-    return out
+    placed = np.zeros(n)
+    placed[at] = x
+    return placed
 
 
 def _largest(motion: Array) -> int:

@@ -144,8 +144,8 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         if overlap > limit:
             about, told = f"overlap of contact {name} beyond its law", "its law is not meant for more"
             yield beyond(RESPONSE, about, overlap, limit, told, model.units.length)
-        own = [n for n in (contact.i, contact.j) if n is not None]
-        near = [members[n] for n in own if n in members] or [others[n] for n in own if n in others]
+        ends = [n for n in (contact.i, contact.j) if n is not None]
+        near = [members[n] for n in ends if n in members] or [others[n] for n in ends if n in others]
         there = min(near, default=0.0)
         if there and overlap > LARGEST_OVERLAP * there:
             about = f"overlap of contact {name} over the shortest member there"
@@ -161,12 +161,12 @@ def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome)
     for i in history.items.contacts:
         law = structure.laws[i]
         contact, peak = model.elements[law.element], outcome.peaks.force[i]
-        own = [weights[n] for n in (contact.i, contact.j) if n in weights]
+        pair = [weights[n] for n in (contact.i, contact.j) if n in weights]
         force = max(peak.high, -peak.low)
-        if own and force > MOST_FORCE * min(own):
+        if pair and force > MOST_FORCE * min(pair):
             about = f"force of contact {contact.name or contact.id} over the weight of the lighter building"
             told = "check the stiffness of the contact"
-            yield beyond(RESPONSE, about, force / min(own), MOST_FORCE, told)
+            yield beyond(RESPONSE, about, force / min(pair), MOST_FORCE, told)
 
 
 def leaning(structure: Structure, history: HistoryResult, residual: Sequence[float]) -> Iterator[Check]:
@@ -177,13 +177,13 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
     residual : sequence of float
         Drift ratio of every storey at the last sample.
     """
-    model, found = structure.model, list(zip(storeys(history.items.buildings), residual))
+    model, drifts = structure.model, list(zip(storeys(history.items.buildings), residual))
     yielded = {model.elements[r.spring.element].i for r in history.springs if r.ductility > 1.0}
     for building in history.items.buildings:
         heights = np.diff(building.levels)
         high = heights >= BEARING * heights.max(initial=0.0)
-        own = [(abs(x), storey) for (b, storey), x in found if b is building and high[storey - 1]]
-        most, storey = max(own, default=(0.0, 0))
+        residuals = [(abs(x), storey) for (b, storey), x in drifts if b is building and high[storey - 1]]
+        most, storey = max(residuals, default=(0.0, 0))
         if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
             name = f"drift of {building.name} storey {storey} at the end"
             told = "it leans: check strengths and hardening (R); without hardening drifts add up"

@@ -120,7 +120,7 @@ def mistakes(structure: Structure) -> list[Diagnostic]:
 
 def distant(structure: Structure) -> list[Diagnostic]:
     """Targets of a PUSHOVER beyond what the height of its control node allows."""
-    model, out = structure.model, list[Diagnostic]()
+    model, warnings = structure.model, list[Diagnostic]()
     for card in model.analyses:
         if card.spec.name != "PUSHOVER" or card["TARGET"] is None or card["DIRECTION"] != "X":
             continue
@@ -132,8 +132,8 @@ def distant(structure: Structure) -> list[Diagnostic]:
                 f"TARGET is {card['TARGET']:g} {unit}, node {card['NODE']} {high:.4g} {unit} above its base"
             )
             hint = f"TARGET is a displacement in {unit}: buildings fall at a tenth of their height"
-            out.append(Diagnostic("P377", message, card.place("TARGET"), hint, "warning"))
-    return out
+            warnings.append(Diagnostic("P377", message, card.place("TARGET"), hint, "warning"))
+    return warnings
 
 
 def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
@@ -155,12 +155,12 @@ def _wrong_building(structure: Structure, card: Card) -> tuple[str, str, str] | 
     if not name:
         return "NEIGHBOURS=NO needs a building", "NEIGHBOURS", 'add BUILDING="name" of the one that is left'
     try:
-        own = building(structure, name).nodes
+        nodes = building(structure, name).nodes
     except KeyError as err:
         return str(err.args[0]), "BUILDING", "buildings have the names of the section BUILDINGS"
-    for item, given in (("NODE", (card["NODE"],)), ("NODES", card["NODES"]), ("BASE", card["BASE"])):
-        for node in given or ():
-            if node not in own:
+    for item, numbers in (("NODE", (card["NODE"],)), ("NODES", card["NODES"]), ("BASE", card["BASE"])):
+        for node in numbers or ():
+            if node not in nodes:
                 return f"node {node} is not of building {name!r}", item, "name nodes of this building"
     return None
 
@@ -212,9 +212,9 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
     InstabilityError
         The path has no first step.
     """
-    own = _own(structure, card)
-    if own is not None and card["NEIGHBOURS"] == "NO":
-        structure = standing_alone(structure, own)
+    nodes = _own(structure, card)
+    if nodes is not None and card["NEIGHBOURS"] == "NO":
+        structure = standing_alone(structure, nodes)
         state = static.solve(structure)
         structure = structure.stressed(state.axial).displaced(state.u)
     n, by_load = structure.n_free, card["CONTROL"] == "FORCE"
@@ -222,7 +222,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
     start = float(control @ state.u)
     if card["TARGET"] == start:
         raise InstabilityError(f"the control node stands at its target {start:g} already", "A505")
-    pattern = LoadPattern(structure, card, own)
+    pattern = LoadPattern(structure, card, nodes)
     path = EquilibriumPath(
         structure, state.u, state.states, structure.loads[:n], np.zeros(n), None if by_load else control
     )
@@ -230,19 +230,19 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
     if not path.load.any():
         raise InstabilityError("no mode of the static state moves the nodes that are pushed", "A505")
     path.sign = _sense(path, card, control, start)
-    reactions = SupportReactions(structure, state.axial, own)
+    reactions = SupportReactions(structure, state.axial, nodes)
 
     def here() -> CapacityPoint:
         shear = reactions.shear(path.u, path.states, "XY".index(card["DIRECTION"]), card["BASE"])
         return CapacityPoint(float(control @ path.u), shear, path.factor, path.changes)
 
-    ends, out = _ends(card, control, start), PushoverResult(card, structure, first=path.load)
+    ends, result = _ends(card, control, start), PushoverResult(card, structure, first=path.load)
     # the stations divide the way to the first of the ends
     (row, share, value), _ = ends[0]
     begin = float(row @ state.u)
-    out.add(here())
+    result.add(here())
     station = 1
-    while not out.end:
+    while not result.end:
         part = station / card["STEPS"]
         at_station = Mark(row, share, begin + part * (value - begin))
         try:
@@ -251,25 +251,25 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
             if isinstance(hit, PathEvent):
                 change = path.transition(hit)
                 point = replace(point, changes=path.changes)
-                out.ladder.append((point, change))
+                result.ladder.append((point, change))
         except InstabilityError as err:
             # under load control that is the result: no more can be carried; under displacement control the
             # path continues somewhere
-            out.end, out.failed = str(err), None if by_load and err.code == "A501" else err
-            out.add(here())
-            out.ladder = _once(out.ladder)
+            result.end, result.failed = str(err), None if by_load and err.code == "A501" else err
+            result.add(here())
+            result.ladder = _once(result.ladder)
             break
-        out.add(point)
+        result.add(point)
         if isinstance(hit, int):
             if hit < len(ends):
-                out.end = ends[hit][1]
+                result.end = ends[hit][1]
             else:
                 station += 1
         if card["ADAPTIVE"] == "YES":
             path.load = pattern.follow(path)
-    out.curve = [replace(p, displacement=_clean(p.displacement, out.curve)) for p in out.curve]
-    out.last, out.unbalanced = path.load, path.unbalanced()
-    return out
+    result.curve = [replace(p, displacement=_clean(p.displacement, result.curve)) for p in result.curve]
+    result.last, result.unbalanced = path.load, path.unbalanced()
+    return result
 
 
 def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> float:
@@ -285,22 +285,22 @@ def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> f
 
 def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
     """What ends the pushover, and how the report calls that."""
-    out: list[tuple[Mark, str]] = []
+    ends: list[tuple[Mark, str]] = []
     if (target := card["TARGET"]) is not None:
         sense = math.copysign(1.0, target - start)
-        out.append((Mark(sense * control, 0.0, sense * target), "the target displacement is reached"))
+        ends.append((Mark(sense * control, 0.0, sense * target), "the target displacement is reached"))
     if (factor := card["FACTOR"]) is not None:
         up = math.copysign(1.0, factor)
-        out.append((Mark(np.zeros(len(control)), up, up * factor), "the load factor is reached"))
-    return out
+        ends.append((Mark(np.zeros(len(control)), up, up * factor), "the load factor is reached"))
+    return ends
 
 
 def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoint, Change]]:
     """The ladder without changes that repeat at one point."""
-    found: dict[tuple[float, float, Change], tuple[CapacityPoint, Change]] = {}
+    distinct: dict[tuple[float, float, Change], tuple[CapacityPoint, Change]] = {}
     for point, change in ladder:
-        found.setdefault((point.displacement, point.factor, change), (point, change))
-    return list(found.values())
+        distinct.setdefault((point.displacement, point.factor, change), (point, change))
+    return list(distinct.values())
 
 
 def _clean(displacement: float, curve: list[CapacityPoint]) -> float:

@@ -88,11 +88,11 @@ class Quantities:
         self.parts[name] = slice(self.count, self.count + size)
         self.place = np.concatenate([self.place, self.count + moves])
         self.count += size
-        own = np.zeros((len(constant), 3 * m + 1))
+        on_inputs = np.zeros((len(constant), 3 * m + 1))
         for order, x in inputs.items():
-            own[:, order * m : (order + 1) * m] += x
-        own[:, -1] = constant
-        self._inputs = np.concatenate([self._inputs, own])
+            on_inputs[:, order * m : (order + 1) * m] += x
+        on_inputs[:, -1] = constant
+        self._inputs = np.concatenate([self._inputs, on_inputs])
         for k, matrix in motion.items():
             row, column, factor = entries(matrix)
             number, columns, factors = self._rows
@@ -145,16 +145,18 @@ class Quantities:
         """Values of all rows, shape (n_rows, n_times), from the motion and the inputs, their rates and
         those of these, shape (n_inputs, n_times) each.
         """
-        out = self._matrix @ self._stacked(motion)
-        out[self._driven] += self._inputs[self._driven] @ np.concatenate([*s, np.ones((1, len(motion.t)))])
+        values = self._matrix @ self._stacked(motion)
+        values[self._driven] += self._inputs[self._driven] @ np.concatenate(
+            [*s, np.ones((1, len(motion.t)))]
+        )
         if self.system.corotational:
             at, share = self._shares
             seen = self.system.corotational.actions(self.system.quantities(motion.u.T, s[0].T))
-            out[self._of("output")] += (share * seen[:, at, 1:]).sum(axis=2).T
+            values[self._of("output")] += (share * seen[:, at, 1:]).sum(axis=2).T
             for name, x in self.sums.items():
                 if len(x.members):
-                    out[self._of(name)] += x.turned(motion.u, s[0])
-        return np.asarray(out)
+                    values[self._of(name)] += x.turned(motion.u, s[0])
+        return np.asarray(values)
 
     def within(self, course: Course, cells: Index, shares: Array) -> Array:
         """Values of all rows at shares of some cells, shape (n_rows, n_cells, n_shares)."""
@@ -169,28 +171,28 @@ class Quantities:
         if course.extremes is None or self.system.corotational:
             return None
         t_high, t_low = np.full((2, len(high)), np.nan)
-        found = RowPeaks(self._rows, self._inputs, high.copy(), t_high, low.copy(), t_low)
-        course.extremes(found)
-        return found
+        peaks = RowPeaks(self._rows, self._inputs, high.copy(), t_high, low.copy(), t_low)
+        course.extremes(peaks)
+        return peaks
 
     def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
         """Values of a row in a cell each, at shares of it, shape (n, n_shares)."""
         cells, at = np.unique(cell, return_inverse=True)
         t = (course.motion.t[cells, None] + shares * course.lengths[cells, None]).ravel()
         s = self.inputs(t)
-        rows, out = self._some(row), np.zeros((len(row), len(shares)))
+        rows, values = self._some(row), np.zeros((len(row), len(shares)))
         if course.within is not None:
             motion = course.within(cells, shares)
             if self.system.corotational:
                 return np.asarray(self.values(motion, s).reshape(-1, len(cells), len(shares))[row, at])
             stacked = self._stacked(motion)
             stacked = stacked.reshape(len(stacked), len(cells), len(shares))
-            which, found = rows.summed(stacked[self._column[rows.columns], at[rows.number]])
-            out[which] += found
-        given = np.concatenate([*s, np.ones((1, len(t)))]).reshape(-1, len(cells), len(shares))
-        for own, x in zip(self._inputs.T, given):
-            out += own[row, None] * x[at]
-        return out
+            which, sums = rows.summed(stacked[self._column[rows.columns], at[rows.number]])
+            values[which] += sums
+        inputs = np.concatenate([*s, np.ones((1, len(t)))]).reshape(-1, len(cells), len(shares))
+        for factors, x in zip(self._inputs.T, inputs):
+            values += factors[row, None] * x[at]
+        return values
 
     def _of(self, name: str) -> slice:
         """Rows of a part that moves as a whole."""
@@ -199,7 +201,7 @@ class Quantities:
 
     def _stacked(self, motion: Motion) -> Array:
         """What the rows hold of a motion, shape (n_used, n_times)."""
-        return np.concatenate([part[own] for part, own in zip(motion[1:], self._used)])
+        return np.concatenate([part[used] for part, used in zip(motion[1:], self._used)])
 
     def _some(self, row: Index) -> Rows:
         """Some of the rows."""
@@ -211,7 +213,7 @@ class Quantities:
     @property
     def shown(self) -> Flags:
         """Which unknowns the rows hold, shape (n,)."""
-        out = np.zeros(self.system.size, bool)
-        for own in self._used[:3]:
-            out[own] = True
-        return out
+        shown = np.zeros(self.system.size, bool)
+        for used in self._used[:3]:
+            shown[used] = True
+        return shown

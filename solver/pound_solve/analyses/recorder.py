@@ -102,17 +102,17 @@ class RecordedItems:
             tuple(i for i, s in enumerate(structure.laws) if not s.role.collides),
             tuple(i for i, s in enumerate(structure.laws) if s.role.collides),
             supports,
-            found := tuple(buildings(structure)) if structure.model.output["STOREYS"] == "YES" else (),
-            recorded_sums(system, supports, found),
+            tracked := tuple(buildings(structure)) if structure.model.output["STOREYS"] == "YES" else (),
+            recorded_sums(system, supports, tracked),
         )
 
     def holds_for(self, system: ReducedSystem) -> bool:
         """Whether these are what another history of the same model records: its unknowns are the same, and
         its inputs act alike.
         """
-        own = self.system
-        return own.dofs == system.dofs and all(
-            np.array_equal(getattr(own, name), getattr(system, name)) for name in _ACTING
+        recorded = self.system
+        return recorded.dofs == system.dofs and all(
+            np.array_equal(getattr(recorded, name), getattr(system, name)) for name in _ACTING
         )
 
     def again(self, system: ReducedSystem) -> RecordedItems:
@@ -389,11 +389,11 @@ class HistoryRecorder:
         """Bounds of the intervals that were seen whole or in part, shape (n + 1,), and the smallest and the
         largest values within them: of nodes, members and sums only.
         """
-        own, none = self.envelopes.extremes, np.zeros((0, 0))
-        count = int(np.isfinite(own.low).all(axis=0).sum())
+        extremes, none = self.envelopes.extremes, np.zeros((0, 0))
+        count = int(np.isfinite(extremes.low).all(axis=0).sum())
         blocks = []
-        for values in (own.low, own.high):
+        for values in (extremes.low, extremes.high):
             told = self.envelopes.told(values[:, :count])
-            t = own.bounds[:count]
+            t = extremes.bounds[:count]
             blocks.append(SampleBlock(self.items, t, none, none, none, none, *told, np.zeros((0, 7))))
-        return np.minimum(own.bounds[: count + 1], self.reached) if count else np.zeros(0), blocks
+        return np.minimum(extremes.bounds[: count + 1], self.reached) if count else np.zeros(0), blocks

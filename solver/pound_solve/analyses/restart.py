@@ -123,7 +123,7 @@ def _both(a: Peaks, b: Peaks) -> Peaks:
 
 
 def _wider(a: Extreme, b: Extreme) -> Extreme:
-    out = Extreme(a.high, a.t_high, a.low, a.t_low)
-    out.take(b.high, b.t_high)
-    out.take(b.low, b.t_low)
-    return out
+    wider = Extreme(a.high, a.t_high, a.low, a.t_low)
+    wider.take(b.high, b.t_high)
+    wider.take(b.low, b.t_low)
+    return wider

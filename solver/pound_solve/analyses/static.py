@@ -88,10 +88,10 @@ def solve(structure: Structure) -> StaticState:
         )
     for rounds in range(2, MOST_ROUNDS):
         state = loaded(structure.stressed(axial))
-        found = structure.axial(np.append(state.u, pad))
-        if np.abs(found - axial).max() <= 1e-12 * np.abs(found).max():
+        new_axial = structure.axial(np.append(state.u, pad))
+        if np.abs(new_axial - axial).max() <= 1e-12 * np.abs(new_axial).max():
             return replace(state, axial=axial, buckling=factor, rounds=rounds)
-        change, axial = np.abs(found - axial), found
+        change, axial = np.abs(new_axial - axial), new_axial
     worst = structure.geometric[int(np.argmax(change))].element
     raise InstabilityError(
         f"the axial forces did not settle within {MOST_ROUNDS} rounds of P-Delta, least that of member "

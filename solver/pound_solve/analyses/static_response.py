@@ -65,11 +65,11 @@ class StaticResponse:
 
 def without_rounding(values: Array, kinds: Sequence[str]) -> Array:
     """Values, shape (n,), with zeros for those that are rounding of the largest of their kind."""
-    out = values.copy()
+    cleaned = values.copy()
     for kind in set(kinds):
-        own = np.array([k == kind for k in kinds])
-        out[own & (np.abs(values) < DUST * np.abs(values[own]).max())] = 0.0
-    return out
+        alike = np.array([k == kind for k in kinds])
+        cleaned[alike & (np.abs(values) < DUST * np.abs(values[alike]).max())] = 0.0
+    return cleaned
 
 
 def static_response(structure: Structure, state: StaticState) -> StaticResponse:
@@ -104,15 +104,15 @@ def static_response(structure: Structure, state: StaticState) -> StaticResponse:
 def _forces(structure: Structure, state: StaticState, full: Array) -> list[ElementForce]:
     """Forces of members, springs and contacts."""
     units = structure.model.units
-    out = [
+    forces = [
         ElementForce(o.element, o.quantity, float(force), o.unit)
         for o, force in zip(structure.outputs, structure.member_forces(full))
     ]
     for x, law_state, d in zip(structure.laws, state.states, (structure.law_rows @ full).tolist()):
         kind = "moment" if x.unit == "F*L" else "force"
         quantity = "contact force" if x.role.collides else f"{kind} {x.component}"
-        out.append(ElementForce(x.element, quantity, x.force(law_state, d, 0.0), x.unit))
-    clean = without_rounding(np.array([f.value for f in out]), [units.text(f.unit) for f in out])
+        forces.append(ElementForce(x.element, quantity, x.force(law_state, d, 0.0), x.unit))
+    clean = without_rounding(np.array([f.value for f in forces]), [units.text(f.unit) for f in forces])
     return sorted(
-        (f._replace(value=value) for f, value in zip(out, clean.tolist())), key=lambda f: f.element
+        (f._replace(value=value) for f, value in zip(forces, clean.tolist())), key=lambda f: f.element
     )

@@ -47,13 +47,13 @@ class Ties:
             others = np.arange(len(rows)) != i
             left[others] -= np.outer(left[others, j], left[i])
             followers.append(j)
-        left, own = left[left.any(axis=1)], np.setdiff1d(np.arange(n), followers)
-        of, on = np.nonzero(left[:, own])
+        left, free = left[left.any(axis=1)], np.setdiff1d(np.arange(n), followers)
+        of, on = np.nonzero(left[:, free])
         self.basis = gathered(
             (n, n),
-            np.append(own, np.array(followers, np.intp)[of]),
-            np.append(own, own[on]),
-            np.append(np.ones(len(own)), -left[of, own[on]]),
+            np.append(free, np.array(followers, np.intp)[of]),
+            np.append(free, free[on]),
+            np.append(np.ones(len(free)), -left[of, free[on]]),
         )
 
     def __len__(self) -> int:
