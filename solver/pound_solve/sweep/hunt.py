@@ -51,24 +51,24 @@ def aim(document: Document) -> Aim:
         hint = suggest(quantity, names) or f"there are {', '.join(names)}"
         document.mistake("S602", f"there is no quantity {quantity}", (TABLE, "demand"), hint)
     label = document.take((TABLE, "label"), str, "")
-    own = {name: document.take((TABLE, name), float, math.nan) for name in ITEMS[2:] if name != "runs"}
+    numbers = {name: document.take((TABLE, name), float, math.nan) for name in ITEMS[2:] if name != "runs"}
     runs = document.take((TABLE, "runs"), int, 12)
     for name in ("step", "top", "close", "limit"):
-        if own[name] <= 0.0:
+        if numbers[name] <= 0.0:
             document.mistake("S603", f"{name} is above zero", (TABLE, name))
     for name in ("growth", "slope"):
-        if own[name] < 0.0:
+        if numbers[name] < 0.0:
             document.mistake("S603", f"{name} is zero or above", (TABLE, name))
     if runs < 2:
         document.mistake("S603", "runs is two or more", (TABLE, "runs"))
-    if math.isnan(own["step"]):
-        own["step"] = 1.0
+    if math.isnan(numbers["step"]):
+        numbers["step"] = 1.0
         message = "the study needs a table [ida] with step, the first step of its levels"
         document.mistake("S604", message, (TABLE,), "[ida] step = 0.1")
-    if math.isnan(own["limit"]) and quantity == DEMAND:
-        own["limit"] = LIMIT
+    if math.isnan(numbers["limit"]) and quantity == DEMAND:
+        numbers["limit"] = LIMIT
     return Aim(
-        Asked(quantity, label), Rules(runs=runs, **{k: v for k, v in own.items() if not math.isnan(v)})
+        Asked(quantity, label), Rules(runs=runs, **{k: v for k, v in numbers.items() if not math.isnan(v)})
     )
 
 
@@ -120,7 +120,7 @@ class Hunt:
         groups: dict[object, list[Run]] = {}
         for run in self.runs:
             groups.setdefault((run.case, run.shaking and run.shaking.record), []).append(run)
-        return (sorted(own, key=level) for own in groups.values())
+        return (sorted(group, key=level) for group in groups.values())
 
     def _settle(self) -> None:
         """Number the runs in the order of cases, records and levels."""
@@ -130,13 +130,13 @@ class Hunt:
     def _next(self) -> Iterator[Run]:
         """The next level of every record that is not done."""
         self._learn()
-        for own in self._groups():
-            curve = self._curve(own)
+        for group in self._groups():
+            curve = self._curve(group)
             if curve.left_out or not curve.points:
                 continue  # a run failed: what it would have told is not known
             level = next_level(curve.points, self.aim.rules)
             if level is not None:
-                yield own[0].at(level)
+                yield group[0].at(level)
 
     def _curve(self, runs: Sequence[Run]) -> Curve:
         """What the runs of one record have come to."""
@@ -149,5 +149,5 @@ class Hunt:
         fresh = {r.identity: ended[r.identity] for r in self.runs if r.identity not in self._demands}
         for identity, values in self.session.journal.values(fresh):
             entry = fresh[identity]
-            own = values.get(asked.quantity, {})
-            self._demands[identity] = demand(entry.status, entry.reached, own, asked)
+            by_label = values.get(asked.quantity, {})
+            self._demands[identity] = demand(entry.status, entry.reached, by_label, asked)

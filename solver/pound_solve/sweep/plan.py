@@ -57,8 +57,8 @@ def lines(study: Study, agenda: Agenda, entries: Mapping[str, Entry]) -> Iterato
     """The plan in words."""
     decks = {r.case.deck for r in study.runs}
     cases = {r.case for r in study.runs}
-    own = _many(len(decks), "deck"), f"{_many(len(cases), 'case')} of PARAMs", _shakings(study)
-    yield f"{len(study.runs)} runs: {', '.join(own)}"
+    counts = _many(len(decks), "deck"), f"{_many(len(cases), 'case')} of PARAMs", _shakings(study)
+    yield f"{len(study.runs)} runs: {', '.join(counts)}"
     for run in (study.runs[0], *study.runs[1:2], study.runs[-1]):
         yield f"  {run.number:6}  {run.title}"
     yield f"done before, skipped: {len(agenda.done)}"
@@ -75,9 +75,9 @@ def _many(count: int, word: str) -> str:
 def _shakings(study: Study) -> str:
     if not study.measure:
         return "motions of the decks"
-    own = [r.shaking for r in study.runs if r.shaking is not None]
+    shakings = [r.shaking for r in study.runs if r.shaking is not None]
     what = {"scale": "factor", "pga": "PGA", "sa": "Sa"}[study.measure]
-    records, levels = len({s.record for s in own}), len({s.level for s in own})
+    records, levels = len({s.record for s in shakings}), len({s.level for s in shakings})
     return f"{_many(records, 'record')}, {_many(levels, what)}"
 
 

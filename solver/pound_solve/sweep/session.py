@@ -58,19 +58,19 @@ class Session:
         """
         ahead = self.agenda.ahead
         some = list(dict.fromkeys([_strongest(ahead), ahead[0], ahead[-1]])) if ahead else []
-        out = Trial(len(ahead), self.engine.workers)
+        trial = Trial(len(ahead), self.engine.workers)
         with self.conductor(report) as conductor:
             for entry in self._one_by_one(conductor, some):
-                out.entries.append(entry)
-                if out.spent > plan.LITTLE:
+                trial.entries.append(entry)
+                if trial.spent > plan.LITTLE:
                     break
-            if out.seconds > plan.LONG:
+            if trial.seconds > plan.LONG:
                 looser = list(self._looser(some[0]))
                 for run, entry in zip(looser, self._one_by_one(conductor, looser)):
-                    out.looser[run.case.tol or 0.0] = entry
-                    if out.seconds_with(entry) <= plan.LONG:
+                    trial.looser[run.case.tol or 0.0] = entry
+                    if trial.seconds_with(entry) <= plan.LONG:
                         break
-        return out
+        return trial
 
     def _one_by_one(self, conductor: Conductor, runs: Sequence[Run]) -> Iterator[Entry]:
         """What runs have come to, each carried out when it is asked for, up to an interruption."""
@@ -88,9 +88,9 @@ class Session:
         request = request_of(run.case)
         model = read_deck(request).model
         if "error_estimate" in values and model is not None:
-            own = options_of_auto(overridden(model, request, []))
+            options = options_of_auto(overridden(model, request, []))
             for tol in plan.LOOSER:
-                if own and tol > own["TOL"]:
+                if options and tol > options["TOL"]:
                     yield replace(run, case=replace(run.case, tol=tol))
 
     def conductor(self, report: Callable[[State], None]) -> Conductor:

@@ -32,18 +32,18 @@ def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep
     entries : mapping of str to Entry
         By identity.
     """
-    found = [entries.get(run.identity) or Entry(run.identity, MISSING) for run in study.runs]
+    outcomes = [entries.get(run.identity) or Entry(run.identity, MISSING) for run in study.runs]
     units = Units(*study.units, given=True)
     place = {run.identity: k for k, run in enumerate(study.runs)}
-    own = {e.identity: e for e in found}
-    labels = _labels(place, journal.values(own))
-    arrays = {q.name: np.full((len(found), len(labels.get(q.axis, ()))), np.nan) for q in QUANTITIES}
+    by_identity = {e.identity: e for e in outcomes}
+    labels = _labels(place, journal.values(by_identity))
+    arrays = {q.name: np.full((len(outcomes), len(labels.get(q.axis, ()))), np.nan) for q in QUANTITIES}
     column = {axis: {name: k for k, name in enumerate(names)} for axis, names in labels.items()}
-    for identity, values in journal.values(own):
+    for identity, values in journal.values(by_identity):
         for q in QUANTITIES:
             for label, value in values.get(q.name, {}).items():
                 arrays[q.name][place[identity], column[q.axis][label]] = value
-    variables = {**_inputs(study), **_ends(found, units)}
+    variables = {**_inputs(study), **_ends(outcomes, units)}
     for q in QUANTITIES:
         if q.axis in labels:
             shaped = arrays[q.name] if q.axis else arrays[q.name][:, 0]
@@ -59,10 +59,10 @@ def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep
 def _labels(place: Mapping[str, int], values: Iterable[tuple[str, Values]]) -> dict[str, tuple[str, ...]]:
     """Labels of every axis in the order in which the runs have them, whatever the order of the journal."""
     first: dict[str, dict[str, tuple[int, int]]] = {"": {"": (0, 0)}}
-    for identity, own in values:
+    for identity, by_quantity in values:
         for q in QUANTITIES:
-            seen = first.setdefault(q.axis, {}) if q.name in own else {}
-            for k, label in enumerate(own.get(q.name, ())):
+            seen = first.setdefault(q.axis, {}) if q.name in by_quantity else {}
+            for k, label in enumerate(by_quantity.get(q.name, ())):
                 seen[label] = min(seen.get(label, (place[identity], k)), (place[identity], k))
     return {axis: tuple(sorted(seen, key=seen.__getitem__)) for axis, seen in first.items()}
 
@@ -86,25 +86,25 @@ def _histories(runs: Sequence[Run], journal: Journal) -> Iterator[tuple[int, Map
 def _inputs(study: Study) -> dict[str, Variable]:
     """What the study gives to every run."""
     runs = study.runs
-    out = {
+    variables = {
         RUN: Variable(np.array([r.number for r in runs], np.int64), doc="number of the run"),
         "identity": Variable(_texts(r.identity for r in runs), doc="digest of all that the run depends on"),
         "deck": Variable(_texts(Path(r.case.deck).name for r in runs), doc="deck"),
     }
     if study.measure:
-        own = [r.shaking for r in runs if r.shaking is not None]
-        out["record"] = Variable(_texts(s.record.name for s in own), doc="record")
-        out["scale"] = Variable(np.array([s.scale for s in own]), doc="factor on the record")
+        shakings = [r.shaking for r in runs if r.shaking is not None]
+        variables["record"] = Variable(_texts(s.record.name for s in shakings), doc="record")
+        variables["scale"] = Variable(np.array([s.scale for s in shakings]), doc="factor on the record")
         if study.measure != "scale":
             what = {"pga": "peak ground acceleration", "sa": "pseudo-acceleration"}[study.measure]
             doc = f"{what} that the record is scaled to, in shares of gravity"
-            out[study.measure] = Variable(np.array([s.level for s in own]), doc=doc)
-    taken = {*out, *(q.name for q in QUANTITIES), *(q.axis for q in QUANTITIES), *_ENDS}
+            variables[study.measure] = Variable(np.array([s.level for s in shakings]), doc=doc)
+    taken = {*variables, *(q.name for q in QUANTITIES), *(q.axis for q in QUANTITIES), *_ENDS}
     for name in dict.fromkeys(n for r in runs for n, _ in r.case.params):
         values = [dict(r.case.params).get(name, "") for r in runs]
         own_name = f"{name} (PARAM)" if name in taken else name
-        out[own_name] = Variable(_numbers(values), doc=f"PARAM {name}")
-    return out
+        variables[own_name] = Variable(_numbers(values), doc=f"PARAM {name}")
+    return variables
 
 
 _ENDS = ("status", "message", "doubt", "reached", "cpu_seconds", "solve_seconds")

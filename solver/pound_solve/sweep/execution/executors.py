@@ -80,10 +80,10 @@ def engine(name: str, workers: int) -> Engine:
         raise ExecutorError(
             f"--executor {name}: write dask://HOST:PORT, or dask for workers of its own here"
         )
-    own: dict[str, Any] = {"address": f"tcp://{address}"}
+    options: dict[str, Any] = {"address": f"tcp://{address}"}
     if not address:
-        own = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
-    return Engine(lambda: DaskExecutor(**own), count, 1, MANY, False)
+        options = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
+    return Engine(lambda: DaskExecutor(**options), count, 1, MANY, False)
 
 
 def processors() -> int:

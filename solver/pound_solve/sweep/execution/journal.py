@@ -87,8 +87,8 @@ class Journal:
         self.folder.mkdir(parents=True, exist_ok=True)
         if entry.histories:
             self._keep(entry)
-        own = {k: v for k, v in asdict(entry).items() if k != "histories"}
-        line = json.dumps(own).encode() + b"\n"
+        fields = {k: v for k, v in asdict(entry).items() if k != "histories"}
+        line = json.dumps(fields).encode() + b"\n"
         path = self.folder / f"{platform.node() or 'local'}-{os.getpid()}{ENDING}"
         with path.open("ab", 0) as file:
             size = file.tell()
@@ -118,18 +118,18 @@ class Journal:
 
         Their values, which may be many, stay in the journal, see `values`.
         """
-        out: dict[str, Entry] = {}
+        latest: dict[str, Entry] = {}
         for entry in self._all():
-            old = out.get(entry.identity)
+            old = latest.get(entry.identity)
             if old is None or (entry.status == DONE, entry.at) > (old.status == DONE, old.at):
-                out[entry.identity] = replace(entry, values={})
-        return out
+                latest[entry.identity] = replace(entry, values={})
+        return latest
 
     def values(self, entries: Mapping[str, Entry]) -> Iterator[tuple[str, Values]]:
         """Identity and values of each of some entries, in the order of the journal."""
         for entry in self._all():
-            own = entries.get(entry.identity)
-            if own is not None and (own.status, own.at) == (entry.status, entry.at):
+            wanted = entries.get(entry.identity)
+            if wanted is not None and (wanted.status, wanted.at) == (entry.status, entry.at):
                 yield entry.identity, entry.values
 
     def _all(self) -> Iterator[Entry]:
@@ -137,8 +137,8 @@ class Journal:
             with opened(path) as file:
                 for line in file:
                     try:
-                        own: dict[str, Any] = json.loads(line)
-                        yield Entry(**own)
+                        fields: dict[str, Any] = json.loads(line)
+                        yield Entry(**fields)
                     except (ValueError, TypeError):  # a line that was cut short
                         continue
 

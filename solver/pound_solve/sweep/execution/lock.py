@@ -35,11 +35,11 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
     with ExitStack() as held:
         whole = held.enter_context(_lock(folder / "lock"))
         if fcntl is not None:
-            own = held.enter_context(_lock(folder / f"lock-{piece}")) if piece else None
+            piece_lock = held.enter_context(_lock(folder / f"lock-{piece}")) if piece else None
             try:
-                fcntl.flock(whole, (fcntl.LOCK_SH if own else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-                if own is not None:
-                    fcntl.flock(own, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                fcntl.flock(whole, (fcntl.LOCK_SH if piece_lock else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+                if piece_lock is not None:
+                    fcntl.flock(piece_lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 raise BusyError(
                     f"{folder}: another sweep writes it; wait for it, or give another -o"

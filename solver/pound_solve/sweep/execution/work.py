@@ -172,14 +172,14 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
     sequence = AnalysisSequence(ready, request, kept, clock, time.perf_counter(), settled)
     message = sequence.run()
     record = sequence.record
-    found = getattr(record, "history", None)
-    started = found is not None and found.recorder.started
+    history = getattr(record, "history", None)
+    started = history is not None and history.recorder.started
     return Entry(
         run.identity,
         STOPPED if message else DONE,
         message,
         doubts(kept.rows),
-        found.recorder.reached if found and started else float("nan"),
+        history.recorder.reached if history and started else float("nan"),
         solve=record.cpu_seconds,
         values=taken(kept.rows),
         histories=histories_of(record, settings.histories) if started else {},
@@ -203,14 +203,14 @@ def output_of(model: Model, structure: Structure, histories: Sequence[str]) -> C
     """OUTPUT of the runs of a sweep: of the nodes and members that the deck names those that a quantity, a
     history that is kept or a tolerance of AUTO looks at.
     """
-    own = {**model.output.values, "HISTORIES": "NO"}
+    items = {**model.output.values, "HISTORIES": "NO"}
     groups, compared = {name.partition("/")[0] for name in histories}, compared_peaks(model)
     if not groups & {"node", "reaction"} and ACCELERATIONS not in compared:
         touching = pairs.nodes(structure)
-        own["NODES"] = [n for n in own["NODES"] or model.nodes if n in touching]
+        items["NODES"] = [n for n in items["NODES"] or model.nodes if n in touching]
     if "member" not in groups and FORCES not in compared:
-        own["MEMBERS"] = []
-    return replace(model.output, values=own)
+        items["MEMBERS"] = []
+    return replace(model.output, values=items)
 
 
 def compared_peaks(model: Model) -> Collection[int]:
@@ -230,17 +230,17 @@ def options_of_auto(model: Model) -> dict[str, Any]:
 
 def histories_of(record: RunRecord, names: tuple[str, ...]) -> dict[str, Array]:
     """Some histories of a run with their times, labels and units, by ``name``, ``name|labels``, ..."""
-    out: dict[str, Array] = {}
+    histories: dict[str, Array] = {}
     if record.recorded is None or not names:
-        return out
+        return histories
     for name in ("time", *names):
         shape, attributes = HISTORIES[name].layout(record.recorded)
         if 0 in shape:
             continue
-        out[name] = record.stored(name)
+        histories[name] = record.stored(name)
         for key in ("labels", "nodes", "element", "quantity"):
             if key in attributes:
-                out[f"{name}|{key}"] = np.array([str(x) for x in np.atleast_1d(attributes[key])])
+                histories[f"{name}|{key}"] = np.array([str(x) for x in np.atleast_1d(attributes[key])])
         units = np.atleast_1d(attributes.get("unit", ""))
-        out[f"{name}|unit"] = np.array([record.model.units.text(str(u)) for u in units])
-    return out
+        histories[f"{name}|unit"] = np.array([record.model.units.text(str(u)) for u in units])
+    return histories

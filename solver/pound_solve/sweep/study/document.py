@@ -38,23 +38,23 @@ def _number(value: float) -> float:
 
 def places(text: str, file: str) -> dict[Path_, Span]:
     """Place of every item and table that begins a line, by its path."""
-    out: dict[Path_, Span] = {}
+    spans: dict[Path_, Span] = {}
     table: Path_ = ()
     counts: dict[Path_, int] = {}
     for number, line in enumerate(text.splitlines(), 1):
-        if found := _TABLE.match(line):
-            table = _names(found[2])
-            if found[1] == "[[":
+        if match := _TABLE.match(line):
+            table = _names(match[2])
+            if match[1] == "[[":
                 counts[table] = counts.get(table, -1) + 1
                 table = (*table, counts[table])
             where = table
-        elif found := _ITEM.match(line):
-            where = (*table, *_names(found[1]))
+        elif match := _ITEM.match(line):
+            where = (*table, *_names(match[1]))
         else:
             continue
         start = len(line) - len(line.lstrip())
-        out.setdefault(where, Span(file, number, start + 1, len(line.rstrip()) + 1))
-    return out
+        spans.setdefault(where, Span(file, number, start + 1, len(line.rstrip()) + 1))
+    return spans
 
 
 def _names(keys: str) -> Path_:
@@ -90,20 +90,22 @@ class Document:
     def read(cls, path: str) -> Document:
         """Read a file; raises OSError where it cannot be read."""
         text = contents(path).decode("utf-8-sig", "replace")
-        out = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
-        if deep := next((place for names, place in out.places.items() if len(names) > DEEPEST), None):
+        document = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
+        if deep := next((place for names, place in document.places.items() if len(names) > DEEPEST), None):
             message = f"a name of more than {DEEPEST} parts"
-            out.found.append(Diagnostic("S601", message, deep, "a study has tables of items, no deeper"))
-            return out
+            document.found.append(
+                Diagnostic("S601", message, deep, "a study has tables of items, no deeper")
+            )
+            return document
         try:
-            out.values = tomllib.loads(text)
+            document.values = tomllib.loads(text)
         except tomllib.TOMLDecodeError as err:
-            out._no_toml(str(err), text)
+            document._no_toml(str(err), text)
         except ValueError:
-            out._no_toml("a number of too many digits", text)
+            document._no_toml("a number of too many digits", text)
         except RecursionError:
-            out._no_toml("brackets within too many brackets", text)
-        return out
+            document._no_toml("brackets within too many brackets", text)
+        return document
 
     def _no_toml(self, message: str, text: str) -> None:
         """Tell where the file is no TOML."""
@@ -135,9 +137,9 @@ class Document:
 
     def mistake(self, code: str, message: str, path: Path_ = (), hint: str = "") -> None:
         """Note a mistake at an item, once."""
-        found = Diagnostic(code, message, self.place(path), hint)
-        if found not in self.found:
-            self.found.append(found)
+        diagnostic = Diagnostic(code, message, self.place(path), hint)
+        if diagnostic not in self.found:
+            self.found.append(diagnostic)
 
     def at(self, path: Path_) -> Any:
         """Value of an item; None where there is none."""
@@ -185,10 +187,10 @@ class Document:
 
     def matching(self, pattern: str) -> list[Path]:
         """Files and folders that a pattern fits, in order; it counts from the study's folder."""
-        own = Path(pattern)
-        root = Path(own.anchor) if own.anchor else self.folder
+        path = Path(pattern)
+        root = Path(path.anchor) if path.anchor else self.folder
         try:
-            return sorted(p.absolute() for p in root.glob(str(own.relative_to(own.anchor))))
+            return sorted(p.absolute() for p in root.glob(str(path.relative_to(path.anchor))))
         except ValueError:  # it is no pattern
             return []
 
@@ -196,16 +198,16 @@ class Document:
         """Values of an item that is a list or stands for a list of one; empty where it is left out."""
         value = self.at(path)
         values = value if isinstance(value, list) else [] if value is None else [value]
-        for own in values:
-            if not isinstance(own, kinds) or isinstance(own, bool):
+        for element in values:
+            if not isinstance(element, kinds) or isinstance(element, bool):
                 kind = " or ".join(_WORDS[k] for k in kinds if k is not int or float not in kinds)
-                self.mistake("S603", f"{path[-1]} takes {kind}, not {_told(own)}", path)
+                self.mistake("S603", f"{path[-1]} takes {kind}, not {_told(element)}", path)
                 return []
-            if isinstance(own, int | float) and not abs(_number(own)) <= GREAT:
-                message = f"{path[-1]} takes finite numbers {OF_MAGNITUDE}, not {_told(own)}"
+            if isinstance(element, int | float) and not abs(_number(element)) <= GREAT:
+                message = f"{path[-1]} takes finite numbers {OF_MAGNITUDE}, not {_told(element)}"
                 self.mistake("S603", message, path)
                 return []
-            if self._has_zero(own, path):
+            if self._has_zero(element, path):
                 return []
         if value is not None and not values:
             self.mistake("S603", f"{path[-1]} is an empty list", path, "give it a value or leave it out")

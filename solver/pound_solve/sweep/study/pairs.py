@@ -50,8 +50,8 @@ def _peak(run: RunRecord, node: int, along: tuple[float, float]) -> float:
     at = nodes.index(node)
     if 0.0 in along:
         envelope = run.history.recorder.envelopes.node["u"]
-        own = 3 * at + (1 if along[1] else 0)
-        return float(max(abs(envelope.high[own]), abs(envelope.low[own])))
+        row = 3 * at + (1 if along[1] else 0)
+        return float(max(abs(envelope.high[row]), abs(envelope.low[row])))
     return float(np.abs(run.stored("node/u")[:, at, :2] @ along).max(initial=0.0))
 
 

@@ -143,15 +143,15 @@ SOURCES: Final[Mapping[str, Table[RunRecord]]] = MappingProxyType(
 
 def taken(rows: Mapping[str, list[Fields]]) -> Values:
     """The quantities of one run from the rows of its tables; of rows with one label the largest."""
-    out: Values = {}
+    values: Values = {}
     for q in QUANTITIES:
-        own: dict[str, float] = {}
+        by_label: dict[str, float] = {}
         for row in rows.get(q.table, ()):
             if (label := q.label(row)) is not None:
-                own[label] = max(own.get(label, math.nan), q.value(row), key=_known)
-        if own:
-            out[q.name] = own
-    return out
+                by_label[label] = max(by_label.get(label, math.nan), q.value(row), key=_known)
+        if by_label:
+            values[q.name] = by_label
+    return values
 
 
 def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]]]:

@@ -49,11 +49,11 @@ class Suite:
 
     def _levels(self) -> tuple[str, list[float]]:
         """What the levels measure, and their values."""
-        given = [name for name in LEVELS if self.document.at((*self.path, name)) is not None]
-        for name in given[1:]:
-            message = f"{name} stands beside {given[0]}: one of them tells how strong the records are"
+        named = [name for name in LEVELS if self.document.at((*self.path, name)) is not None]
+        for name in named[1:]:
+            message = f"{name} stands beside {named[0]}: one of them tells how strong the records are"
             self.document.mistake("S605", message, (*self.path, name))
-        measure = given[0] if given else "scale"
+        measure = named[0] if named else "scale"
         levels = [float(x) for x in self.document.listed((*self.path, measure), (int, float))]
         if measure != "scale" and not all(x > 0.0 for x in levels):
             self.document.mistake("S605", f"{measure} is above zero", (*self.path, measure))
@@ -79,8 +79,8 @@ class Suite:
         """Items of the RECORD line by which the records are read."""
         fields = {f.name for spec in catalog().family("record").values() for f in spec.fields}
         fields |= {f.name for f in record.SPEC.fields}
-        own = {name.lower() for name in fields if name not in NOT_OF_A_STUDY}
-        words = [FILES, *LEVELS, *OSCILLATOR, *sorted(own)]
+        allowed = {name.lower() for name in fields if name not in NOT_OF_A_STUDY}
+        words = [FILES, *LEVELS, *OSCILLATOR, *sorted(allowed)]
         for name, value in dict(self.document.at(self.path) or {}).items():
             if name in (FILES, *LEVELS, *OSCILLATOR):
                 continue
@@ -88,7 +88,7 @@ class Suite:
             if name.upper() in NOT_OF_A_STUDY:
                 message = f"{name} is told by the deck's line under EQUAKE, whose record the sweep replaces"
                 self.document.mistake("S602", message, path, "leave it out")
-            elif name.lower() not in own:
+            elif name.lower() not in allowed:
                 hint = hints(suggest(name, words), "items of a RECORD line tell how its records are read")
                 self.document.mistake("S602", f"motions has no item {name}", path, hint)
             elif isinstance(value, str | int | float) and not isinstance(value, bool):
@@ -116,12 +116,12 @@ class Suite:
         if known(name) is not None:
             return [name]
         if any(c in name for c in "*?["):
-            found = [str(p) for p in self.document.matching(name) if p.is_file()]
-            if not found:
+            files = [str(p) for p in self.document.matching(name) if p.is_file()]
+            if not files:
                 where = Path(Path(name).anchor or self.document.folder).absolute()
                 message = f"no file fits {name}"
                 self.document.mistake("S604", message, path, f"patterns count from {where}")
-            return found
+            return files
         try:
             return [str(find(name, (self.document.folder, *self.folders)).absolute())]
         except RecordError as err:
@@ -132,23 +132,23 @@ class Suite:
         """The record, if it can be read as the study says."""
         name = file if known(file) else Path(file).name
         place = self.document.place(path)
-        own = RecordFile(name, file, self.items, "", place)
+        record_file = RecordFile(name, file, self.items, "", place)
         try:
             _, digest = load(find(file))
-            card = card_of(own)
-            found = record.samples(card.values, LoadingContext(9.81))
+            card = card_of(record_file)
+            motion = record.samples(card.values, LoadingContext(9.81))
         except RecordError as err:
             self.document.mistake(err.code, err.message, path, err.hint)
             return
         except UnreadableError as err:
             self.document.found += [replace(d, span=place) for d in err.diagnostics]
             return
-        unit, told = card.values["UNIT"], found.raw.unit
+        unit, told = card.values["UNIT"], motion.raw.unit
         if unit is not None and told and told != {"GAL": "CM/S2"}.get(unit, unit):
             message = f"{name} says that it is in {told}, not in {unit}"
             hint = "leave unit out where files tell theirs, or give this one a [[motions]] of its own"
             self.document.mistake("S606", message, (*self.path, "unit"), hint)
-        yield replace(own, sha256=digest)
+        yield replace(record_file, sha256=digest)
 
     def shakings(self, context: LoadingContext) -> Iterator[Shaking]:
         """Every record at every level.
@@ -158,13 +158,13 @@ class Suite:
         context : LoadingContext
             Of a deck: its unit of length and its gravity.
         """
-        for own in self.records:
-            measured = self._measured(own, context)
+        for record_file in self.records:
+            measured = self._measured(record_file, context)
             for level in self.levels:
                 if measured is None:
-                    yield Shaking(own, level, level)
+                    yield Shaking(record_file, level, level)
                 elif measured > 0.0:
-                    yield Shaking(own, level * context.gravity / measured, level)
+                    yield Shaking(record_file, level * context.gravity / measured, level)
 
     def _measured(self, own: RecordFile, context: LoadingContext) -> float | None:
         """Intensity of the record as it is [L/T^2]; None where its levels are factors."""
@@ -173,16 +173,16 @@ class Suite:
         try:
             acceleration = unscaled(own, context).acceleration
             if self.measure == "pga":
-                out = abs(acceleration.peak()[1])
+                intensity = abs(acceleration.peak()[1])
             else:
-                out = float(pseudo_acceleration(acceleration, self.period, self.damping)[0, 0])
+                intensity = float(pseudo_acceleration(acceleration, self.period, self.damping)[0, 0])
         except (RecordError, ValueError) as err:
             self.document.mistake("S606", f"{own.name}: {err}", (*self.path, self.measure))
             return 0.0
-        if not out > 0.0:
+        if not intensity > 0.0:
             message = f"{own.name} has no acceleration that could be scaled"
             self.document.mistake("S606", message, (*self.path, FILES))
-        return out
+        return intensity
 
 
 class UnreadableError(Exception):
@@ -201,9 +201,9 @@ def card_of(own: RecordFile) -> Card:
     ------
     UnreadableError
     """
-    model, found, _ = record_card.read(own.file, own.items, own.name)
-    if model is None or has_errors(found):
-        raise UnreadableError(found)
+    model, diagnostics, _ = record_card.read(own.file, own.items, own.name)
+    if model is None or has_errors(diagnostics):
+        raise UnreadableError(diagnostics)
     (card,) = model.equake
     return replace(card, span=own.place, spans={}) if own.place else replace(card, spans={})
 

@@ -109,14 +109,14 @@ class Run:
     def identity(self) -> str:
         """Digest of all that its results depend on; names and places of files do not count."""
         shaking = self.shaking
-        own = {
+        content = {
             "inputs": self.inputs,
             "params": sorted((name.upper(), value) for name, value in self.case.params),
             "method": [self.case.method, self.case.dt, self.case.tol],
             "shaking": shaking and [shaking.record.sha256, sorted(shaking.record.items), shaking.scale],
             "version": __version__,
         }
-        return blake2b(json.dumps(own).encode(), digest_size=12).hexdigest()
+        return blake2b(json.dumps(content).encode(), digest_size=12).hexdigest()
 
     def at(self, level: float) -> Run:
         """The same run at another level of its record."""
@@ -128,10 +128,10 @@ class Run:
     @property
     def title(self) -> str:
         """The run in words."""
-        own = [Path(self.case.deck).name, *(f"{k}={v}" for k, v in self.case.params)]
+        words = [Path(self.case.deck).name, *(f"{k}={v}" for k, v in self.case.params)]
         if self.shaking is not None:
-            own += [self.shaking.record.name, f"x {self.shaking.scale:.6g}"]
-        return " ".join(own)
+            words += [self.shaking.record.name, f"x {self.shaking.scale:.6g}"]
+        return " ".join(words)
 
 
 def digest_of(files: Mapping[str, str]) -> str:

@@ -130,7 +130,7 @@ class _Reader:
         """The whole study, if nothing is wrong."""
         document = self.document
         decks, combinations = list(self._decks()), self._combinations()
-        own = {name: document.take((name,), str, "") for name in ("out", "method")}
+        texts = {name: document.take((name,), str, "") for name in ("out", "method")}
         dt, tol = (self._number(name) for name in ("dt", "tol"))
         seconds, memory, workers = (self._number(*limits) for limits in LARGEST.items())
         measures = {s.measure for s in self.suites}
@@ -139,7 +139,7 @@ class _Reader:
                 f"the tables [[motions]] give {' and '.join(sorted(measures))}: give all the same measure"
             )
             document.mistake("S605", message, ("motions",))
-        base = Case("", (), self.folders, own["method"] or None, dt, tol)
+        base = Case("", (), self.folders, texts["method"] or None, dt, tol)
         self._names(decks, combinations)
         for deck in decks:
             self._tried(replace(base, deck=deck), combinations)
@@ -149,7 +149,7 @@ class _Reader:
         units = next(iter(self.models.values())).units
         return Study(
             document.name,
-            self._out(own["out"]),
+            self._out(texts["out"]),
             runs,
             (units.force, units.length, units.time),
             "".join(measures),
@@ -172,11 +172,11 @@ class _Reader:
 
     def _stop_at_mistakes(self) -> None:
         """Raise where there are some, in the order of the study."""
-        found = self.document.found
+        mistakes = self.document.found
         order = {name: k for k, name in enumerate(self.document.files)}
-        found.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
-        if has_errors(found):
-            raise StudyError(found, self.document.files)
+        mistakes.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
+        if has_errors(mistakes):
+            raise StudyError(mistakes, self.document.files)
 
     def _warnings(self) -> str:
         """Warnings about the decks, with their lines."""
@@ -193,18 +193,18 @@ class _Reader:
     def _decks(self) -> Iterator[str]:
         """Paths of all decks; a pattern stands for the files that it fits."""
         document = self.document
-        given = [name for name in ("deck", "decks") if document.at((name,)) is not None]
-        if len(given) != 1:
-            message = "deck stands beside decks" if given else "the study names no deck"
-            document.mistake("S604", message, (given[-1],) if given else (), 'write deck = "model.inp"')
-        for item in given:
+        named = [name for name in ("deck", "decks") if document.at((name,)) is not None]
+        if len(named) != 1:
+            message = "deck stands beside decks" if named else "the study names no deck"
+            document.mistake("S604", message, (named[-1],) if named else (), 'write deck = "model.inp"')
+        for item in named:
             for name in document.listed((item,), (str,)):
-                found = [self._beside(name)]
+                paths = [self._beside(name)]
                 if any(c in name for c in "*?["):
-                    found = document.matching(name)
-                    if not found:
+                    paths = document.matching(name)
+                    if not paths:
                         document.mistake("S604", f"no deck fits {name}", (item,))
-                for path in found:
+                for path in paths:
                     if path.is_file():
                         yield str(path)
                     else:
@@ -238,7 +238,7 @@ class _Reader:
             parts.append([tuple(zip(side, values)) for values in zip(*side.values())])
         if rows is not None:
             parts.append(rows)
-        return [tuple(itertools.chain(*own)) for own in itertools.product(*parts)]
+        return [tuple(itertools.chain(*choice)) for choice in itertools.product(*parts)]
 
     def _table(self, name: str) -> dict[str, Any]:
         """One table of lists; empty where there is none."""
@@ -301,8 +301,8 @@ class _Reader:
         for d in map(self._here, found):
             if d.severity == "error" and d not in self.document.found:
                 self.document.found.append(d)
-        own = self._options()
-        self.document.files.update({n: t for n, t in files.items() if n not in own})
+        options = self._options()
+        self.document.files.update({n: t for n, t in files.items() if n not in options})
 
     def _options(self) -> dict[str, Path_]:
         """Items of the study by the options of a run that they stand for."""
@@ -343,7 +343,7 @@ class _Reader:
         other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
         if other is None or not self.suites:
             return
-        models = [read_deck(Request(case.deck, own)).model for own in (first, {**first, name: other})]
+        models = [read_deck(Request(case.deck, params)).model for params in (first, {**first, name: other})]
         if None not in models and len({_contents(m) for m in models if m is not None}) == 1:
             deck = Path(case.deck).name
             message = f"{name} changes nothing in {deck} but the motion, which [[motions]] replaces"
@@ -364,8 +364,8 @@ class _Reader:
             for params in combinations:
                 texts = tuple((n, v) for n, v in params if not _is_number(v))
                 if texts not in read:
-                    found, own_texts = self._inputs(replace(base, deck=deck, params=params))
-                    read[texts] = digest_of(found), own_texts
+                    sources, own_texts = self._inputs(replace(base, deck=deck, params=params))
+                    read[texts] = digest_of(sources), own_texts
                 inputs, own_texts = read[texts]
                 case = replace(base, deck=deck, params=params, texts=own_texts)
                 for shaking in shakings or [None]:
@@ -388,12 +388,12 @@ class _Reader:
         if model is None:
             self._told(deck.found, deck.files)
             return {}, ""
-        out = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
+        sources = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
         context = loading.context(model, request_of(case))
         for card in (*(() if self.suites else model.equake), *model.forces):
             if card.values.get("FILE"):
                 try:
-                    out[str(card["FILE"])] = load(find(str(card["FILE"]), context.search_path))[1]
+                    sources[str(card["FILE"])] = load(find(str(card["FILE"]), context.search_path))[1]
                 except RecordError as err:
                     place = card.place("FILE")
                     self.document.found.append(Diagnostic(err.code, err.message, place, err.hint))
@@ -401,8 +401,8 @@ class _Reader:
             if card.values.get("RESTART"):
                 with suppress(OSError):  # the preparation of the deck tells why
                     state = contents(Path(case.deck).parent / card["RESTART"])
-                    out["RESTART"] = sha256(state).hexdigest()
-        return out, digest_of(model.files)
+                    sources["RESTART"] = sha256(state).hexdigest()
+        return sources, digest_of(model.files)
 
 
 def request_of(case: Case, motion: Any = None) -> Request:
