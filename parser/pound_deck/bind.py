@@ -117,14 +117,14 @@ class Binder:
             One card, or as many as the row's range generates; None where the row has mistakes.
         """
         before = len(self.report)
-        given, matched = self._match(spec, items)
-        numbers = self._count(spec, given) if generate else None
-        draft = _Draft(spec, span, label, given, numbers, matched, matched)
+        by_field, matched = self._match(spec, items)
+        numbers = self._count(spec, by_field) if generate else None
+        draft = _Draft(spec, span, label, by_field, numbers, matched, matched)
         fields = list(spec.fields)
         for f in fields:  # grows while FAMILY items add the fields of what they choose
             if f.name not in draft.values:
                 fields += self._fill(draft, f)
-        for name, item in given.items():
+        for name, item in by_field.items():
             if name not in draft.values and name not in draft.lost:
                 self.report.append(self._unknown(name, item, draft))
         return draft.cards() if draft.whole and len(self.report) == before else None
@@ -151,7 +151,7 @@ class Binder:
     def _match(self, spec: Spec, items: Sequence[Item]) -> tuple[dict[str, Item], bool]:
         """Items by field name, and whether all of them found one."""
         places = [f.name for f in spec.fields if f.positional]
-        given: dict[str, Item] = {}
+        by_field: dict[str, Item] = {}
         before, named = len(self.report), False
         for k, item in enumerate(items):
             if item.name:
@@ -162,13 +162,13 @@ class Binder:
                 continue
             else:
                 name = places[k]
-            if name in given:
-                joined = _joined(spec, name, given[name], item)
+            if name in by_field:
+                joined = _joined(spec, name, by_field[name], item)
                 hint = hints("take one of them out", f"a list is written {joined}" if joined else "")
                 self._error("P212", f"{name} is given twice in this card", item.name_span, hint)
             else:
-                given[name] = item
-        return given, len(self.report) == before
+                by_field[name] = item
+        return by_field, len(self.report) == before
 
     def _out_of_place(self, spec: Spec, named: bool, before: Item, item: Item) -> None:
         if named:
@@ -302,19 +302,19 @@ class Binder:
         return values[0] if f.count == (1, 1) else values
 
     def _list(self, f: Field, item: Item) -> tuple[Any, ...]:
-        out: list[Any] = []
+        values: list[Any] = []
         for part in item.parts:
             if isinstance(part, Range) and f.kind in _NUMBERED:
-                out += self._members(part, f)
+                values += self._members(part, f)
             elif isinstance(part, Range):
                 raise mistake(
                     "P219", f"{f.name} takes no range", part.span, "write the labels with commas: A,B,C"
                 )
             elif f.kind is Kind.PROPS:
-                out.append(self.read.label(part, f.name))
+                values.append(self.read.label(part, f.name))
             else:
-                out.append(self.read.whole(part, f))
-        return tuple(out)
+                values.append(self.read.whole(part, f))
+        return tuple(values)
 
     def _error(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self.report.append(Diagnostic(code, message, span, hint))

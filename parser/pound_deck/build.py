@@ -81,13 +81,13 @@ def _section(name: str, outline: Outline, binder: Binder) -> tuple[Card, ...]:
         items = tuple(item for row in rows for item in row.items or ())
         card = binder.card(_SPECS[name], items, rows[0].span)
         return (card,) if card else ()  # nothing refers to OUTPUT, so it cannot be broken
-    out: list[Card] = []
+    cards: list[Card] = []
     for row in rows:
-        found = _row(name, row, binder)
-        if found is None:
+        row_cards = _row(name, row, binder)
+        if row_cards is None:
             outline.lose(name, *_plain_labels(item for item in (row.items or ())[:1] if not item.name))
-        out += found or ()
-    return tuple(out)
+        cards += row_cards or ()
+    return tuple(cards)
 
 
 def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:

@@ -38,8 +38,8 @@ def run_checks(
         Sections that lost lines to mistakes, those of which it is not known what these lines define, and
         the property sets that the others define: checks that count on what is lost are left out.
     """
-    found = [d for check, needs in CHECKS if not broken & needs for d in check(model)]
-    return found + list(_references(model, cards, gone, maimed))
+    diagnostics = [d for check, needs in CHECKS if not broken & needs for d in check(model)]
+    return diagnostics + list(_references(model, cards, gone, maimed))
 
 
 def _references(model: Model, cards: Iterable[Card], gone: Set[str], maimed: Set[str]) -> Found:
@@ -182,15 +182,15 @@ def _analysis_twice(model: Model) -> Found:
 def _initial(model: Model) -> Found:
     for card in model.initial:
         for letter in "XYR":
-            given = [name for name in ("U" + letter, "V" + letter) if card[name]]
+            names = [name for name in ("U" + letter, "V" + letter) if card[name]]
             for number in card["NODES"]:
                 node = model.nodes.get(number)
-                if not given or node is None or not (letter in node.fixed or letter in node.slaved):
+                if not names or node is None or not (letter in node.fixed or letter in node.slaved):
                     continue
                 state = "fixed" if letter in node.fixed else f"slaved to node {node.slaved[letter]}"
                 hint = "give the initial motion to the master" if letter in node.slaved else "leave it out"
-                message = f"node {number} is {state} along {letter}: {given[0]} has no effect"
-                yield Diagnostic("P325", message, card.place(given[0]), hint)
+                message = f"node {number} is {state} along {letter}: {names[0]} has no effect"
+                yield Diagnostic("P325", message, card.place(names[0]), hint)
                 break  # one node is enough
 
 
@@ -212,8 +212,8 @@ def _excitation(model: Model) -> Found:
 def _percent(model: Model) -> Found:
     """Damping given in percent where a share is meant."""
     for card in model.damping:
-        given = card.values.get("XI")
-        ratios = given if isinstance(given, tuple) else () if given is None else (given,)
+        value = card.values.get("XI")
+        ratios = value if isinstance(value, tuple) else () if value is None else (value,)
         if any(xi > 1.0 for xi in ratios):
             xi = max(ratios)
             message = f"a damping ratio of {xi:g} is {100.0 * xi:g} % of critical: nothing would swing"

@@ -93,14 +93,14 @@ def caret(diagnostic: Diagnostic, files: Mapping[str, str]) -> str:
     """
     span = diagnostic.span
     place = f"{span}: " if span else ""
-    out = [f"{place}{diagnostic.severity} {diagnostic.code}: {diagnostic.message}"]
+    printed = [f"{place}{diagnostic.severity} {diagnostic.code}: {diagnostic.message}"]
     if span and span.file in files:
         lines = files[span.file].split("\n")
         if span.line <= len(lines):
-            out += _underlined(lines[span.line - 1], span)
+            printed += _underlined(lines[span.line - 1], span)
     if diagnostic.hint:
-        out.append(f"  hint: {diagnostic.hint}")
-    return "\n".join(out)
+        printed.append(f"  hint: {diagnostic.hint}")
+    return "\n".join(printed)
 
 
 def _underlined(line: str, span: Span) -> list[str]:

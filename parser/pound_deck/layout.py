@@ -78,16 +78,16 @@ def arranged(name: str, data: bytes) -> tuple[bytes | None, list[Diagnostic], di
     source = Source()
     text = source.decode(name, data, Span(name, 1, 1, 2))
     report = source.report
-    out = None
+    laid_out = None
     if not has_errors(report):
-        out, found = layout(text, name)
-        report += found
-    if out is None:
+        laid_out, mistakes = layout(text, name)
+        report += mistakes
+    if laid_out is None:
         return None, report, {name: text}
     latin = any(d.code == "P101" for d in report)
     encoding = "latin-1" if latin else "utf-8-sig" if data.startswith(b"\xef\xbb\xbf") else "utf-8"
     end = "\r\n" if 2 * data.count(b"\r\n") > data.count(b"\n") else "\n"
-    return out.replace("\n", end).encode(encoding), report, {name: text}
+    return laid_out.replace("\n", end).encode(encoding), report, {name: text}
 
 
 def layout(text: str, name: str = "deck.inp") -> tuple[str | None, list[Diagnostic]]:
@@ -159,14 +159,14 @@ def _lines(row: Row, section: str) -> list[_Cells]:
         return []
     if not items[0]:
         return []
-    last = max(k for k, found in enumerate(items) if found)
+    last = max(k for k, line_items in enumerate(items) if line_items)
     first = row.line.number - 1
-    out = [_first(first, row.word, section, texts[0], items[0], "  &" if last else "")]
-    for k, (text, found) in enumerate(zip(texts[1:], items[1:]), 1):
-        if found:
-            cells = [_NARROW.join(_cell(text, item) for item in found)]
-            out.append(_Cells(first + k, "&", 0, 2 * _INDENT, cells, [], [], "  &" if k < last else ""))
-    return out
+    lines = [_first(first, row.word, section, texts[0], items[0], "  &" if last else "")]
+    for k, (text, line_items) in enumerate(zip(texts[1:], items[1:]), 1):
+        if line_items:
+            cells = [_NARROW.join(_cell(text, item) for item in line_items)]
+            lines.append(_Cells(first + k, "&", 0, 2 * _INDENT, cells, [], [], "  &" if k < last else ""))
+    return lines
 
 
 def _first(at: int, word: str, section: str, text: str, items: Sequence[Item], tail: str) -> _Cells:
@@ -212,8 +212,8 @@ def _in_columns(block: Sequence[_Cells]) -> Iterator[tuple[int, str]]:
 
 def _named_widths(block: Sequence[_Cells]) -> list[list[int]]:
     """Widths of the named cells of each line."""
-    out: list[list[int]] = [[] for _ in block]
-    named = [(row, widths) for row, widths in zip(block, out) if row.named]
+    all_widths: list[list[int]] = [[] for _ in block]
+    named = [(row, widths) for row, widths in zip(block, all_widths) if row.named]
     for j in range(max((len(row.named) for row, _ in named), default=0)):
         begin = [(row.kind, row.names[: j + 1]) for row, _ in named]
         for _, run in groupby(zip(begin, named), itemgetter(0)):
@@ -221,7 +221,7 @@ def _named_widths(block: Sequence[_Cells]) -> list[list[int]]:
             width = max((len(row.named[j]) for row, _ in alike if len(row.named) > j + 1), default=0)
             for _, widths in alike:
                 widths.append(width + len(_NARROW))
-    return out
+    return all_widths
 
 
 def _with_comments(raw: Sequence[str], code: Sequence[str], headings: set[int]) -> Iterator[str]:

@@ -725,7 +725,7 @@ def messages_page() -> str:
         "S6": "Studies of many runs",
         "L6": "Decks of Ruaumoko",
     }
-    out = [
+    lines = [
         "# Messages",
         "",
         "Every message names its place as `file:line:column` and shows the line with the place underlined.",
@@ -734,6 +734,6 @@ def messages_page() -> str:
         "This page is written from `MESSAGES` in `pound_deck/messages.py`.",
     ]
     for prefix, head in heads.items():
-        out += ["", f"## {head}", "", "| Code | Title | Meaning and cure |", "|---|---|---|"]
-        out += [f"| {c} | {t} | {m} |" for c, (t, m) in MESSAGES.items() if c.startswith(prefix)]
-    return "\n".join(out) + "\n"
+        lines += ["", f"## {head}", "", "| Code | Title | Meaning and cure |", "|---|---|---|"]
+        lines += [f"| {c} | {t} | {m} |" for c, (t, m) in MESSAGES.items() if c.startswith(prefix)]
+    return "\n".join(lines) + "\n"

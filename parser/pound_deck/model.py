@@ -99,10 +99,10 @@ class Units:
 
     def text(self, dimension: str) -> str:
         """Dimension (``F/L`` ...) in the deck's units (``kN/m`` ...)."""
-        out = ""
+        unit = ""
         for ch in dimension:
-            out += {"F": self.force, "L": self.length, "T": self.time}.get(ch, ch)
-        return out
+            unit += {"F": self.force, "L": self.length, "T": self.time}.get(ch, ch)
+        return unit
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,9 +113,9 @@ def _params(
 ) -> dict[str, Value | None]:
     """Values of all PARAMs; `texts` holds the overrides by the name that their spans carry."""
     if texts:
-        own = resolve(outline.definitions, [], outline.lost)  # to find which PARAMs hold texts
+        values = resolve(outline.definitions, [], outline.lost)  # to find which PARAMs hold texts
         for source, text in texts.items():
-            _override(source, text, own, outline, report)
+            _override(source, text, values, outline, report)
     return resolve(outline.definitions, report, outline.lost)
 
 

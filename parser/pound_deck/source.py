@@ -75,18 +75,18 @@ class Source:
     def lines(self, name: str, text: str, path: tuple[str, ...] = ()) -> list[Line]:
         """Logical lines of a text; `path` names the files being read, outermost first."""
         self.files[name] = text
-        out: list[Line] = []
+        lines: list[Line] = []
         for line in self.logical(name, text):
             include = INCLUDE.match(line.text)
             if include:
-                out += self._include(line, include[1], path)
+                lines += self._include(line, include[1], path)
             elif is_end(line.text):
                 break
             elif len(line.text) > MAX_LINE:
                 self._error("P110", f"a card of {len(line.text)} characters is too long", line.span)
             else:
-                out.append(line)
-        return out
+                lines.append(line)
+        return lines
 
     def logical(self, name: str, text: str) -> Iterator[Line]:
         """Logical lines of one text, INCLUDE and END among them."""
@@ -110,11 +110,11 @@ class Source:
             yield last
 
     def _include(self, line: Line, rest: str, path: tuple[str, ...]) -> list[Line]:
-        found = _FILE_NAME.fullmatch(rest)
-        if not found:
+        match = _FILE_NAME.fullmatch(rest)
+        if not match:
             self._error("P108", "INCLUDE takes one file name", line.span, 'write INCLUDE "file name"')
             return []
-        name = os.path.join(os.path.dirname(line.file), found[1].strip("\"'"))
+        name = os.path.join(os.path.dirname(line.file), match[1].strip("\"'"))
         real = os.path.realpath(name)
         self._includes += 1
         if real in path:

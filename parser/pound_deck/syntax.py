@@ -103,8 +103,8 @@ def place(line: Line, at: int, length: int = 1) -> Span:
 def explain(fault: Fault) -> Mistake:
     """The mistake behind a fault, in words."""
     for kind in _KINDS:
-        if found := kind(fault):
-            return found
+        if slip := kind(fault):
+            return slip
     shown = fault.token.strip() or "a blank"
     message = f"{shown[:60]} does not belong here"
     return mistake("P209", message, fault.span, "items are separated by blanks: 1 2 NAME=3")
@@ -208,8 +208,8 @@ def _neither_number_nor_word(fault: Fault) -> Mistake | None:
     shown = fault.before[start:] + fault.token
     message = f"{shown[:60]} is neither a number nor a word"
     hint = "a word starts with a letter"
-    if found := _WITH_UNIT.match(shown):
-        hint = f"write {found[1]} alone, in the units of the deck; {hint}"
+    if match := _WITH_UNIT.match(shown):
+        hint = f"write {match[1]} alone, in the units of the deck; {hint}"
     return mistake("P207", message, place(fault.line, start, len(shown)), hint)
 
 

@@ -152,12 +152,12 @@ def forces(
     Mistake
         See `equake.record`.
     """
-    found, notes = rows.next("the line of EQUAKE: " + " ".join(equake.NAMES)), list[str]()
+    row, notes = rows.next("the line of EQUAKE: " + " ".join(equake.NAMES)), list[str]()
     behind = equake.Appended(appended, rows.here.line + 1)
-    file = equake.record(found, behind, separate[0] if separate else None, draft, notes)
-    factor = equake.scale(found, control["FACTOR"], draft)
-    notes.append(draft.doubt(found.span, "the force of a node is SHAPE times FACTOR times the record"))
+    file = equake.record(row, behind, separate[0] if separate else None, draft, notes)
+    factor = equake.scale(row, control["FACTOR"], draft)
+    notes.append(draft.doubt(row.span, "the force of a node is SHAPE times FACTOR times the record"))
     for line, id_, values in shape:
-        given = " ".join(number(factor * x) for x in values)
-        draft.add("FORCES", f"RECORD {id_} {given} {file}", line.span, notes)
+        components = " ".join(number(factor * x) for x in values)
+        draft.add("FORCES", f"RECORD {id_} {components} {file}", line.span, notes)
         notes = []

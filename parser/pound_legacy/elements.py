@@ -26,27 +26,27 @@ class Member:
 
 def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft) -> dict[int, Member]:
     """Members by number, up to `last`; mistakes in a line are reported, and the line is left out."""
-    out: dict[int, Member] = {}
+    members: dict[int, Member] = {}
     before: Member | None = None
-    for found in rows:
+    for row in rows:
         try:
-            member = _member(found, last, kinds, before, nodes)
+            member = _member(row, last, kinds, before, nodes)
             between = _between(before, member, nodes, draft) if before else []
         except Mistake as error:
             if error.diagnostic:
                 draft.report.append(error.diagnostic)
             continue
-        out |= {m.id: m for m in (*between, member)}
+        members |= {m.id: m for m in (*between, member)}
         before = member
         if member.id == last:
             break
     if rows.more:
         text = "lines follow the last member that NMEM counts"
         draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NMEM, or take them out"))
-    if not out or max(out) != last:
-        text = f"ELEMENTS end with member {max(out, default=0)}, and NMEM is {last}"
+    if not members or max(members) != last:
+        text = f"ELEMENTS end with member {max(members, default=0)}, and NMEM is {last}"
         draft.report.append(Diagnostic("L608", text, rows.here, "add the members, or correct NMEM"))
-    return out
+    return members
 
 
 def _member(found: Row, last: int, kinds: int, before: Member | None, nodes: dict[int, Node]) -> Member:
@@ -66,18 +66,18 @@ def _member(found: Row, last: int, kinds: int, before: Member | None, nodes: dic
 
 def _between(before: Member, after: Member, nodes: dict[int, Node], draft: Draft) -> list[Member]:
     """Members that are generated between two that are given."""
-    out = []
+    members = []
     for id_ in range(before.id + 1, after.id):
         step = id_ - before.id
         i, j = before.i + step, before.j + step
         if i not in nodes or j not in nodes:
             text = f"member {id_} is left out, and nodes {i} and {j} for it are not both there"
             raise mistake("L608", text, after.row.span, "write the members out")
-        out.append(Member(id_, before.kind, i, j, before.row))
-    if out:
+        members.append(Member(id_, before.kind, i, j, before.row))
+    if members:
         what = f"members {before.id + 1} to {after.id - 1} are as {before.id}, each one node further"
         draft.doubt(after.row.span, what)
-    return out
+    return members
 
 
 def write(members: dict[int, Member], draft: Draft) -> None:

@@ -61,13 +61,13 @@ def read(given: PropertySet, label: str) -> None:
 def _section(found: Row, pin: int) -> list[str]:
     """Items of the section and of the ends."""
     v = dict(zip(SECTION, found.reals(SECTION, 5)))
-    out = [f"{name}={number(v[name])}" for name in ("E", "A", "I")]
+    items = [f"{name}={number(v[name])}" for name in ("E", "A", "I")]
     if v["AS"]:
-        out += [f"G={number(v['G'])}", f"AS={number(v['AS'])}"]
-    out += [f"{name}={number(v[name])}" for name in ("WGT", "END1", "END2") if v[name]]
+        items += [f"G={number(v['G'])}", f"AS={number(v['AS'])}"]
+    items += [f"{name}={number(v[name])}" for name in ("WGT", "END1", "END2") if v[name]]
     if v["FJ1"] or v["FJ2"]:
-        out.append(f"FJ={numbers((v['FJ1'], v['FJ2']))}")
-    return [*out, f"PIN={_PINS[pin]}"] if pin else out
+        items.append(f"FJ={numbers((v['FJ1'], v['FJ2']))}")
+    return [*items, f"PIN={_PINS[pin]}"] if pin else items
 
 
 def _initial(given: PropertySet, code: int, notes: list[str]) -> str:
@@ -75,11 +75,11 @@ def _initial(given: PropertySet, code: int, notes: list[str]) -> str:
     names = {1: INITIAL[:1], 2: INITIAL[1:], 3: INITIAL}.get(code)
     if names is None:
         raise mistake("L604", f"ICOND {code} is not known", given.rows.here, "0 to 3")
-    found = given.rows.next("the initial forces: " + " ".join(names))
-    v = dict(zip(names, found.reals(names, len(names))))
+    row = given.rows.next("the initial forces: " + " ".join(names))
+    v = dict(zip(names, row.reals(names, len(names))))
     notes.append(
         given.draft.doubt(
-            found.span, f"ICOND {code}: initial {' '.join(names)}, tension and sagging positive"
+            row.span, f"ICOND {code}: initial {' '.join(names)}, tension and sagging positive"
         )
     )
     axial = f"N0={number(v['N0'])}" if "N0" in v else ""
@@ -103,8 +103,8 @@ def _hinges(
     lost = ""
     if losing:
         lost = loss.read(losing, rule, given.rows, options.items[4].span, given.draft, notes)
-    own = rules.read(code, given.rows, ratio, given.draft, notes)
-    return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={rule.name}", own, lost) if x)
+    parameters = rules.read(code, given.rows, ratio, given.draft, notes)
+    return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={rule.name}", parameters, lost) if x)
 
 
 def _beam(given: PropertySet, found: Row, notes: list[str]) -> tuple[str, str]:

@@ -76,10 +76,10 @@ def read(rows: Sequence[Row], here: Span) -> Control:
     for k, (names, least) in enumerate(kinds):
         if k >= len(rows):
             raise mistake("L602", f"there is no line of {names[0]} {names[1]} ...", here, "add the line")
-        found = rows[k]
+        row = rows[k]
         whole = names is ANALYSIS
-        values |= zip(names, found.wholes(names, least) if whole else found.reals(names, least))
-        places |= {name: found.item(n).span for n, name in enumerate(names)}
+        values |= zip(names, row.wholes(names, least) if whole else row.reals(names, least))
+        places |= {name: row.item(n).span for n, name in enumerate(names)}
     if "FACTOR" in values and len(rows[1].items) < len(STRUCTURE):
         values["FACTOR"] = 1.0
     for name in ("NNP", "NMEM", "NTYPE"):

@@ -128,19 +128,19 @@ def _outline(
     sections: dict[str, _Section] = {}
     current: list[Row] | None = None
     for number, raw in enumerate(lines[1:_MOST_LINES], 2):
-        found = row(name, number, raw)
-        if found is None:
+        line = row(name, number, raw)
+        if line is None:
             continue
-        if found.word in _HEADS:
-            if found.word in sections:
-                what = f"{found.word} stands twice"
-                draft.report.append(Diagnostic("L607", what, found.span, "join the two"))
-            sections[found.word] = _Section(found, Rows([], found.span))
-            current = sections[found.word].rows.rows
+        if line.word in _HEADS:
+            if line.word in sections:
+                what = f"{line.word} stands twice"
+                draft.report.append(Diagnostic("L607", what, line.span, "join the two"))
+            sections[line.word] = _Section(line, Rows([], line.span))
+            current = sections[line.word].rows.rows
         elif current is None:
-            begins.append(found)
+            begins.append(line)
         else:
-            current.append(found)
+            current.append(line)
             if "EQUAKE" in sections and len(current) == 2:
                 break
     for missing in (w for w in _NEEDED if w not in sections):

@@ -122,8 +122,8 @@ def row(file: str, number: int, raw: str) -> Row | None:
     if not code or code.isspace():
         return None
     items = []
-    for found in _ITEM.finditer(code):
-        items.append(Item(found[0], Span(file, number, found.start() + 1, found.end() + 1)))
+    for match in _ITEM.finditer(code):
+        items.append(Item(match[0], Span(file, number, match.start() + 1, match.end() + 1)))
         if len(items) == MOST_ITEMS:
             break
     if not items:
@@ -169,6 +169,6 @@ class Rows:
             raise mistake(
                 "L602", f"the section ends before {what}", self.here, "add the lines that are missing"
             )
-        found = self.rows[self.at]
-        self.here, self.at = found.span, self.at + 1
-        return found
+        row = self.rows[self.at]
+        self.here, self.at = row.span, self.at + 1
+        return row

@@ -41,16 +41,14 @@ def read(code: int, rule: Spec, rows: Rows, place: Span, draft: Draft, notes: li
     Mistake
         The line is missing, the code is not known, or the rule takes no loss.
     """
-    found = rows.next("the loss of strength: " + " ".join(NAMES))
-    begin, end, left, gone, cycle = found.reals(NAMES, 3)
+    row = rows.next("the loss of strength: " + " ".join(NAMES))
+    begin, end, left, gone, cycle = row.reals(NAMES, 3)
     if code not in _WORDS:
         raise mistake("L604", f"ILOS {code} is not known", place, "0 to 7")
     if rule.field("ILOS") is None:
         text = f"ILOS {code}: {rule.name} has no loss of strength"
         raise mistake("L604", text, place, "write 0, or take rule 1, 2, 4, 7, 10, 11 or 12")
-    notes.append(
-        draft.doubt(found.span, "the line of the loss of strength stands before those of the rule")
-    )
+    notes.append(draft.doubt(row.span, "the line of the loss of strength stands before those of the rule"))
     if code in _SUDDEN and not gone:  # what never happens
         code -= 1
     items = [f"ILOS={_WORDS[code]}", f"DUCT1={number(begin)}", f"DUCT2={number(end)}"]

@@ -17,18 +17,18 @@ def _lines(
     rows: Rows, names: tuple[str, ...], nodes: dict[int, Node], draft: Draft
 ) -> list[tuple[Row, int, list[float]]]:
     """Lines of a list: the node, and its values; mistakes are reported, and the line is left out."""
-    out: list[tuple[Row, int, list[float]]] = []
-    for found in rows:
+    lines: list[tuple[Row, int, list[float]]] = []
+    for row in rows:
         try:
-            id_, values = found.item(0).whole("N"), found.reals(names, 2)[1:]
+            id_, values = row.item(0).whole("N"), row.reals(names, 2)[1:]
             if id_ not in nodes:
-                raise mistake("L608", f"there is no node {id_}", found.items[0].span, "correct the number")
+                raise mistake("L608", f"there is no node {id_}", row.items[0].span, "correct the number")
         except Mistake as error:
             if error.diagnostic:
                 draft.report.append(error.diagnostic)
             continue
-        out.append((found, id_, values))
-    return out
+        lines.append((row, id_, values))
+    return lines
 
 
 def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, Node], draft: Draft) -> None:
@@ -38,27 +38,27 @@ def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, No
         scale = gravity
         notes.append(draft.doubt(option.span, "WEIGHTS 1: the values are masses"))
     done: dict[int, list[float]] = {}
-    for found, id_, values in _lines(rows, WEIGHTS, nodes, draft):
+    for row, id_, values in _lines(rows, WEIGHTS, nodes, draft):
         if id_ in done and (any(values) or any(done[id_])):
             draft.report.append(
                 Diagnostic(
-                    "L604", f"node {id_} has two weights", found.span, "write their sum, or one of them"
+                    "L604", f"node {id_} has two weights", row.span, "write their sum, or one of them"
                 )
             )
         done[id_] = values
         if any(values):
             text = f"{id_:6} {' '.join(number(scale * x) for x in values)}"
-            draft.add("WEIGHTS", text, found.span, notes)
+            draft.add("WEIGHTS", text, row.span, notes)
             notes = []
 
 
 def loads(rows: Rows, nodes: dict[int, Node], draft: Draft) -> bool:
     """Add the loads; whether there are any."""
     some = False
-    for found, id_, values in _lines(rows, LOADS, nodes, draft):
+    for row, id_, values in _lines(rows, LOADS, nodes, draft):
         if any(values):
             some = True
-            draft.add("LOADS", f"{id_:6} {' '.join(map(number, values))}", found.span)
+            draft.add("LOADS", f"{id_:6} {' '.join(map(number, values))}", row.span)
     return some
 
 

@@ -37,26 +37,26 @@ def read(rows: Rows, last: int, draft: Draft) -> dict[int, Node]:
 
     Mistakes in a line are reported, and the line is left out.
     """
-    out: dict[int, Node] = {}
+    nodes: dict[int, Node] = {}
     before: Node | None = None
-    for found in rows:
-        if found.word and not out:  # names of the columns
+    for row in rows:
+        if row.word and not nodes:  # names of the columns
             continue
         try:
-            node = _node(found, last, before)
+            node = _node(row, last, before)
         except Mistake as error:
             _keep(error, draft)
             continue
         if before is not None and node.id > before.id + 1:
-            out |= {n.id: n for n in _between(before, node, draft)}
-        out[node.id], before = node, node
+            nodes |= {n.id: n for n in _between(before, node, draft)}
+        nodes[node.id], before = node, node
         if node.id == last:
             break
     _rest(rows, draft)
-    if not out or max(out) != last:
-        text = f"NODES end with node {max(out, default=0)}, and NNP is {last}"
+    if not nodes or max(nodes) != last:
+        text = f"NODES end with node {max(nodes, default=0)}, and NNP is {last}"
         draft.report.append(Diagnostic("L608", text, rows.here, "add the nodes, or correct NNP"))
-    return out
+    return nodes
 
 
 def _rest(rows: Rows, draft: Draft) -> None:
@@ -93,13 +93,13 @@ def _between(before: Node, after: Node, draft: Draft) -> list[Node]:
         error = Diagnostic("L604", text, after.row.span, "write the nodes between them out")
         draft.report.append(error)
     draft.doubt(after.row.span, f"{what}, with their supports")
-    out = []
+    nodes = []
     for k in range(1, count):
         share = k / count
         x = before.x + share * (after.x - before.x)
         y = before.y + share * (after.y - before.y)
-        out.append(Node(before.id + k, x, y, after.codes, after.masters, after.row))
-    return out
+        nodes.append(Node(before.id + k, x, y, after.codes, after.masters, after.row))
+    return nodes
 
 
 def write(nodes: dict[int, Node], draft: Draft) -> None:
@@ -151,8 +151,8 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
     """
     listed: list[tuple[int, Row]] = []
     count = 0  # with the items that are told as wrong: NLEVEL need not change where these are corrected
-    for found in rows:
-        for item in found.items:
+    for row in rows:
+        for item in row.items:
             count += 1
             try:
                 id_ = item.whole("a node of DRIFT")
@@ -163,7 +163,7 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
                 text = f"DRIFT names node {id_}, which NODES do not hold"
                 draft.report.append(Diagnostic("L608", text, item.span, "correct the number"))
                 continue
-            listed.append((id_, found))
+            listed.append((id_, row))
     if count != levels:
         text = f"DRIFT lists {count} node{'s' * (count != 1)}, and NLEVEL is {levels}"
         hint = f"NLEVEL stands in line {place.line}, column {place.column}: write {count} there"
@@ -171,5 +171,5 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
             hint += f", or list {levels} nodes"
         draft.report.append(Diagnostic("L608", text, rows.here, hint))
     draft.rest("DRIFT: levels from the base up")
-    for k, ((low, _), (high, found)) in enumerate(pairwise(listed), 1):
-        draft.add("DRIFT", f'"level {k}" {low} {high}', found.span)
+    for k, ((low, _), (high, row)) in enumerate(pairwise(listed), 1):
+        draft.add("DRIFT", f'"level {k}" {low} {high}', row.span)

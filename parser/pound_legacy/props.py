@@ -39,8 +39,8 @@ def read(
             _keep(error, draft)
             return
         note = " ".join(item.text for item in head.items[2:])[:60].strip("\"'")
-        own = [m for m in members.values() if m.kind == expected]
-        places = [(nodes[m.i], nodes[m.j]) for m in own]
+        of_kind = [m for m in members.values() if m.kind == expected]
+        places = [(nodes[m.i], nodes[m.j]) for m in of_kind]
         try:
             READERS[kind](PropertySet(expected, rows, places, elastic, catalog, draft), note)
         except Mistake as error:

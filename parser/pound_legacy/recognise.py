@@ -21,13 +21,13 @@ _CONTROL_2D = 4  #: control lines of a plane deck
 def control_lines(text: str) -> list[Row]:
     """Lines of control of an old deck, empty where the text is none."""
     head = text[:HEAD].splitlines()
-    rows = (found for number, raw in enumerate(head[1:], 2) if (found := row("", number, raw)))
-    out: list[Row] = []
-    for found in islice(rows, _LINES):
-        if found.word == "NODES":
-            long = sum(len(r.items) >= _LEAST and _mostly_numbers(r) for r in out)
-            return out if long >= _CONTROL_2D - 1 and out[0].items[0].numeric else []
-        out.append(found)
+    rows = (line for number, raw in enumerate(head[1:], 2) if (line := row("", number, raw)))
+    control: list[Row] = []
+    for line in islice(rows, _LINES):
+        if line.word == "NODES":
+            long = sum(len(r.items) >= _LEAST and _mostly_numbers(r) for r in control)
+            return control if long >= _CONTROL_2D - 1 and control[0].items[0].numeric else []
+        control.append(line)
     return []
 
 

@@ -56,17 +56,17 @@ def _slack(v: Values) -> str:
 
 def _stewart(v: Values) -> str:
     items = {"PTRI": v["PTRI"], "PUNL": v["PUNL"], "BETA": v["BETA"], "ALPHA": v["ALPHA"]}
-    given = " ".join(f"{name}={number(x)}" for name, x in items.items())
+    text = " ".join(f"{name}={number(x)}" for name, x in items.items())
     return (
         f"R={number(v['R'])} FU={number(v['FU'])} FI={number(v['FI'])} "
-        f"SLACK={numbers((v['GAP+'], v['GAP-']))} {given}"
+        f"SLACK={numbers((v['GAP+'], v['GAP-']))} {text}"
     )
 
 
 def _schoettler(v: Values) -> str:
     pairs = {"FCR": ("Fcr+", "Fcr-"), "RHO": ("Rho+", "Rho-"), "DULT": ("Dult+", "Dult-")}
-    given = " ".join(f"{name}={number(v[a])},{number(v[b])}" for name, (a, b) in pairs.items())
-    return f"R={number(v['R'])} {given} ALFA={number(v['ALFA'])} PINCH={number(v['PINCH'])}"
+    text = " ".join(f"{name}={number(v[a])},{number(v[b])}" for name, (a, b) in pairs.items())
+    return f"R={number(v['R'])} {text} ALFA={number(v['ALFA'])} PINCH={number(v['PINCH'])}"
 
 
 LAYOUTS: Final = {
@@ -122,9 +122,9 @@ def read(code: int, rows: Rows, ratio: float, draft: Draft, notes: list[str]) ->
     layout, values = LAYOUTS[code], {"R": ratio}
     first: Row | None = None
     for names in layout.lines:
-        found = rows.next(f"the parameters of rule {code}: {' '.join(names)}")
-        first = first or found
-        values |= zip(names, found.reals(names, 1))
+        row = rows.next(f"the parameters of rule {code}: {' '.join(names)}")
+        first = first or row
+        values |= zip(names, row.reals(names, 1))
     if first is not None:
         if code not in CERTAIN:
             order = " ".join(" ".join(names) for names in layout.lines)

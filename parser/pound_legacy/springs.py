@@ -30,30 +30,30 @@ def read(given: PropertySet, label: str) -> None:
         A line is missing, an item is no number, or its type or rule cannot be carried over.
     """
     notes = [label] if label else []
-    found = given.rows.next("the line of a SPRING: " + " ".join(NAMES))
-    kind, code, losing, damaged = (found.item(k).whole(NAMES[k]) for k in range(4))
-    stiff = [found.item(k).real(NAMES[k]) for k in (4, 5, 6)]
-    weight, rf, rt = (found.item(k).real(NAMES[k]) for k in (7, 8, 9))
-    found.need(NAMES, 8)
+    row = given.rows.next("the line of a SPRING: " + " ".join(NAMES))
+    kind, code, losing, damaged = (row.item(k).whole(NAMES[k]) for k in range(4))
+    stiff = [row.item(k).real(NAMES[k]) for k in (4, 5, 6)]
+    weight, rf, rt = (row.item(k).real(NAMES[k]) for k in (7, 8, 9))
+    row.need(NAMES, 8)
     if kind != 1:
         text = f"ITYPE {kind}: a SPRING whose components act on each other"
-        raise mistake("L604", text, found.items[0].span, "only ITYPE 1 is carried over")
+        raise mistake("L604", text, row.items[0].span, "only ITYPE 1 is carried over")
     if damaged:
         raise mistake(
-            "L604", f"IDAMG {damaged}: the line of the index is not known", found.items[3].span, "0"
+            "L604", f"IDAMG {damaged}: the line of the index is not known", row.items[3].span, "0"
         )
-    if len(found.items) > len(NAMES) and any(i.text != "0" for i in found.items[len(NAMES) :]):
-        notes.append(given.draft.lose(found.items[len(NAMES)].span, "items behind RT"))
+    if len(row.items) > len(NAMES) and any(i.text != "0" for i in row.items[len(NAMES) :]):
+        notes.append(given.draft.lose(row.items[len(NAMES)].span, "items behind RT"))
     if weight:
         notes.append(
-            given.draft.lose(found.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS")
+            given.draft.lose(row.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS")
         )
-    _axes(given, stiff, found, notes)
+    _axes(given, stiff, row, notes)
     items = [f"{name}={number(k)}" for name, k in zip(_STIFF, stiff) if k]
     if code:
-        items.append(_yielding(given, code, losing, stiff, (rf, rf, rt), found, notes))
+        items.append(_yielding(given, code, losing, stiff, (rf, rf, rt), row, notes))
     text = " ".join([f"P{given.number}", "SPRING", *items, "ANGLE=MEMBER" if any(given.lengths) else ""])
-    given.draft.add("PROPS", text.rstrip(), found.span, notes)
+    given.draft.add("PROPS", text.rstrip(), row.span, notes)
 
 
 def _axes(given: PropertySet, stiff: list[float], found: Row, notes: list[str]) -> None:
