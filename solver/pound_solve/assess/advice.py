@@ -118,15 +118,15 @@ def errors(found: Peaks, reference: Peaks) -> Errors:
 
     NaN for a kind that nothing belongs to, or all of whose extremes are zero.
     """
-    out = dict.fromkeys(KINDS, math.nan)
+    largest = dict.fromkeys(KINDS, math.nan)
     for (kind, unit), true in reference.items():
         if (kind, unit) not in found:
             continue
         scale, off = float(np.abs(true).max()), float(np.abs(found[kind, unit] - true).max())
         if scale or off:
-            own = off / scale if scale else math.inf
-            out[kind] = own if math.isnan(out[kind]) else max(out[kind], own)
-    return out
+            ratio = off / scale if scale else math.inf
+            largest[kind] = ratio if math.isnan(largest[kind]) else max(largest[kind], ratio)
+    return largest
 
 
 def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
@@ -169,26 +169,26 @@ def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
     taken for accuracy, and of all finer ones; the reference's own error comes on top.  Where no contact
     closed, no step is named.
     """
-    out = []
+    advice = []
     for target in TARGETS:
         fit = [(t, sure) for t, sure in zip(trials, allowed(trials, reference)) if sure <= target]
         longest = (1.0 + NOISY) * min((t.time for t, _ in fit), default=0.0)
         alike = [(sure, t.time, n) for n, (t, sure) in enumerate(fit) if t.time <= longest]
-        out.append(Advice(target, *fit[min(alike)[2]]) if fit else Advice(target))
-    return tuple(out)
+        advice.append(Advice(target, *fit[min(alike)[2]]) if fit else Advice(target))
+    return tuple(advice)
 
 
 def allowed(trials: Sequence[Trial], reference: Reference) -> list[float]:
     """Error that the advice allows for, of each trial, see `advise`; infinite for one that stopped."""
-    out = []
+    margins = []
     for n, t in enumerate(trials):
         ladder = [x for x in trials[n:] if x.method == t.method and not x.stopped]
         near = [x for x in trials[max(n - 1, 0) : n] if x.method == t.method and not x.stopped]
         if t.stopped or (t.steps and reference.unseen):
-            out.append(math.inf)
+            margins.append(math.inf)
             continue
-        found = [x.error * (x.steps / t.steps) ** ORDER for x in near + ladder[:2] if t.steps]
+        estimates = [x.error * (x.steps / t.steps) ** ORDER for x in near + ladder[:2] if t.steps]
         # finer steps that do worse are a warning
-        found += [x.error for x in ladder]
-        out.append(MARGIN * max(found) + reference.doubt)
-    return out
+        estimates += [x.error for x in ladder]
+        margins.append(MARGIN * max(estimates) + reference.doubt)
+    return margins

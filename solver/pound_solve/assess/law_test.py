@@ -84,12 +84,12 @@ def law_of(name: str) -> Spec:
         There is no such law; the message lists the laws.
     """
     known = {family: catalog().family(family) for family in _CARDS}
-    *given, word = name.upper().split()
-    families = [f for f in known if not given or f.upper() == given[0]]
-    found = [known[f][word] for f in families if word in known[f]]
-    if len(found) == 1:
-        return found[0]
-    if found:
+    *prefix, word = name.upper().split()
+    families = [f for f in known if not prefix or f.upper() == prefix[0]]
+    specs = [known[f][word] for f in families if word in known[f]]
+    if len(specs) == 1:
+        return specs[0]
+    if specs:
         raise LawTestError(f"{word} is a rule and a contact law: write hysteresis {word} or contact {word}")
     there = "; ".join(f"{f}: {', '.join(known[f])}" for f in families)
     near = suggest(word, [name for f in families for name in known[f]])
@@ -114,15 +114,15 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
     if spec.impl is None:
         raise LawTestError(f"{spec.name} is a straight line through zero: there is no loop")
     kind, left_out = _CARDS[spec.family]
-    given = [" ".join(item.split()) for item in items] or spec.sample.split()
-    names = {item.split("=")[0].strip().upper() for item in given}
-    own = [x for x, wanted in left_out.items() if not wanted or spec.field(wanted)]
-    card = " ".join([*(x for x in own if x.split("=")[0] not in names), *given])
+    written = [" ".join(item.split()) for item in items] or spec.sample.split()
+    names = {item.split("=")[0].strip().upper() for item in written}
+    additions = [x for x, wanted in left_out.items() if not wanted or spec.field(wanted)]
+    card = " ".join([*(x for x in additions if x.split("=")[0] not in names), *written])
     nodes = "NODES\n 1 0 0 FIX=YR\n 2 1 0 FIX=YR\nELEMENTS\n 1 LOOP 1 2\n"
     deck = f"{nodes}PROPS\n LOOP {kind}={spec.name} {card}\nANALYSIS\n STATIC\n"
-    model, found, files = read_text(deck, catalog(), name="loop")
-    if model is None or has_errors(found):
-        raise LawTestError(render(found, files))
+    model, diagnostics, files = read_text(deck, catalog(), name="loop")
+    if model is None or has_errors(diagnostics):
+        raise LawTestError(render(diagnostics, files))
     try:
         (spring,) = assemble(model).laws
     except AssemblyError as err:
@@ -241,5 +241,5 @@ def table(points: Sequence[Point]) -> str:
 def picture(spec: Spec) -> str:
     """SVG of a law's loop with its `sample`, for the manual."""
     spring, items = specimen(spec)
-    found = trace(spring.law, protocol(spring), float(spring.role.viscous))
-    return svg(found.curve, f"{spec.name} {items}", *AXES[spec.family])
+    loop = trace(spring.law, protocol(spring), float(spring.role.viscous))
+    return svg(loop.curve, f"{spec.name} {items}", *AXES[spec.family])

@@ -59,10 +59,10 @@ def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
         The deck cannot be read.
     """
     deck = ground(request)
-    own = [m for m in deck.motions if m.direction != "R"]
-    if not own:
+    translations = [m for m in deck.motions if m.direction != "R"]
+    if not translations:
         raise MotionError(f"{request.deck} has no motion along X or Y under EQUAKE")
-    for number, motion in enumerate(own, 1):
+    for number, motion in enumerate(translations, 1):
         yield _file(number, motion, deck.model.gravity, dt)
 
 

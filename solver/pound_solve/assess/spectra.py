@@ -95,11 +95,11 @@ def of_deck(request: Request) -> Source:
 
 def _of_motions(request: Request, deck: Deck | None = None) -> Source:
     """Motions of a deck, see `prepare.ground`."""
-    found = ground(request, deck)
+    base = ground(request, deck)
     stem = Path(request.deck).stem
-    names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(found.motions, 1))
-    own = {name: m.acceleration for name, m in zip(names, found.motions)}
-    return Source(found.model.units, own, [d for d in found.found if d.code.startswith("R")], found.files)
+    names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(base.motions, 1))
+    series = {name: m.acceleration for name, m in zip(names, base.motions)}
+    return Source(base.model.units, series, [d for d in base.found if d.code.startswith("R")], base.files)
 
 
 def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> Source:
@@ -130,13 +130,13 @@ def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> So
             )
     t, a = results.course("node/a")
     a = a[:, :, "XYR".index(direction)]
-    own = {
+    accelerations = {
         f"{results.path.with_suffix('')} node {node} {WAYS[direction]}": Piecewise.from_samples(
             t, a[:, stored.index(node)]
         )
         for node in nodes
     }
-    return Source(results.units, own)
+    return Source(results.units, accelerations)
 
 
 def coarse(source: Source, shortest: float) -> str:

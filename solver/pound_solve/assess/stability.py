@@ -140,19 +140,19 @@ class JudgedRun:
 def motion(results: Results) -> dict[str, Array]:
     """The compared quantities of a run, by their names in `Found`."""
     tables = {x: results.table(x) for x in ("spring_envelope", "contact_summary") if x in results.tables}
-    out = {}
+    quantities = {}
     if "node/u" in results.histories:
-        out = {"t": results.time.copy(), "u": results.history("node/u")[:, :, 0].copy()}
-        out["v"] = results.history("node/v")[:, :, 0].copy()
-        out["f"] = np.zeros((len(out["t"]), 0))
+        quantities = {"t": results.time.copy(), "u": results.history("node/u")[:, :, 0].copy()}
+        quantities["v"] = results.history("node/v")[:, :, 0].copy()
+        quantities["f"] = np.zeros((len(quantities["t"]), 0))
     if "spring/force" in results.histories:
-        out["f"] = results.history("spring/force").copy()
+        quantities["f"] = results.history("spring/force").copy()
     if "spring_envelope" in tables:
         springs = tables["spring_envelope"]
-        out["swings"] = np.column_stack([springs["deformation_max"], springs["deformation_min"]])
+        quantities["swings"] = np.column_stack([springs["deformation_max"], springs["deformation_min"]])
     if "contact_summary" in tables:
-        out["blows"] = tables["contact_summary"]["peak_force"].copy()
-    return out
+        quantities["blows"] = tables["contact_summary"]["peak_force"].copy()
+    return quantities
 
 
 def solve(deck: str, files: Mapping[str, str]) -> Found:
@@ -225,8 +225,8 @@ class Runner:
         wrong = f"no end within {self.limit:g} s"
         try:
             if line.poll(self.limit):
-                found: Found = line.recv()
-                return found
+                answer: Found = line.recv()
+                return answer
         except (EOFError, ConnectionError):
             process.join()
             wrong = f"the process died: exit code {process.exitcode}"
@@ -299,26 +299,26 @@ SPRINGS: Final = "spring forces"
 
 def judge(run: Runner, case: Case, method: str) -> JudgedRun:
     """Solve a case by a method and judge the outcome."""
-    found = run(case, case.deck, written(method, case.step))
+    outcome = run(case, case.deck, written(method, case.step))
 
     def row(end: str, says: str, error: float = np.nan) -> JudgedRun:
-        return JudgedRun(case, method, end, error, says, found.seconds)
+        return JudgedRun(case, method, end, error, says, outcome.seconds)
 
-    if found.wrong:
-        return row(FAULT, found.wrong)
-    if found.stop:
-        return row(STOPPED, found.stop)
-    says, part = "; ".join(f"{check.name}: {check.told}" for check in found.looks), ""
+    if outcome.wrong:
+        return row(FAULT, outcome.wrong)
+    if outcome.stop:
+        return row(STOPPED, outcome.stop)
+    says, part = "; ".join(f"{check.name}: {check.told}" for check in outcome.looks), ""
     if case.right is not None:
-        error = shares(case.compared(found.t, found.u), case.right(found.t))
+        error = shares(case.compared(outcome.t, outcome.u), case.right(outcome.t))
         offs = {"displacements": (error, allowed(case, method))}
     else:
         right = reference(run, case)
         if right is None and case.like[0]:
             return row(FAULT, "the deck that gives the right answer does not run")
-        if right is None or len(right[0].t) != len(found.t):
+        if right is None or len(right[0].t) != len(outcome.t):
             return row(FLAGGED if says else RIGHT, says or ALONE)
-        offs, part = compared(run, case, method, found, right)
+        offs, part = compared(run, case, method, outcome, right)
     largest = float(offs["displacements"][0].max(initial=0.0))
     if wrong := beyond(offs):
         return row(FLAGGED, says, largest) if says else row(FAULT, wrong, largest)
@@ -334,12 +334,12 @@ def compared(
 
     def errors(other: Found, factor: float) -> Offs:
         u = case.compared(best.t, case.like[1] * best.u)
-        out = {"displacements": (shares(case.compared(other.t, factor * other.u), u), within)}
+        by_quantity = {"displacements": (shares(case.compared(other.t, factor * other.u), u), within)}
         if case.compared is every:
-            out |= forces(other, best, within)
+            by_quantity |= forces(other, best, within)
         if method == "AUTO" and whole(case):
-            out |= promised(other, best, AUTO_WITHIN + doubt)
-        return out
+            by_quantity |= promised(other, best, AUTO_WITHIN + doubt)
+        return by_quantity
 
     offs = errors(found, 1.0)
     if not beyond(offs):
@@ -367,12 +367,12 @@ def allowed(case: Case, method: str) -> float:
 
 def forces(found: Found, right: Found, within: float) -> Offs:
     """Errors of forces, where both runs have the same springs and contacts."""
-    out = {}
+    offs = {}
     if found.f.shape == right.f.shape:
-        out[SPRINGS] = shares(found.f, right.f), FASTER * within
+        offs[SPRINGS] = shares(found.f, right.f), FASTER * within
     if found.blows.shape == right.blows.shape:
-        out[f"{PEAKS}contact forces"] = blows(found, right), FASTER * within
-    return out
+        offs[f"{PEAKS}contact forces"] = blows(found, right), FASTER * within
+    return offs
 
 
 def blows(found: Found, right: Found) -> Array:
@@ -477,21 +477,21 @@ def table(rows: Sequence[JudgedRun]) -> str:
     by: dict[str, dict[str, list[JudgedRun]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
         by[row.case.family][row.case.scene].append(row)
-    out = []
+    lines = []
     for family, scenes in by.items():
-        out += [*_counts(family, scenes), ""]
-    return "\n".join([*out, _total(rows)])
+        lines += [*_counts(family, scenes), ""]
+    return "\n".join([*lines, _total(rows)])
 
 
 def _counts(family: str, scenes: Mapping[str, Sequence[JudgedRun]]) -> list[str]:
     """Table of one family: a line for each scene, a column for each method."""
     names = methods()
-    out = [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
+    lines = [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
     for scene, cells in scenes.items():
         ends = [Counter(r.end for r in cells if r.method == m) for m in names]
         texts = [" / ".join(str(e[x]) for x in ENDS) for e in ends]
-        out.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
-    return out
+        lines.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
+    return lines
 
 
 def _total(rows: Sequence[JudgedRun]) -> str:
@@ -511,16 +511,16 @@ def stops(rows: Sequence[JudgedRun]) -> str:
         if row.end == STOPPED:
             text = REFUSED_AT.sub("", row.says.split("\n")[0])
             kinds[re.sub(r"[-+\d.e]*\d[-+\d.e]*", "0", text)].append((text, row))
-    out = ["| stops | by | the first of them | in the scene |", "|---|---|---|---|"]
+    lines = ["| stops | by | the first of them | in the scene |", "|---|---|---|---|"]
     for kind in sorted(kinds.values(), key=len, reverse=True):
         (text, first), by = kind[0], ", ".join(dict.fromkeys(row.method for _, row in kind))
-        out.append(f"| {len(kind)} | {by} | {text} | {_scene(first)} |")
-    out += [
+        lines.append(f"| {len(kind)} | {by} | {text} | {_scene(first)} |")
+    lines += [
         f"- {_scene(r)} by {r.method}: {r.says}"
         for r in rows
         if r.end == FAULT or (r.end == RIGHT and r.says.startswith(PARTLY))
     ]
-    return "\n".join(out)
+    return "\n".join(lines)
 
 
 def _scene(row: JudgedRun) -> str:

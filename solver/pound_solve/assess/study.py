@@ -101,11 +101,11 @@ class Study:
     def sentence(self) -> str:
         """The advice in one sentence."""
         lacking = any(a.trial is None for a in self.advice)
-        out = "Least time for errors up to " + "; ".join(map(str, self.advice))
+        text = "Least time for errors up to " + "; ".join(map(str, self.advice))
         if self.reference.unseen:
             closed = "no contact closed, so no step is named"
-            return f"{out}; {closed}: give a stronger motion to learn which step collisions need."
-        return out + (" (give smaller --steps, or a larger --longest)." if lacking else ".")
+            return f"{text}; {closed}: give a stronger motion to learn which step collisions need."
+        return text + (" (give smaller --steps, or a larger --longest)." if lacking else ".")
 
     @property
     def noise(self) -> float:
@@ -127,12 +127,12 @@ class Study:
         """Observed order of each trial against the one before; NaN where there is none: a tolerance does
         not shorten all steps alike.
         """
-        out, before = [], None
+        orders, before = [], None
         for t in self.trials:
             along = before is not None and before.method == t.method and t.setting.startswith("DT=")
-            out.append(order(before, t) if before is not None and along else math.nan)
+            orders.append(order(before, t) if before is not None and along else math.nan)
             before = None if t.stopped else t
-        return out
+        return orders
 
 
 def run(
@@ -198,21 +198,21 @@ class _Bench:
 
     def all(self) -> tuple[list[Trial], Reference]:
         """Every trial with its errors, and the reference."""
-        plan, out = self.plan, dict[str, list[Trial]]()
+        plan, trials = self.plan, dict[str, list[Trial]]()
         items = {m: {f.name for f in self.methods[m].fields} for m in plan.methods}
         stepping = [m for m in plan.methods if "DT" in items[m]]
-        reference = self._exact(out) or self._finest_tolerance(out) or self._stepped(stepping, out)
+        reference = self._exact(trials) or self._finest_tolerance(trials) or self._stepped(stepping, trials)
         for method in plan.methods:
-            if method not in out:
+            if method not in trials:
                 if method in stepping:
-                    out[method] = self._ladder(method, reference)
+                    trials[method] = self._ladder(method, reference)
                 else:
-                    out[method] = (
+                    trials[method] = (
                         self._tolerances(method) if "TOL" in items[method] else [self.trial(method)]
                     )
         known = reference
         return [
-            replace(t, errors=errors(t.peaks, known.peaks)) for m in plan.methods for t in out[m]
+            replace(t, errors=errors(t.peaks, known.peaks)) for m in plan.methods for t in trials[m]
         ], known
 
     def _exact(self, out: dict[str, list[Trial]]) -> Reference | None:
@@ -269,36 +269,36 @@ class _Bench:
 
     def _halved(self, method: str, reference: Reference | None) -> list[Trial]:
         """Trials with halved steps until the errors are small, or a run would take too long."""
-        out: list[Trial] = []
+        trials: list[Trial] = []
         for k in range(HALVINGS):
             trial = self.trial(method, DT=self.first / 2**k)
-            if out and trial.steps and trial.steps == out[-1].steps:
+            if trials and trial.steps and trial.steps == trials[-1].steps:
                 continue  # the record and the output times need more steps than DT
-            if out and out[-1].stopped and trial.stopped:
-                out.pop()  # of those that stop the finest is enough
-            out.append(trial)
-            done = [t for t in out if not t.stopped]
+            if trials and trials[-1].stopped and trial.stopped:
+                trials.pop()  # of those that stop the finest is enough
+            trials.append(trial)
+            done = [t for t in trials if not t.stopped]
             if _converged(done, reference):
                 break
             if trial.stopped == TOO_LONG and done:
-                out.pop()
+                trials.pop()
             if trial.stopped == TOO_LONG or 2.0 * trial.time > self.plan.longest:
                 break
             if trial.stopped.startswith("A505"):  # the method does not take this model, with any step
                 break
-        return out
+        return trials
 
     def _tolerances(self, method: str) -> list[Trial]:
         """Trials of a method with a tolerance."""
-        out: list[Trial] = []
+        trials: list[Trial] = []
         for tol in self.plan.tols:
-            out.append(self.trial(method, TOL=tol))
-            taken = out[-1].method.removeprefix(f"{method}: ")
-            if taken != out[-1].method:  # a method without steps, as for smaller tolerances
-                return [] if len(out) == 1 and taken in self.plan.methods else out
-            if not out[-1].stopped and 4.0 * out[-1].time > self.plan.longest:
+            trials.append(self.trial(method, TOL=tol))
+            taken = trials[-1].method.removeprefix(f"{method}: ")
+            if taken != trials[-1].method:  # a method without steps, as for smaller tolerances
+                return [] if len(trials) == 1 and taken in self.plan.methods else trials
+            if not trials[-1].stopped and 4.0 * trials[-1].time > self.plan.longest:
                 break
-        return out
+        return trials
 
     @property
     def first(self) -> float:
@@ -307,8 +307,8 @@ class _Bench:
         steps = [m.info.get("dt") for m in self.ready.motions] + [
             f.info.get("dt") for f in self.ready.forces
         ]
-        found = [dt for dt in (*steps, model.output["EVERY"]) if dt]
-        return float(min(found, default=model.analyses[0]["T"] / ROWS))
+        intervals = [dt for dt in (*steps, model.output["EVERY"]) if dt]
+        return float(min(intervals, default=model.analyses[0]["T"] / ROWS))
 
     def trial(
         self, method: str, longest: float | None = None, *, timed: bool = True, **given: float
@@ -320,20 +320,20 @@ class _Bench:
         ready = replace(self.ready, model=replace(self.ready.model, analyses=cards))
         setting = " ".join(f"{k}={v:.12g}" for k, v in given.items())
         cold = timed and method not in self.warm
-        out, seconds = Trial(method, setting), list[float]()
+        trial, seconds = Trial(method, setting), list[float]()
         for n in range(self.plan.repeat + cold if timed else 1):
             self.report(f"{method} {setting}, run {n + 1}")
             # only what is compiled may take longer the first time
             limit = math.inf if cold and n == 0 and method != "EXACT" else longest or self.plan.longest
             try:
-                took, out = self._once(ready, method, setting, limit)
+                took, trial = self._once(ready, method, setting, limit)
             except TooLong:
-                return replace(out, stopped=TOO_LONG)
-            if out.stopped:
-                return out
+                return replace(trial, stopped=TOO_LONG)
+            if trial.stopped:
+                return trial
             seconds.append(took)
         self.warm.add(method)
-        return replace(out, seconds=tuple(seconds[cold:]))
+        return replace(trial, seconds=tuple(seconds[cold:]))
 
     def _once(
         self, ready: driver.Prepared, method: str, setting: str, longest: float
@@ -354,7 +354,7 @@ class _Bench:
             energy = next(check for check in results.checks if check.subject is Subject.ENERGY)
             if method == "EXACT" and energy.looks:  # it must not become the reference
                 return 0.0, Trial(method, setting, stopped=str(energy))
-            out = Trial(
+            trial = Trial(
                 f"AUTO: {name}" if method == "AUTO" and "steps" not in figures else method,
                 setting,
                 steps=int(figures.get("steps", 0)),
@@ -363,7 +363,7 @@ class _Bench:
                 residual=energy.value,
                 peaks=peaks(results),
             )
-            return float(took["solve seconds, CPU"]), out
+            return float(took["solve seconds, CPU"]), trial
 
 
 def _converged(done: Sequence[Trial], reference: Reference | None) -> bool:
@@ -388,14 +388,14 @@ def peaks(results: Results) -> Peaks:
     members, and displacements of nodes in place of drifts where there are none, are taken at the output
     times, which are the same for all methods.
     """
-    out: dict[tuple[str, str], list[float]] = {}
+    extremes: dict[tuple[str, str], list[float]] = {}
 
     def take(kind: str, unit: str, *values: float) -> None:
-        out.setdefault((kind, unit), []).extend(values)
+        extremes.setdefault((kind, unit), []).extend(values)
 
     for row in results.table("drift_envelope"):
         take("drift", "", row["max"], row["min"])
-    if not out and "node/u" in results.histories:
+    if not extremes and "node/u" in results.histories:
         unknowns = results.history("node/u")[:, :, :2].reshape(len(results.time), -1)
         take("drift", "", *unknowns.max(axis=0), *unknowns.min(axis=0))
     if "member/force" in results.histories:
@@ -408,7 +408,7 @@ def peaks(results: Results) -> Peaks:
         take("member", row["unit"], row["force_max"], row["force_min"])
     for row in results.table("contact_summary"):
         take("contact", "", row["peak_force"])
-    return {kind: np.array(values, float) for kind, values in out.items()}
+    return {kind: np.array(values, float) for kind, values in extremes.items()}
 
 
 def write(study: Study, ready: driver.Prepared, path: Path) -> Results:

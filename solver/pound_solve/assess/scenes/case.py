@@ -77,29 +77,29 @@ class Case:
 
 def powers(unit: str, n: float) -> tuple[float, float]:
     """Powers of force and length in a unit of both, as F/L^1.5; N stands for `n`."""
-    found = re.fullmatch(r"(F)?(?:(/?)L(?:\^([0-9.]+|N))?)?", unit)
-    if not found or not unit:
+    match = re.fullmatch(r"(F)?(?:(/?)L(?:\^([0-9.]+|N))?)?", unit)
+    if not match or not unit:
         return 0.0, 0.0
-    size = (n if found[3] == "N" else float(found[3] or 1.0)) if "L" in unit else 0.0
-    return float(unit[0] == "F"), -size if found[2] else size
+    size = (n if match[3] == "N" else float(match[3] or 1.0)) if "L" in unit else 0.0
+    return float(unit[0] == "F"), -size if match[2] else size
 
 
 def items(spec: Spec, length: float = 1.0, force: float = 1.0, **given: float) -> str:
     """A law's sample items, and a stiffness K of 1 if it has one, as if the units of length and force
     were `length` and `force`; items given that it has replace its own.
     """
-    own = dict(word.split("=", 1) for word in spec.sample.split())
+    values = dict(word.split("=", 1) for word in spec.sample.split())
     if spec.field("K") is not None:
-        own["K"] = "1"
+        values["K"] = "1"
     exponent = spec.field("N")
-    n = float(own.get("N", exponent.default)) if exponent is not None else 1.0
-    for name, value in own.items():
+    n = float(values.get("N", exponent.default)) if exponent is not None else 1.0
+    for name, value in values.items():
         item = spec.field(name)
         f, x = powers(item.unit if item is not None else "", n)
         if f or x:
-            own[name] = ",".join(repr(float(v) * force**f * length**x) for v in value.split(","))
-    own |= {name: repr(value) for name, value in given.items() if spec.field(name) is not None}
-    return " ".join([spec.name, *(f"{name}={value}" for name, value in own.items())])
+            values[name] = ",".join(repr(float(v) * force**f * length**x) for v in value.split(","))
+    values |= {name: repr(value) for name, value in given.items() if spec.field(name) is not None}
+    return " ".join([spec.name, *(f"{name}={value}" for name, value in values.items())])
 
 
 def damped(share: float) -> str:

@@ -160,17 +160,17 @@ def last_speed(t: Array, u: Array) -> Array:
 
 def contact_scenes(spec: Spec) -> Iterator[Case]:
     """Scenes with one contact law."""
-    own = _Contacts(spec)
-    yield from own.stiffness()
-    yield from own.masses_and_gaps()
-    yield from own.restitution()
-    yield from own.damping_and_symmetry()
-    yield from own.grazing()
-    yield from own.friction()
-    yield from own.bouncing()
-    yield from own.crowds()
-    yield from own.steps()
-    yield from own.units_and_records()
+    scenes = _Contacts(spec)
+    yield from scenes.stiffness()
+    yield from scenes.masses_and_gaps()
+    yield from scenes.restitution()
+    yield from scenes.damping_and_symmetry()
+    yield from scenes.grazing()
+    yield from scenes.friction()
+    yield from scenes.bouncing()
+    yield from scenes.crowds()
+    yield from scenes.steps()
+    yield from scenes.units_and_records()
 
 
 class _Contacts:
@@ -287,8 +287,8 @@ class _Contacts:
     def units_and_records(self) -> Iterator[Case]:
         """Other units of length; records that are a spike, a step, or zero."""
         for length, scale in (("mm", 1e3), ("km", 1e-3)):
-            own = contact(self.spec, 1e3 * STOREY / scale, mass=scale)
-            deck = pair(own, length=length, k1=STOREY / scale, k2=STOREY / scale, gap=0.05 * scale,
+            law = contact(self.spec, 1e3 * STOREY / scale, mass=scale)
+            deck = pair(law, length=length, k1=STOREY / scale, k2=STOREY / scale, gap=0.05 * scale,
                         mass=1.0, speed=scale)  # fmt: skip
             deck = deck.replace("GRAVITY 1", f"GRAVITY {scale!r}")
             yield self.case("units", length, deck, like=(pair(self.plain), scale))

@@ -50,10 +50,10 @@ def top(t: Array, u: Array) -> Array:
 
 def hysteresis_scenes(spec: Spec) -> Iterator[Case]:
     """Scenes with one hysteresis rule."""
-    own = _Springs(spec)
-    yield from own.strength_and_stiffness()
-    yield from own.masses_and_motions()
-    yield from own.steps_and_units()
+    scenes = _Springs(spec)
+    yield from scenes.strength_and_stiffness()
+    yield from scenes.masses_and_motions()
+    yield from scenes.steps_and_units()
 
 
 class _Springs:
