@@ -134,9 +134,9 @@ def demand(status: str, reached: float, values: Mapping[str, float], asked: Aske
         return 0.0
     if asked.label and asked.label not in values:
         raise CurveError(f"{asked.quantity} has no {asked.label}: there are {', '.join(values) or 'none'}")
-    own = [values[asked.label]] if asked.label else values.values()
+    chosen = [values[asked.label]] if asked.label else values.values()
     unknown = math.inf if asked.quantity == NEEDED and values else math.nan
-    return max((abs(x) for x in own if not math.isnan(x)), default=unknown)
+    return max((abs(x) for x in chosen if not math.isnan(x)), default=unknown)
 
 
 def demands(sweep: Sweep, asked: Asked) -> Array:
@@ -174,12 +174,12 @@ def widest_known(sweep: Sweep) -> dict[str, float]:
 
     A collision changes the motion: a run in which something met needed more than its smallest gap.
     """
-    out = dict.fromkeys(cases(sweep), math.inf)
-    own = (sweep[name] for name in ("status", NEEDED, "given_gap"))
-    for case, status, needed, given in zip(cases(sweep), *own):
-        if status == DONE and (np.isnan(needed) & ~np.isnan(given)).any():
-            out[case] = min(out[case], float(np.nanmin(given)))
-    return out
+    widest = dict.fromkeys(cases(sweep), math.inf)
+    columns = (sweep[name] for name in ("status", NEEDED, "given_gap"))
+    for case, status, needed, given_gap in zip(cases(sweep), *columns):
+        if status == DONE and (np.isnan(needed) & ~np.isnan(given_gap)).any():
+            widest[case] = min(widest[case], float(np.nanmin(given_gap)))
+    return widest
 
 
 def cases(sweep: Sweep) -> list[str]:
@@ -205,17 +205,17 @@ def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
     CurveError
         See `measure` and `demands`.
     """
-    levels, found = np.asarray(sweep[measure(sweep)], np.float64), demands(sweep, asked)
+    levels, values = np.asarray(sweep[measure(sweep)], np.float64), demands(sweep, asked)
     groups: dict[tuple[str, str], list[int]] = {}
     for i, key in enumerate(zip(cases(sweep), sweep["record"].tolist())):
         groups.setdefault(key, []).append(i)
     free = asked.quantity == NEEDED  # its motion is without collisions, and elastic at low levels
-    return [Curve.of(*key, levels[own], found[own], free) for key, own in groups.items()]
+    return [Curve.of(*key, levels[runs], values[runs], free) for key, runs in groups.items()]
 
 
 def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:
     """Curves by their case."""
-    out: dict[str, list[Curve]] = {}
+    groups: dict[str, list[Curve]] = {}
     for curve in curves:
-        out.setdefault(curve.case, []).append(curve)
-    return out
+        groups.setdefault(curve.case, []).append(curve)
+    return groups

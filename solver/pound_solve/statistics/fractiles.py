@@ -32,7 +32,7 @@ def fractiles(analysis: Analysis, at: Sequence[float] | Array) -> Array:
 
     Infinite where so many have collapsed; NaN where a record was not run so far.
     """
-    found = np.array([[demand_at(c.points, analysis.rules, x) for c in analysis.curves] for x in at])
+    demands = np.array([[demand_at(c.points, analysis.rules, x) for c in analysis.curves] for x in at])
     with np.errstate(invalid="ignore"):  # between two that have collapsed
-        out = fractiles_of(found)
-    return np.asarray(out.T)
+        quantiles = fractiles_of(demands)
+    return np.asarray(quantiles.T)

@@ -308,8 +308,8 @@ def _highest(of: Callable[[float], float], low: float, high: float) -> float:
     places = np.linspace(low, high, 33)
     best = int(np.argmax([of(x) for x in places]))
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
-    found = minimize_scalar(lambda x: -of(x), bounds=ends, method="bounded", options={"xatol": SURE})
-    return float(found.x)
+    optimum = minimize_scalar(lambda x: -of(x), bounds=ends, method="bounded", options={"xatol": SURE})
+    return float(optimum.x)
 
 
 def _ends(

@@ -60,10 +60,10 @@ def by_capacities(own: Sequence[Curve], limit: float, level: float) -> Fragility
     """Of the levels at which the records reach the limit."""
     demands = [p.demand for c in own for p in c.points if math.isfinite(p.demand)]
     in_steps = all(d == round(d) for d in demands)  # as counts and indicators are
-    found = [capacity(c.points, STOPS, limit, in_steps, c.from_rest) for c in own if c.points]
-    known = [low for low, high in found if low == high]
-    never = [low for low, high in found if 0.0 < low < high == math.inf]
-    return from_capacities(known, never, [pair for pair in found if pair[0] < pair[1] < math.inf], level)
+    pairs = [capacity(c.points, STOPS, limit, in_steps, c.from_rest) for c in own if c.points]
+    known = [low for low, high in pairs if low == high]
+    never = [low for low, high in pairs if 0.0 < low < high == math.inf]
+    return from_capacities(known, never, [pair for pair in pairs if pair[0] < pair[1] < math.inf], level)
 
 
 def by_stripes(own: Sequence[Curve], limit: float, level: float) -> Fragility:
@@ -130,7 +130,7 @@ def fit(
         limits = (math.inf,)
     elif not limits:
         raise CurveError(f"{asked.quantity} needs limits: --limit")
-    found = by_case(curves(sweep, asked))
+    cases = by_case(curves(sweep, asked))
     known = widest_known(sweep) if asked.quantity == NEEDED else {}
     met = min(known.values(), default=math.inf) < math.inf
     if met and asked.label and len(sweep.labels[sweep.variables[NEEDED].axis]) > 1:
@@ -138,8 +138,8 @@ def fit(
             "runs in which something met do not tell what a single contact needs: leave --label out"
         )
     return [
-        _fitted(case, own, limit, method or suited(own), level, known.get(case, math.inf))
-        for case, own in found.items()
+        _fitted(case, records, limit, method or suited(records), level, known.get(case, math.inf))
+        for case, records in cases.items()
         for limit in limits
     ]
 
@@ -148,17 +148,17 @@ def _fitted(
     case: str, own: Sequence[Curve], limit: float, method: str, level: float, known: float
 ) -> Fitted:
     """One fragility, of limits up to the largest of which the runs tell."""
-    remarks, found = [], None
+    remarks, fragility = [], None
     try:
         if known < limit:
             raise FragilityError(f"met at a gap of {known:.6g}: wider gaps are not known")
-        found = METHODS[method](own, limit, level)
+        fragility = METHODS[method](own, limit, level)
     except FragilityError as err:
         remarks.append(str(err))
-    if found is not None and found.count < FEW:
+    if fragility is not None and fragility.count < FEW:
         remarks.append(f"fewer than {FEW} data")
     below = sum(c.from_rest and limit <= c.points[0].demand < math.inf for c in own if c.points)
-    if found is not None and method == "capacities" and below:
+    if fragility is not None and method == "capacities" and below:
         remarks.append(f"below the lowest level, in proportion to it: {below}")
     endless = sum(math.isinf(p.demand) for c in own for p in c.points)
     if method == "cloud" and endless:
@@ -167,4 +167,4 @@ def _fitted(
     if missing := sum(c.left_out for c in own):
         remarks.append(f"runs that failed or are missing: {missing}")
     shown = limit if math.isfinite(limit) else math.nan
-    return Fitted(case, shown, method, found, "; ".join(remarks), counts(own, limit))
+    return Fitted(case, shown, method, fragility, "; ".join(remarks), counts(own, limit))

@@ -76,24 +76,24 @@ class Rules:
 
 def ends(points: Sequence[Point], rules: Rules) -> list[str]:
     """How every point counts, in the order of their levels (`points` must be so)."""
-    out: list[str] = []
+    ends: list[str] = []
     first = before = None
     for point in points:
         if not math.isfinite(point.demand):
-            out.append(STOPPED)
+            ends.append(STOPPED)
             continue
         if point.demand >= rules.limit:
-            out.append(BEYOND)
+            ends.append(BEYOND)
             continue
         flat = False
         if first is not None and before is not None and point.demand > before.demand:
             slope = (point.level - before.level) / (point.demand - before.demand)
             flat = slope < rules.slope * first.level / first.demand
-        out.append(FLAT if flat else STANDS)
+        ends.append(FLAT if flat else STANDS)
         before = point
         if first is None and point.demand > 0.0:
             first = point
-    return out
+    return ends
 
 
 def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:

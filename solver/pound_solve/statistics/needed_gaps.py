@@ -106,8 +106,8 @@ def groups(sweep: Sweep, options: Options) -> list[Group]:
         places.setdefault(key, []).append(i)
     return [
         group
-        for (case, level), own in places.items()
-        for group in _contacts(sweep, case, level, np.array(own)[done[own]], len(own), options)
+        for (case, level), runs in places.items()
+        for group in _contacts(sweep, case, level, np.array(runs)[done[runs]], len(runs), options)
     ]
 
 
@@ -115,14 +115,14 @@ def _contacts(
     sweep: Sweep, case: str, level: float, own: Array, asked: int, options: Options
 ) -> Iterator[Group]:
     """The contacts of one case and level, which has runs of some numbers."""
-    needed, given, u1, u2, rho = (sweep[name][own] for name in NEEDS)
-    there = ~np.isnan(given).all(axis=0)  # contacts of this deck
+    needed, given_gap, u1, u2, rho = (sweep[name][own] for name in NEEDS)
+    there = ~np.isnan(given_gap).all(axis=0)  # contacts of this deck
     names = [n for n, is_there in zip(sweep.labels["contact"], there) if is_there]
     if not names or not len(own):
         return
-    needed, given, u1, u2, rho = (x[:, there] for x in (needed, given, u1, u2, rho))
+    needed, given_gap, u1, u2, rho = (x[:, there] for x in (needed, given_gap, u1, u2, rho))
     free = ~np.isnan(needed).any(axis=1)
-    met = given[~free].min(axis=1)
+    met = given_gap[~free].min(axis=1)
     gaps = np.full((len(names), len(RULES)), np.nan)
     for k in range(len(names) if free.any() else 0):
         correlation = options.correlation if math.isfinite(options.correlation) else rho[free, k].mean()
@@ -130,8 +130,8 @@ def _contacts(
         gaps[k] = [rule.of(peaks) for rule in RULES]
 
     def group(contact: str, of: Array, rules: Array) -> Group:
-        found = _fit(of, met, options.level)
-        return Group(case, level, contact, of, met, asked - len(own), tuple(rules.tolist()), found)
+        fitted = _fit(of, met, options.level)
+        return Group(case, level, contact, of, met, asked - len(own), tuple(rules.tolist()), fitted)
 
     if len(names) > 1:
         yield group(ANY, needed[free].max(axis=1), gaps.max(axis=0))
