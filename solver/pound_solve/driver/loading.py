@@ -40,7 +40,7 @@ def context(model: Model, request: Request) -> LoadingContext:
 
 def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Motion]:
     """Ground motions of all EQUAKE cards, a wave as one for each place."""
-    out: list[Motion] = []
+    motions: list[Motion] = []
     place = {node.id: node.x for node in model.nodes.values()}
     apart = [card for card in model.equake if card["SUPPORTS"] is not None]
     whole = [card for card in model.equake if card["SUPPORTS"] is None]
@@ -61,8 +61,8 @@ def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic])
                 message = f"node {node} is not fixed along {motion.direction}: a support that moves must be"
                 found.append(Diagnostic("R405", message, card.place("SUPPORTS")))
         found += _cut_short(model, card, motion)
-        out += fronts(motion, place)
-    return out
+        motions += fronts(motion, place)
+    return motions
 
 
 def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]:
@@ -82,13 +82,13 @@ def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]
 
 def forces(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Force]:
     """Forces in time of all FORCES cards."""
-    out: list[Force] = []
+    forces: list[Force] = []
     for card in model.forces:
         force: Force | None = _built(card, surroundings, found)
         if force is not None:
             _tell(card, force.info, found)
-            out.append(force)
-    return out
+            forces.append(force)
+    return forces
 
 
 def _tell(card: Card, info: Mapping[str, Any], found: list[Diagnostic]) -> None:
@@ -126,8 +126,8 @@ def saved_state(
     """
     for card in model.analyses:
         if card.spec.name == "HISTORY" and card["RESTART"]:
-            own = identity(model, motions, forces)
-            return _taken_up(card, Path(request.deck).parent / card["RESTART"], own, found)
+            signature = identity(model, motions, forces)
+            return _taken_up(card, Path(request.deck).parent / card["RESTART"], signature, found)
         if card.spec.name == "HISTORY" and card["NEW"] != "NOTHING":
             found.append(Diagnostic("R406", "NEW stands beside RESTART only", card.place("NEW")))
     return {}

@@ -28,19 +28,19 @@ def overwritten(model: Model, request: Request, context: LoadingContext) -> list
     Results may replace those that a RESTART goes on from: these are read before and stand until the end.
     """
     results, report = request.path(".h5"), request.path(".rpt")
-    own = {path.resolve() for path in (results, report, partial(results), partial(report))}
+    outputs = {path.resolve() for path in (results, report, partial(results), partial(report))}
     return [
         Diagnostic(
             "R407", f"{path} is both read and written by this run", span, "rename one of them, or use -o"
         )
         for path, span in _read(model, request, context)
-        if path.resolve() in own
+        if path.resolve() in outputs
     ]
 
 
 def taken(request: Request) -> list[Diagnostic]:
     """What has the names of results and report and is no file of ours."""
-    found = {request.path(suffix): mark for suffix, mark in MARKS.items()}
+    marks = {request.path(suffix): mark for suffix, mark in MARKS.items()}
     return [
         Diagnostic(
             "R411",
@@ -48,7 +48,7 @@ def taken(request: Request) -> list[Diagnostic]:
             None,
             "rename it, or use -o",
         )
-        for path, mark in found.items()
+        for path, mark in marks.items()
         if _of_others(path, mark)
     ]
 

@@ -104,11 +104,11 @@ def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnosti
     is None for a deck without HISTORY.
     """
     for item, value in asked.items():
-        own = method.field(item) if method else None
+        field = method.field(item) if method else None
         others = (m.field(item) for m in catalog().family("method").values())
-        if wrong := out_of_limits(value, own or next(filter(None, others))):
+        if wrong := out_of_limits(value, field or next(filter(None, others))):
             yield Diagnostic("P217", f"{item} {wrong}", option(item))
-        elif own is None:
+        elif field is None:
             message = f"{method.name if method else 'a deck without HISTORY'} has no item {item}"
             yield Diagnostic("P211", message, option(item), severity="warning")
 
@@ -117,8 +117,8 @@ def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
     """HISTORY card with another method: what is given, else what the card's line says where the method has
     such an item, else the method's defaults, which for the same item are other ones for each method.
     """
-    own = {f.name: card.values[f.name] if f.name in card.spans else f.default for f in method.fields}
-    own |= {item: value for item, value in given.items() if item in own}
+    items = {f.name: card.values[f.name] if f.name in card.spans else f.default for f in method.fields}
+    items |= {item: value for item, value in given.items() if item in items}
     spans = dict(card.spans) | {item: option(item) for item in ("METHOD", *given)}
-    values = {**card.values, **own, "METHOD": method.name}
+    values = {**card.values, **items, "METHOD": method.name}
     return replace(card, values=values, laws={"METHOD": (method,)}, spans=spans)

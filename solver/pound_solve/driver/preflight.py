@@ -50,7 +50,7 @@ def pressed(structure: Structure) -> list[Diagnostic]:
 def too_many(structure: Structure) -> list[Diagnostic]:
     """Histories of more steps than anyone waits for, and of more rows than a results file holds."""
     model = structure.model
-    out = []
+    diagnostics = []
     for card in model.analyses:
         if card.spec.name == "HISTORY":
             end = card["T"]
@@ -60,8 +60,8 @@ def too_many(structure: Structure) -> list[Diagnostic]:
                 if length is not None and end / length > most:
                     message = f"{item}={length:g} asks for {end / length:.3g} {what}, more than {most:g}"
                     hint = f"over {end:g} {model.units.time} it is at least {rounded_up(end / most):g}"
-                    out.append(Diagnostic("P345", message, place, hint))
-    return out
+                    diagnostics.append(Diagnostic("P345", message, place, hint))
+    return diagnostics
 
 
 def unsteady(structure: Structure) -> list[Diagnostic]:
@@ -74,13 +74,13 @@ def misbuilt(structure: Structure) -> list[Diagnostic]:
     does not fit their periods.
     """
     parts, first = standing(structure), dict[str, Diagnostic]()
-    found = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
-    for name, diagnostic in found:
+    wrong = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
+    for name, diagnostic in wrong:
         first.setdefault(name, diagnostic)
-    out = [*(loose(structure, parts) or adrift(structure)), *first.values()]
+    diagnostics = [*(loose(structure, parts) or adrift(structure)), *first.values()]
     for check in (hasty, misdamped, frequencies_in_hertz, contact_stiffnesses):
-        out += check(structure, parts)
-    return out
+        diagnostics += check(structure, parts)
+    return diagnostics
 
 
 def rounded_up(x: float) -> float:
@@ -126,9 +126,9 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
 
 def causes(structure: Structure) -> list[Diagnostic]:
     """What is wrong with a structure that could not be assembled with its damping and contacts."""
-    return [found for check in (unsteady, *FRAME_CHECKS) for found in check(structure)]
+    return [diagnostic for check in (unsteady, *FRAME_CHECKS) for diagnostic in check(structure)]
 
 
 def preflight(structure: Structure) -> list[Diagnostic]:
     """What the assembly and all checks find: mistakes and warnings."""
-    return [*structure.remarks, *(found for check in CHECKS for found in check(structure))]
+    return [*structure.remarks, *(diagnostic for check in CHECKS for diagnostic in check(structure))]

@@ -83,12 +83,12 @@ def ground(request: Request, deck: Deck | None = None) -> Ground:
         The deck cannot be read.
     """
     deck = deck or read(request)
-    model, found = deck.model, list(deck.found)
-    motions = [] if model is None else loading.motions(model, loading.context(model, request), found)
-    found = deck.moved(found, request.deck)
-    if model is None or has_errors(found):
-        raise DeckError(found, deck.files)
-    return Ground(model, tuple(motions), tuple(doubted(found, model.meant)), deck.files)
+    model, remarks = deck.model, list(deck.found)
+    motions = [] if model is None else loading.motions(model, loading.context(model, request), remarks)
+    remarks = deck.moved(remarks, request.deck)
+    if model is None or has_errors(remarks):
+        raise DeckError(remarks, deck.files)
+    return Ground(model, tuple(motions), tuple(doubted(remarks, model.meant)), deck.files)
 
 
 def prepare(request: Request) -> Prepared:
@@ -115,23 +115,23 @@ def assembled(
     """Read the records of a deck that was read, and assemble the structure; see `prepare`."""
     if model is None or has_errors(diagnostics):
         raise DeckError(diagnostics, files, LATER)
-    found = list(diagnostics)
-    model = overridden(model, request, found)
+    remarks = list(diagnostics)
+    model = overridden(model, request, remarks)
     context = loading.context(model, request)
-    motions = loading.motions(model, context, found)
-    forces = loading.forces(model, context, found)
+    motions = loading.motions(model, context, remarks)
+    forces = loading.forces(model, context, remarks)
     structure = None
     try:
         structure = _assembled(model, motions)
-        found += preflight(structure)
+        remarks += preflight(structure)
     except AssemblyError as err:
-        found += [*err.diagnostics, *_causes(model)]
-    found += overwritten(model, request, context)
-    saved = loading.saved_state(model, request, motions, forces, found)
-    found = doubted(found, model.meant)
-    if has_errors(found) or structure is None:
-        raise DeckError(found, files)
-    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
+        remarks += [*err.diagnostics, *_causes(model)]
+    remarks += overwritten(model, request, context)
+    saved = loading.saved_state(model, request, motions, forces, remarks)
+    remarks = doubted(remarks, model.meant)
+    if has_errors(remarks) or structure is None:
+        raise DeckError(remarks, files)
+    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(remarks), files, saved)
 
 
 def shaken(ready: Prepared, request: Request) -> Prepared:
@@ -150,12 +150,14 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
         The record has mistakes.
     """
     assert request.motion is not None
-    found: list[Diagnostic] = []
-    model = with_motion(ready.model, request.motion, found)
-    motions = loading.motions(model, loading.context(model, request), found)
-    if has_errors(found):
-        raise DeckError(found, ready.files)
-    return replace(ready, model=model, motions=tuple(motions), warnings=tuple(doubted(found, model.meant)))
+    remarks: list[Diagnostic] = []
+    model = with_motion(ready.model, request.motion, remarks)
+    motions = loading.motions(model, loading.context(model, request), remarks)
+    if has_errors(remarks):
+        raise DeckError(remarks, ready.files)
+    return replace(
+        ready, model=model, motions=tuple(motions), warnings=tuple(doubted(remarks, model.meant))
+    )
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
@@ -195,10 +197,10 @@ def _damp_loaded(structure: Structure) -> None:
         loaded = static.after(structure.stressed(state.axial).displaced(state.u), state)
     except (InstabilityError, np.linalg.LinAlgError, ArithmeticError):
         return  # the analysis tells it
-    found = add_damping(structure, loaded)
-    structure.remarks += found
-    if has_errors(found):
-        raise AssemblyError(found)
+    remarks = add_damping(structure, loaded)
+    structure.remarks += remarks
+    if has_errors(remarks):
+        raise AssemblyError(remarks)
 
 
 def _weighed(model: Model) -> Model:

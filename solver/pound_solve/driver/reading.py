@@ -65,9 +65,9 @@ def read(request: Request) -> Deck:
     files = {name: text}
     if has_errors(old.report):
         return Deck(None, list(old.report), files, old)
-    model, found, more = read_text(old.text, catalog(), request.params, name + AS_READ)
-    own = Deck(model, found, more | files, old)
-    return own._replace(found=[*old.report, *own.moved(found, name)])
+    model, diagnostics, more = read_text(old.text, catalog(), request.params, name + AS_READ)
+    deck = Deck(model, diagnostics, more | files, old)
+    return deck._replace(found=[*old.report, *deck.moved(diagnostics, name)])
 
 
 def imported(

@@ -233,22 +233,22 @@ class AnalysisSequence:
 
     def _history(self, card: Card, state: static.StaticState) -> None:
         record = self.record
-        found = history.run(record.structure, state, card, self.loading, self.output, self.settled.items)
+        result = history.run(record.structure, state, card, self.loading, self.output, self.settled.items)
         with suppress(KeyboardInterrupt), undisturbed():  # the motion is over
-            record.history, self.settled.items = found, found.items
-            record.solve_seconds += found.seconds
-            record.cpu_seconds += found.cpu_seconds
+            record.history, self.settled.items = result, result.items
+            record.solve_seconds += result.seconds
+            record.cpu_seconds += result.cpu_seconds
             self._write(Stage.HISTORY)
-            if found.recorder.started:
+            if result.recorder.started:
                 self._write(Stage.SAMPLES)
-            if found.outcome is not None:
-                record.checks += [*found.checks, *plausibility.of_history(record.structure, found)]
-                if found.stop is None and any(b.floors for b in found.items.buildings):
+            if result.outcome is not None:
+                record.checks += [*result.checks, *plausibility.of_history(record.structure, result)]
+                if result.stop is None and any(b.floors for b in result.items.buildings):
                     residual = record.stored("storey/drift")[-1].tolist()
-                    record.checks += plausibility.leaning(record.structure, found, residual)
+                    record.checks += plausibility.leaning(record.structure, result, residual)
                 self._write(Stage.PEAKS)
-        if found.stop is not None:
-            raise found.stop
+        if result.stop is not None:
+            raise result.stop
 
 
 class HistoryWriter:
