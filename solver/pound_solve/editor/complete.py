@@ -89,19 +89,19 @@ def complete(reading: Reading, text: str, line: int, column: int) -> tuple[list[
 
 
 def _match(pattern: re.Pattern[str], text: str) -> str:
-    found = pattern.search(text)
-    return found[0] if found else ""
+    match = pattern.search(text)
+    return match[0] if match else ""
 
 
 def _begun(above: list[str]) -> str:
     """Lines above that go on in the next one."""
-    out = ""
+    begun = ""
     for raw in reversed(above):
         code = without_comment(raw).rstrip()
         if not code.endswith("&"):
             break
-        out = code[:-1] + " " + out
-    return out
+        begun = code[:-1] + " " + begun
+    return begun
 
 
 def _section(above: list[str]) -> str:
@@ -115,9 +115,9 @@ def _section(above: list[str]) -> str:
 
 def _first(reading: Reading, section: str) -> list[Suggestion]:
     """A line's first word."""
-    out = _within(reading, section, "") if section else []
-    out += [Suggestion(spec.name, "section", spec.title) for spec in (*SECTIONS, *CARDS)]
-    return out + [Suggestion(name, "section", f"lines of the family {f}") for name, f in FAMILIES.items()]
+    words = _within(reading, section, "") if section else []
+    words += [Suggestion(spec.name, "section", spec.title) for spec in (*SECTIONS, *CARDS)]
+    return words + [Suggestion(name, "section", f"lines of the family {f}") for name, f in FAMILIES.items()]
 
 
 def _within(reading: Reading, section: str, typed: str) -> list[Suggestion]:
@@ -157,8 +157,8 @@ def _kinds(known: Fields, reading: Reading) -> list[Suggestion]:
 
 def _items(known: Fields, words: Iterable[tuple[str, str]], reading: Reading) -> Iterator[Suggestion]:
     """Items that are not there yet, those that must be first."""
-    given = {f.name for f in known.matched if f} | {name for name, _ in words}
-    left = [f for f in known.known.values() if f.name not in given]
+    present = {f.name for f in known.matched if f} | {name for name, _ in words}
+    left = [f for f in known.known.values() if f.name not in present]
     for f in sorted(left, key=lambda f: f.default is not REQUIRED):
         unit = f" [{reading.units.text(f.unit)}]" if f.unit else ""
         yield Suggestion(f"{f.name}=", "item", f"{f.doc}{unit}", explain(f, reading.units))
@@ -192,8 +192,8 @@ def _flags(letters: str) -> Iterator[str]:
 
 def _names(reading: Reading, sort: str) -> Iterator[Suggestion]:
     """Names that the deck defines."""
-    found = (m for m in mentions(reading) if m.defines and m.sort == sort)
-    keys = ((key, m) for m in found for key in m.keys)
+    defined = (m for m in mentions(reading) if m.defines and m.sort == sort)
+    keys = ((key, m) for m in defined for key in m.keys)
     for key, m in islice(keys, MOST):
         yield Suggestion(_text(key, m, reading), "name", sort)
 

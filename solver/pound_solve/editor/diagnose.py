@@ -42,10 +42,10 @@ def diagnose(
         The deck cannot be read.
     """
     request = Request(path, records=records, unsaved=unsaved)
-    model, found, files = read_deck(path, catalog(), unsaved=unsaved)
-    if model is not None and not has_errors(found) and len(model.nodes) <= MANY:
+    model, diagnostics, files = read_deck(path, catalog(), unsaved=unsaved)
+    if model is not None and not has_errors(diagnostics) and len(model.nodes) <= MANY:
         try:
-            found = list(assembled(request, model, found, files).warnings)
+            diagnostics = list(assembled(request, model, diagnostics, files).warnings)
         except DeckError as error:
-            found = list(error.diagnostics)
-    return sorted(found, key=lambda d: d.severity != "error")[:MOST], files
+            diagnostics = list(error.diagnostics)
+    return sorted(diagnostics, key=lambda d: d.severity != "error")[:MOST], files

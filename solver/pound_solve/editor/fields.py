@@ -68,11 +68,11 @@ def fields(words: Words, section: str, catalog: Catalog, params: Params | None =
     known_params = params or {}
     spec, family, kind_at = _kind(words, section, catalog, known_params)
     known = {f.name: f for f in spec.fields} if spec else {}
-    given = _given(words, spec, kind_at)
-    chosen = _chosen(given, known, catalog, known_params)
+    items = _given(words, spec, kind_at)
+    chosen = _chosen(items, known, catalog, known_params)
     kind = Field("KIND", Kind.FAMILY, doc=f"kind of {family}", family=family) if family else None
     before = ((kind,), (LABEL, kind))[kind_at] if kind_at >= 0 else ()
-    matched = (*before[: len(words)], *(known.get(name) for name, _ in given))
+    matched = (*before[: len(words)], *(known.get(name) for name, _ in items))
     return Fields(spec, family, kind_at, known, matched, chosen)
 
 
@@ -90,14 +90,14 @@ def _kind(words: Words, section: str, catalog: Catalog, params: Params) -> tuple
 def _chosen(given: Words, known: dict[str, Field], catalog: Catalog, params: Params) -> dict[str, Spec]:
     """Members of families that a line chooses; their fields, and those of defaults, join `known`."""
     texts = {f.name: f.default for f in known.values() if isinstance(f.default, str)} | dict(given)
-    out = {}
+    chosen = {}
     for f in [f for f in known.values() if f.kind is Kind.FAMILY]:
         for word in texts.get(f.name, "").split(","):
             law = member(word, f.family, catalog, params)
             if law:
-                out[word.upper()] = law
+                chosen[word.upper()] = law
                 known |= {g.name: g for g in law.fields if g.name not in known}
-    return out
+    return chosen
 
 
 def member(word: str, family: str, catalog: Catalog, params: Params) -> Spec | None:
@@ -114,8 +114,8 @@ def member(word: str, family: str, catalog: Catalog, params: Params) -> Spec | N
 def _given(words: Words, spec: Spec | None, kind_at: int) -> list[tuple[str, str]]:
     """Items behind the kind with the names of their fields; empty names where there is no field."""
     places = [f.name for f in spec.fields if f.positional] if spec else []
-    out, named = [], False
+    items, named = [], False
     for k, (name, text) in enumerate(words[kind_at + 1 :]):
         named = named or bool(name)
-        out.append((name or (places[k] if not named and k < len(places) else ""), text))
-    return out
+        items.append((name or (places[k] if not named and k < len(places) else ""), text))
+    return items

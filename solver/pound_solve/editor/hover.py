@@ -37,10 +37,10 @@ def _about(reading: Reading, section: str, row: Row, k: int, place: Span) -> str
     elif k < len(known.matched) and (f := known.matched[k]):
         parts.append(explain(f, reading.units))
         parts += [describe(known.chosen[w]) for w in _words(item) if w in known.chosen]
-    found = mentions(reading)
-    named = at(found, place)
+    mentioned = mentions(reading)
+    named = at(mentioned, place)
     if named:
-        parts += [_definition(reading, m, named) for m in definitions(found, named)[:1]]
+        parts += [_definition(reading, m, named) for m in definitions(mentioned, named)[:1]]
     return "\n\n".join(part for part in parts if part)
 
 
@@ -49,15 +49,15 @@ def _words(item: Item) -> list[str]:
 
 
 def _heading(word: str) -> str:
-    own = next((spec for spec in SECTIONS if spec.name == word), None)
-    return describe(own) if own else f"**{word}**: lines of the family {FAMILIES[word]}"
+    section = next((spec for spec in SECTIONS if spec.name == word), None)
+    return describe(section) if section else f"**{word}**: lines of the family {FAMILIES[word]}"
 
 
 def describe(spec: Spec) -> str:
     """A Spec: title, how it is written, its source."""
-    out = [f"**{spec.name}**: {spec.title}"]
-    out += [f"```\n{usage(spec)}\n```"] if spec.fields else []
-    return "\n\n".join(out + ([f"Reference: {spec.reference}"] if spec.reference else []))
+    parts = [f"**{spec.name}**: {spec.title}"]
+    parts += [f"```\n{usage(spec)}\n```"] if spec.fields else []
+    return "\n\n".join(parts + ([f"Reference: {spec.reference}"] if spec.reference else []))
 
 
 def explain(f: Field, units: Units) -> str:

@@ -63,8 +63,8 @@ class Mention:
 
     def holds(self, span: Span) -> bool:
         """Whether a place lies within it or at its end."""
-        own = self.span
-        return (own.file, own.line) == (span.file, span.line) and own.column <= span.column <= own.end
+        here = self.span
+        return (here.file, here.line) == (span.file, span.line) and here.column <= span.column <= here.end
 
 
 def mentions(reading: Reading) -> list[Mention]:
@@ -106,11 +106,11 @@ def _of_row(row: Row, section: str, reading: Reading, values: Values) -> Iterato
 
 
 def _of_item(item: Item, f: Field, section: str, values: Values, reading: Reading) -> Iterator[Mention]:
-    own = _DEFINES.get((section, f.name))
-    sort = own or SORTS.get(f.kind)
+    defined = _DEFINES.get((section, f.name))
+    sort = defined or SORTS.get(f.kind)
     for part in item.parts:
         if sort:
-            yield from _named(part, sort, f.name, own is not None, values)
+            yield from _named(part, sort, f.name, defined is not None, values)
         yield from _params([part], reading, f, values)
 
 

@@ -86,27 +86,27 @@ class Project:
     def check(self, path: str) -> Found:
         """Mistakes of the decks that a file belongs to: in this file, and in others where they are new."""
         decks = {self.deck(p) for p in self.texts}
-        own = self.deck(path) if path in self.texts else ""
-        changed = {deck for deck in decks if deck == own or path in self._said.get(deck, {})}
+        own_deck = self.deck(path) if path in self.texts else ""
+        changed = {deck for deck in decks if deck == own_deck or path in self._said.get(deck, {})}
         touched = {name for deck in [*self._said] if deck not in decks for name in self._said.pop(deck)}
         for deck in sorted(changed):
             touched |= set(self._said.get(deck, {}))
             self._said[deck] = self._diagnosed(deck)
             touched |= set(self._said[deck])
         now = {name: self._of_file(name) for name in sorted(touched)}
-        news = {name: found for name, found in now.items() if name == path or found != self._told.get(name)}
+        news = {name: notes for name, notes in now.items() if name == path or notes != self._told.get(name)}
         self._told.update(now)
         return news
 
     def _diagnosed(self, deck: str) -> Found:
         try:
-            found, files = diagnose(deck, self.texts, self.records)
+            diagnostics, files = diagnose(deck, self.texts, self.records)
         except OSError:  # taken away while it was open
             return {}
-        out: Found = {os.path.realpath(name): [] for name in files if not name.startswith("--")}
-        for d in found:
-            out.setdefault(os.path.realpath(d.span.file) if d.span else deck, []).append(d)
-        return out
+        by_file: Found = {os.path.realpath(name): [] for name in files if not name.startswith("--")}
+        for d in diagnostics:
+            by_file.setdefault(os.path.realpath(d.span.file) if d.span else deck, []).append(d)
+        return by_file
 
     def _of_file(self, name: str) -> list[Diagnostic]:
         return list(dict.fromkeys(d for said in self._said.values() for d in said.get(name, ())))

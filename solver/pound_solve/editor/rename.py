@@ -48,14 +48,14 @@ def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
         The name is not replaceable everywhere, the other name is taken or none, or the deck would mean
         something else.
     """
-    found = mentions(reading)
-    same = _same(reading, found, place)
+    mentioned = mentions(reading)
+    same = _same(reading, mentioned, place)
     here = same[0]
     text, key = _checked(new, here)
-    if any(m.sort == here.sort and key in m.keys for m in found):
+    if any(m.sort == here.sort and key in m.keys for m in mentioned):
         raise RenameError(f"there is a {here.sort} {key} already")
     edits = [(m.span, text) for m in same]
-    _verify(reading, path, found, same, key, edits)
+    _verify(reading, path, mentioned, same, key, edits)
     return edits
 
 

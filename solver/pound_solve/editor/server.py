@@ -127,11 +127,11 @@ def server(records: tuple[Path, ...] = ()) -> DeckServer:
         Folders where records are looked for, after the deck's own.
     """
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)
-    out = DeckServer(records)
-    _documents(out)
-    _help(out)
-    _names(out)
-    return out
+    deck_server = DeckServer(records)
+    _documents(deck_server)
+    _help(deck_server)
+    _names(deck_server)
+    return deck_server
 
 
 def _documents(ls: DeckServer) -> None:
@@ -169,7 +169,7 @@ def _help(ls: DeckServer) -> None:
         path, at = ls.place(params.text_document.uri, params.position)
         reading = ls.project.reading(path)
         text = "\n".join(ls.lines(path))
-        found, start = complete.complete(reading, text, at.line, at.column)
+        answer, start = complete.complete(reading, text, at.line, at.column)
         range_ = ls.range(Span(at.file, at.line, start, at.column), text.split("\n"))
         items = [
             lsp.CompletionItem(
@@ -180,18 +180,18 @@ def _help(ls: DeckServer) -> None:
                 sort_text=f"{k:05d}",
                 text_edit=lsp.TextEdit(range_, s.text),
             )
-            for k, s in enumerate(found)
+            for k, s in enumerate(answer)
         ]
         return lsp.CompletionList(is_incomplete=False, items=items)
 
     @ls.feature(lsp.TEXT_DOCUMENT_HOVER)
     def hovered(params: lsp.HoverParams) -> lsp.Hover | None:
         path, at = ls.place(params.text_document.uri, params.position)
-        found = hover.hover(ls.project.reading(path), at)
-        if not found:
+        answer = hover.hover(ls.project.reading(path), at)
+        if not answer:
             return None
-        content = lsp.MarkupContent(lsp.MarkupKind.Markdown, found[0])
-        return lsp.Hover(content, ls.range(found[1], ls.lines(path)))
+        content = lsp.MarkupContent(lsp.MarkupKind.Markdown, answer[0])
+        return lsp.Hover(content, ls.range(answer[1], ls.lines(path)))
 
     @ls.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def outlined(params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:

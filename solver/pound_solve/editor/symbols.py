@@ -37,32 +37,32 @@ class Symbol:
 def outline(reading: Reading, path: str) -> list[Symbol]:
     """Entries of one file, given by its real path."""
     names = reading.files_at(path)
-    out: list[Symbol] = []
+    entries: list[Symbol] = []
     open_section: Symbol | None = None
     for section, row in reading.rows:
         if row.span.file not in names:
             continue
         last = row.line.number + row.line.text.count("\n")
         if row.word == "PARAM" and not section:
-            out += [
+            entries += [
                 Symbol(item.name, item.text, "PARAM", item.name_span, item.name_span.line)
                 for item in (row.items or ())[1:]
                 if item.name
             ]
         elif row.word in NAMES:
             open_section = Symbol(row.word, "", "section", row.span, last)
-            out.append(open_section)
+            entries.append(open_section)
         elif section:
             if open_section is None:  # lines that belong to a section of the file that includes this one
                 open_section = Symbol(section, "", "section", row.span, last)
-                out.append(open_section)
+                entries.append(open_section)
             open_section.below += _line(row, section, last)
             open_section.last = last
         elif row.items:
-            out.append(Symbol(row.word, _rest(row), "card", row.span, last))
+            entries.append(Symbol(row.word, _rest(row), "card", row.span, last))
         elif row.word == "TITLE":
-            out.append(Symbol(row.word, row.line.text.strip()[5:].strip(), "card", row.span, last))
-    return out
+            entries.append(Symbol(row.word, row.line.text.strip()[5:].strip(), "card", row.span, last))
+    return entries
 
 
 def _line(row: Row, section: str, last: int) -> list[Symbol]:
