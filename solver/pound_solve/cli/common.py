@@ -55,10 +55,10 @@ def request(args: argparse.Namespace) -> Request:
         readers = "report, export, plot, separation and spectrum read it"
         text = f"{args.deck} is a results file, not a deck: {readers}"
         raise SystemExit(complain(text, MISTAKES))
-    given = vars(args)
-    own = {name: given[name] for name in ("method", "dt", "tol", "explain", "name") if name in given}
+    options = vars(args)
+    chosen = {name: options[name] for name in ("method", "dt", "tol", "explain", "name") if name in options}
     try:
-        return Request(args.deck, parameters(args.set), given.get("out"), tuple(args.records), **own)
+        return Request(args.deck, parameters(args.set), options.get("out"), tuple(args.records), **chosen)
     except ValueError as err:
         raise SystemExit(complain(f"--name: {err}", MISTAKES)) from None
 
@@ -71,13 +71,13 @@ def parameters(items: Sequence[str]) -> dict[str, str]:
     SystemExit
         An item is not NAME=VALUE.
     """
-    out = {}
+    values = {}
     for item in items:
         name, equals, value = item.partition("=")
         if not equals or not name.strip():
             raise SystemExit(complain(f"--set {item}: write NAME=VALUE", MISTAKES))
-        out[name.strip()] = value.strip()
-    return out
+        values[name.strip()] = value.strip()
+    return values
 
 
 def picture(word: str) -> Path:
@@ -121,14 +121,14 @@ def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[fl
     """
     from pound_deck.schema import GREAT, OF_MAGNITUDE
 
-    out = []
+    values = []
     for word in words:
         try:
-            out.append(float(word))
+            values.append(float(word))
         except ValueError:
             raise error(f"{word[:60]} is no number: {takes}") from None
-        if not math.isfinite(out[-1]):
+        if not math.isfinite(values[-1]):
             raise error(f"{word[:60]} is no finite number: {takes}")
-        if abs(out[-1]) > GREAT:
+        if abs(values[-1]) > GREAT:
             raise error(f"{word[:60]} is too large: {takes} {OF_MAGNITUDE}")
-    return out
+    return values

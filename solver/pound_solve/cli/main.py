@@ -24,18 +24,18 @@ VERBS = tuple(name.rpartition(".")[2] for name in modules_below(verbs))
 
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser with the arguments of every verb."""
-    out = argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         prog="pound-solve",
         description="Earthquake pounding of 2-D frames: a text deck in, a report and an HDF5 file out.",
     )
-    out.add_argument("--version", action="version", version=f"pound-solve {__version__}")
-    each = out.add_subparsers(dest="verb", required=True, metavar="VERB")
+    parser.add_argument("--version", action="version", version=f"pound-solve {__version__}")
+    each = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name in VERBS:
         verb = import_module(f"{verbs.__name__}.{name}")
-        own = each.add_parser(name, help=verb.SUMMARY, description=verb.SUMMARY)
-        verb.add_arguments(own)
-        own.set_defaults(execute=verb.execute)
-    return out
+        subparser = each.add_parser(name, help=verb.SUMMARY, description=verb.SUMMARY)
+        verb.add_arguments(subparser)
+        subparser.set_defaults(execute=verb.execute)
+    return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -50,8 +50,8 @@ def execute(args: argparse.Namespace) -> int:
 
 def listed(folder: Path) -> Mapping[str, str]:
     """What each example shows, by its name, from the README of their folder."""
-    found = _ROW.findall((folder / "README.md").read_text(encoding="utf-8"))
-    return {name: text + _needs(needs) for name, text, needs in found}
+    rows = _ROW.findall((folder / "README.md").read_text(encoding="utf-8"))
+    return {name: text + _needs(needs) for name, text, needs in rows}
 
 
 def _needs(told: str) -> str:

@@ -69,15 +69,15 @@ def execute(args: argparse.Namespace) -> int:
 
 def _coordinates(items: Sequence[str]) -> dict[str, str]:
     """Coordinates of columns from KEY=VALUE."""
-    out = {}
+    coordinates = {}
     for item in items:
         key, equals, value = item.partition("=")
-        if not equals or key in out:
+        if not equals or key in coordinates:
             what = f"{key} stands twice" if equals else f"{item} is no KEY=VALUE, such as node=12"
             text = f"--history: {what}; repeat --history for further columns"
             raise SystemExit(common.complain(text, common.MISTAKES))
-        out[key] = value
-    return out
+        coordinates[key] = value
+    return coordinates
 
 
 def _vtk(results: Results, folder: Path) -> Path:

@@ -30,9 +30,9 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.layout import arranged
 
     data = contents(args.deck)
-    new, found, files = arranged(str(args.deck), data)
-    if found:
-        print(render(found, files), file=sys.stderr)
+    new, diagnostics, files = arranged(str(args.deck), data)
+    if diagnostics:
+        print(render(diagnostics, files), file=sys.stderr)
     if new is None:
         return common.complain(f"{args.deck} has mistakes: it is left as it is", common.MISTAKES)
     if args.check:
@@ -48,7 +48,7 @@ def _write(path: Path, data: bytes) -> None:
     from pound_solve.results.whole_file import whole
 
     real = Path(os.path.realpath(path))  # of a link, what it leads to
-    with whole(real) as own:
-        own.write_bytes(data)
+    with whole(real) as partial:
+        partial.write_bytes(data)
         if real.exists():
-            shutil.copymode(real, own)
+            shutil.copymode(real, partial)

@@ -54,8 +54,8 @@ def execute(args: argparse.Namespace) -> int:
         if min((*limits, *at), default=1.0) <= 0.0:
             raise CurveError("limits and levels are above zero")
         sweep, asked = Sweep.open(Path(args.sweep)), Asked(args.demand, args.label)
-        found = fit(sweep, asked, limits, args.method, args.confidence)
-        lines = list(fragility.report(sweep, asked, found, at))
+        fitted = fit(sweep, asked, limits, args.method, args.confidence)
+        lines = list(fragility.report(sweep, asked, fitted, at))
         told = summary.write(Path(args.sweep).with_name(_name(asked, limits)), sweep, "fragilities", lines)
     except CurveError as err:
         return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
@@ -63,7 +63,7 @@ def execute(args: argparse.Namespace) -> int:
         return common.complain(str(err))
     print("\n".join([*lines, str(told)]))
     if args.picture:
-        suites.fragilities(fragility.drawn(found), axes_of(sweep, asked)[1], args.picture)
+        suites.fragilities(fragility.drawn(fitted), axes_of(sweep, asked)[1], args.picture)
     return common.DONE
 
 

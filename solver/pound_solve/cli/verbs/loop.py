@@ -39,20 +39,20 @@ def execute(args: argparse.Namespace) -> int:
         spring, items = law_test.specimen(spec, args.items)
         path = _turning_points(args) or law_test.protocol(spring)
         rate = float(spring.role.viscous) if args.rate is None else args.rate
-        found = law_test.trace(spring.law, path, rate)
+        loop = law_test.trace(spring.law, path, rate)
     except law_test.LawTestError as err:
         return common.complain(str(err), common.MISTAKES)
     texts = (f"{spec.name} {items}", *law_test.AXES[spec.family])
-    print(f"{texts[0]}\n\n{law_test.table(found.corners)}\n\n{text_plot.letters(found.curve)}")
+    print(f"{texts[0]}\n\n{law_test.table(loop.corners)}\n\n{text_plot.letters(loop.curve)}")
     if args.svg:
         from pound_solve.results.whole_file import write_text
 
-        write_text(args.svg, text_plot.svg(found.curve, *texts))
+        write_text(args.svg, text_plot.svg(loop.curve, *texts))
     if args.png:
         from pound_solve.report import plot
 
         try:
-            plot.loop(found.curve, *texts, args.png)
+            plot.loop(loop.curve, *texts, args.png)
         except ImportError:
             text = '--png needs matplotlib: pip install "pound-solve[plot]"; --svg needs nothing'
             return common.complain(text, common.MISTAKES)
@@ -70,7 +70,7 @@ def _turning_points(args: argparse.Namespace) -> list[float]:
     if args.file:
         text = contents(args.file).decode("utf-8")
     words = [w for line in text.splitlines() for w in line.split("#")[0].replace(",", " ").split()]
-    out = common.numbers(words, "--path and --file take deformations", LawTestError)
-    if (args.path is not None or args.file) and not out:
+    points = common.numbers(words, "--path and --file take deformations", LawTestError)
+    if (args.path is not None or args.file) and not points:
         raise LawTestError("--path and --file take one deformation at least")
-    return out
+    return points

@@ -110,8 +110,8 @@ def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
         ending = args.ending or (MOVING if moves else STILL)[0]
         more, less = plot.draw(results, [name], folder, ending, choice)
         drawn += more
-        for what, own in less.items():
-            left_out.setdefault(what, []).extend(own)
+        for what, pictures in less.items():
+            left_out.setdefault(what, []).extend(pictures)
         for path in more:
             print(path, flush=True)
     if left_out:

@@ -28,12 +28,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--damping", type=_two, default=(), metavar="X1,X2", help="in percent, in place of the modes'"
     )
-    own = parser.add_argument_group("of a sweep")
-    own.add_argument("--gap", metavar="X,X,...", help="gaps at which probabilities are asked for")
+    group = parser.add_argument_group("of a sweep")
+    group.add_argument("--gap", metavar="X,X,...", help="gaps at which probabilities are asked for")
     text = "factors of codes on elastic displacements: Cd/Ie, q (default 1,1)"
-    own.add_argument("--raise", type=_two, metavar="A1,A2", help=text)
-    own.add_argument("--confidence", type=common.share, metavar="P", help="default 0.95")
-    own.add_argument("--picture", type=common.picture, metavar="FILE", help="draw the probabilities")
+    group.add_argument("--raise", type=_two, metavar="A1,A2", help=text)
+    group.add_argument("--confidence", type=common.share, metavar="P", help="default 0.95")
+    group.add_argument("--picture", type=common.picture, metavar="FILE", help="draw the probabilities")
 
 
 def _two(word: str) -> tuple[float, float]:
@@ -58,8 +58,8 @@ def execute(args: argparse.Namespace) -> int:
 
     if Sweep.is_of(args.results):
         return _of_sweep(args)
-    if given := next((name for name in OF_SWEEPS if getattr(args, name) is not None), ""):
-        return common.complain(f"--{given} needs the runs of a sweep: sweep.h5", common.MISTAKES)
+    if option := next((name for name in OF_SWEEPS if getattr(args, name) is not None), ""):
+        return common.complain(f"--{option} needs the runs of a sweep: sweep.h5", common.MISTAKES)
     try:
         with Results.open(args.results) as results:
             print(separation.text(results, args.periods, args.damping))
@@ -83,9 +83,9 @@ def _of_sweep(args: argparse.Namespace) -> int:
     try:
         options = _options(args)
         sweep = Sweep.open(args.results)
-        found = groups(sweep, options)
-        lines = list(separation.report(sweep, found, options))
-        write_table(path, separation.variables(sweep, found, options), sweep.about)
+        contacts = groups(sweep, options)
+        lines = list(separation.report(sweep, contacts, options))
+        write_table(path, separation.variables(sweep, contacts, options), sweep.about)
         told = summary.write(path, sweep, "separation of the buildings", lines)
     except CurveError as err:
         return common.complain(f"{args.results}: {err}", common.MISTAKES)
@@ -95,7 +95,7 @@ def _of_sweep(args: argparse.Namespace) -> int:
     print(f"{told}\n{path.with_suffix('.csv')}\n{path}")
     if args.picture:
         gap = f"gap [{units_of(sweep).length}]"
-        suites.separations(separation.drawn(sweep, found, options), gap, args.picture)
+        suites.separations(separation.drawn(sweep, contacts, options), gap, args.picture)
     return common.DONE
 
 
@@ -116,7 +116,7 @@ def _options(args: argparse.Namespace) -> Options:
     gaps = common.numbers(args.gap.split(","), "--gap takes numbers", CurveError) if args.gap else []
     if min(gaps, default=1.0) <= 0.0:
         raise CurveError("gaps are above zero")
-    own = {"raised": getattr(args, "raise"), "level": args.confidence}
+    options = {"raised": getattr(args, "raise"), "level": args.confidence}
     if args.periods:
-        own["correlation"] = correlation(*args.periods, *(xi / 100.0 for xi in args.damping))
-    return Options(gaps, **{name: value for name, value in own.items() if value is not None})
+        options["correlation"] = correlation(*args.periods, *(xi / 100.0 for xi in args.damping))
+    return Options(gaps, **{name: value for name, value in options.items() if value is not None})

@@ -123,10 +123,10 @@ def _curves(args: argparse.Namespace) -> tuple[Units, list[Curve]]:
     for name, source in zip(args.sources, sources):
         if source.warnings:
             print(render(source.warnings, source.files), file=sys.stderr)
-        own = source.units
-        if (own.length, own.time) != (units.length, units.time):
+        other = source.units
+        if (other.length, other.time) != (units.length, units.time):
             raise SpectrumError(
-                f"{name} is in {own.length} and {own.time}, {args.sources[0]} in {units.length} and "
+                f"{name} is in {other.length} and {other.time}, {args.sources[0]} in {units.length} and "
                 f"{units.time}: show them apart"
             )
     curves = []

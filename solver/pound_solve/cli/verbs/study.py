@@ -54,8 +54,8 @@ def execute(args: argparse.Namespace) -> int:
         return common.complain(text, common.MISTAKES)
     for name in OF_A_DECK if args.stability else OF_THE_MATRIX:
         if getattr(args, name):
-            own = "a study of a deck" if args.stability else "--stability"
-            return common.complain(f"--{name} belongs to {own}", common.MISTAKES)
+            owner = "a study of a deck" if args.stability else "--stability"
+            return common.complain(f"--{name} belongs to {owner}", common.MISTAKES)
     if args.stability:
         return _stability(args)
     if not args.deck:
@@ -77,9 +77,9 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     if not common.drawable(args.picture):
         return common.MISTAKES
     try:
-        found, ready = study.run(request, _plan(args), line.show)
+        result, ready = study.run(request, _plan(args), line.show)
         line.clear()
-        results = study.write(found, ready, request.path(".study.h5"))
+        results = study.write(result, ready, request.path(".study.h5"))
     except run.DeckError as err:
         print(err, file=sys.stderr)
         return common.MISTAKES
@@ -90,11 +90,11 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         return common.complain(str(err))
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    if found.warning:
-        common.complain(f"warning: {found.warning}")
+    if result.warning:
+        common.complain(f"warning: {result.warning}")
     with results:
         print(report(results))
-        print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
+        print(f"{result.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
         if args.picture:
             from pound_solve.report import plot
 
@@ -107,17 +107,17 @@ def _plan(args: argparse.Namespace) -> Plan:
     from pound_solve.assess.advice import StudyError
     from pound_solve.assess.study import Plan
 
-    given: dict[str, Any] = {
+    items: dict[str, Any] = {
         name: getattr(args, name) for name in ("repeat", "longest") if getattr(args, name) is not None
     }
     if args.methods:
-        given["methods"] = tuple(word.strip().upper() for word in args.methods.split(","))
+        items["methods"] = tuple(word.strip().upper() for word in args.methods.split(","))
     for name in ("steps", "tols"):
         words = getattr(args, name)
         if words:
             values = common.numbers(words.replace(",", " ").split(), f"--{name} takes numbers", StudyError)
-            given[name] = tuple(sorted(values, reverse=True))
-    plan = Plan(**given)
+            items[name] = tuple(sorted(values, reverse=True))
+    plan = Plan(**items)
     if plan.repeat < 1 or not plan.longest > 0 or any(x <= 0 for x in (*plan.steps, *plan.tols)):
         raise StudyError("--repeat, --longest, --steps and --tols must be above zero")
     return plan

@@ -56,8 +56,8 @@ def _piece(word: str | None) -> tuple[int, int]:
     """Number of a piece, and how many there are."""
     if word is None:
         return 1, 1
-    found = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", word)
-    k, count = map(int, found.groups()) if found else (0, 0)
+    match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", word)
+    k, count = map(int, match.groups()) if match else (0, 0)
     if not 1 <= k <= count:
         raise argparse.ArgumentTypeError(f"--task {word}: write K/N with K from 1 to N")
     return k, count
@@ -68,34 +68,34 @@ def _document(args: argparse.Namespace) -> Document:
     from pound_solve.sweep.study.document import Document
 
     if args.study.endswith(".toml"):
-        out = Document.read(args.study)
+        document = Document.read(args.study)
     else:
-        out = Document(str(Path(args.study).with_suffix("")), Path())
-        out.given(("deck",), args.study, "deck", args.study)
+        document = Document(str(Path(args.study).with_suffix("")), Path())
+        document.given(("deck",), args.study, "deck", args.study)
     for item in args.set:
         name, equals, value = item.partition("=")
         if not equals or not name.strip():
             raise argparse.ArgumentTypeError(f"--set {item}: write NAME=VALUE,VALUE,...")
         values = [v.strip() for v in value.split(",")]
-        out.given(("grid", name.strip()), values, f"--set {name.strip()}", value)
-    _give_motions(args, out)
+        document.given(("grid", name.strip()), values, f"--set {name.strip()}", value)
+    _give_motions(args, document)
     for name in ("method", "dt", "tol"):
         if getattr(args, name) is not None:
-            out.given((name,), getattr(args, name), f"--{name}", str(getattr(args, name)))
+            document.given((name,), getattr(args, name), f"--{name}", str(getattr(args, name)))
     if args.records:
-        out.given(
+        document.given(
             ("records",), [str(p.absolute()) for p in args.records], "--records", str(args.records[0])
         )
-    studies.give_conduct(args, out)
-    return out
+    studies.give_conduct(args, document)
+    return document
 
 
 def _give_motions(args: argparse.Namespace, out: Document) -> None:
     """Put in the records of the command line, in place of all of the study's."""
     from pound_solve.loading.records.known import known
 
-    given = {name: getattr(args, name) for name in (*LISTS, "period", "damping")}
-    options = {name: value for name, value in given.items() if value is not None}
+    arguments = {name: getattr(args, name) for name in (*LISTS, "period", "damping")}
+    options = {name: value for name, value in arguments.items() if value is not None}
     if not args.motions:
         if options or args.item:
             option = next(iter(options), "item")
@@ -105,11 +105,11 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
     out.values["motions"] = [{}]
     out.given(("motions", 0, "files"), files, "--motions", " ".join(args.motions))
     for name, value in options.items():
-        own = value
+        parsed = value
         if name in LISTS:
             words = value.split(",")
-            own = common.numbers(words, f"--{name} takes numbers", argparse.ArgumentTypeError)
-        out.given(("motions", 0, name), own, f"--{name}", str(value))
+            parsed = common.numbers(words, f"--{name} takes numbers", argparse.ArgumentTypeError)
+        out.given(("motions", 0, name), parsed, f"--{name}", str(value))
     for item in args.item:
         name, equals, value = item.partition("=")
         if not equals:
