@@ -79,6 +79,6 @@ def run(
     if not isinstance(deck, Deck):
         return execute(Request(str(deck), texts, folder, folders, method, dt, tol, name=name))[1]
     unsaved = {os.path.realpath(PLACE): deck.text}
-    own = deck.name if name is None else name
-    request = Request(PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=own)
+    stem = deck.name if name is None else name
+    request = Request(PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=stem)
     return in_temporary_folder(request) if folder is None else execute(request)[1]

@@ -96,8 +96,8 @@ class Check:
 
     def row(self) -> tuple[Any, ...]:
         """The row of the table `checks`: `COLUMNS`."""
-        own = (self.subject, self.name, self.value, self.unit, self.bound, self.allowed)
-        return tuple(str(x) if isinstance(x, str) else x for x in (*own, self.verdict, self.remark))
+        fields = (self.subject, self.name, self.value, self.unit, self.bound, self.allowed)
+        return tuple(str(x) if isinstance(x, str) else x for x in (*fields, self.verdict, self.remark))
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> Self:
@@ -143,12 +143,12 @@ def _judged(check: Check, good: bool) -> Check:
 
 def worst(checks: Iterable[Check]) -> list[Check]:
     """Of those of one name, as of the parts of a history, the worst."""
-    out = dict[tuple[Subject, str], Check]()
+    by_name = dict[tuple[Subject, str], Check]()
     for check in checks:
-        own = out.setdefault((check.subject, check.name), check)
-        if check.severity > own.severity:
-            out[check.subject, check.name] = check
-    return list(out.values())
+        kept = by_name.setdefault((check.subject, check.name), check)
+        if check.severity > kept.severity:
+            by_name[check.subject, check.name] = check
+    return list(by_name.values())
 
 
 def looked(checks: Iterable[Check]) -> list[Check]:

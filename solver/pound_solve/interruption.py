@@ -94,12 +94,12 @@ def undisturbed() -> Iterator[Callable[[], None]]:
 
         return answer
 
-    before = {number: own for number in SIGNALS if callable(own := signal.getsignal(number))}
-    for number, own in before.items():
-        signal.signal(number, put_off(own))
+    before = {number: previous for number in SIGNALS if callable(previous := signal.getsignal(number))}
+    for number, previous in before.items():
+        signal.signal(number, put_off(previous))
     try:
         yield answer_now
     finally:
-        for number, own in before.items():
-            signal.signal(number, own)
+        for number, previous in before.items():
+            signal.signal(number, previous)
     answer_now()

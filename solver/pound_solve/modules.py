@@ -8,8 +8,8 @@ from types import ModuleType
 
 def modules_below(package: ModuleType) -> list[str]:
     """Dotted names of all modules in a package and in the folders below it, by name; none is imported."""
-    out = []
+    names = []
     for folder in map(Path, package.__path__):
         for path in folder.rglob("[!_]*.py"):
-            out.append(".".join((package.__name__, *path.relative_to(folder).with_suffix("").parts)))
-    return sorted(out)
+            names.append(".".join((package.__name__, *path.relative_to(folder).with_suffix("").parts)))
+    return sorted(names)
