@@ -205,15 +205,19 @@ class Decomposer:
         reactions = self._reactions(held, unknowns, propagator, c, k) if len(held) else None
         return self._with_rows(unknowns, laws, propagator, parts, reactions)
 
-    def join(self, own: Sequence[Decomposition]) -> Decomposition:
+    def join(self, decompositions: Sequence[Decomposition]) -> Decomposition:
         """Return several modal decompositions without massless DOFs as one; their modes stay apart."""
         propagator = ModalPropagator.joined(
-            [x.propagator for x in own if isinstance(x.propagator, ModalPropagator)]
+            [x.propagator for x in decompositions if isinstance(x.propagator, ModalPropagator)]
         )
-        ends = np.cumsum([0, *(x.rows_q.shape[1] for x in own)]).tolist()
-        parts = [part._replace(q=slice(i, j)) for x, i, j in zip(own, ends, ends[1:]) for part in x.parts]
-        unknowns = np.concatenate([x.unknowns for x in own])
-        laws = np.concatenate([x.laws for x in own])
+        ends = np.cumsum([0, *(x.rows_q.shape[1] for x in decompositions)]).tolist()
+        parts = [
+            part._replace(q=slice(i, j))
+            for x, i, j in zip(decompositions, ends, ends[1:])
+            for part in x.parts
+        ]
+        unknowns = np.concatenate([x.unknowns for x in decompositions])
+        laws = np.concatenate([x.laws for x in decompositions])
         return self._with_rows(unknowns, laws, propagator, tuple(parts), None)
 
     def _with_rows(

@@ -220,14 +220,16 @@ class DenseOutput:
             if not len(unknowns):
                 continue
             q, n, propagator = states(subsystem), len(unknowns), x.propagator
-            own = (motion_q @ real_parts(q.reshape(len(q), t.size))).reshape(3, n, *t.shape)
-            own[2] += polynomial.on(real_parts(subsystem.forcing[intervals], -1) @ motion_q[n : 2 * n].T, t)
+            kinematics = (motion_q @ real_parts(q.reshape(len(q), t.size))).reshape(3, n, *t.shape)
+            kinematics[2] += polynomial.on(
+                real_parts(subsystem.forcing[intervals], -1) @ motion_q[n : 2 * n].T, t
+            )
             u_p, v_p = propagator.u_p, propagator.v_p
             if subsystem.loads is not None and u_p is not None and v_p is not None:
                 if enveloped:
                     u_p, v_p = u_p[x.enveloped], v_p[x.enveloped]
-                own += direct_response(u_p, v_p, subsystem.loads[intervals], t)
-            motion[:, unknowns] = own.reshape(3, n, t.size)
+                kinematics += direct_response(u_p, v_p, subsystem.loads[intervals], t)
+            motion[:, unknowns] = kinematics.reshape(3, n, t.size)
         u, v, a = motion
         return u, v, a
 

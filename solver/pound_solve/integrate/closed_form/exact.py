@@ -209,10 +209,10 @@ class Exact(EventDrivenRun):
         return cursor
 
     def _accept_event(
-        self, window: Window, dense: DenseOutput, found: GridEvent, end: GridSamples, cursor: int
+        self, window: Window, dense: DenseOutput, grid_event: GridEvent, end: GridSamples, cursor: int
     ) -> int:
         """Advance to an event, where the rows are those of `end`; return the new cursor."""
-        law, event_index, tau = found.event
+        law, event_index, tau = grid_event.event
         interval, local = dense.locate(tau)
         self._sample(dense, cursor, interval)
         self._add_work(dense, interval, np.array([local]))

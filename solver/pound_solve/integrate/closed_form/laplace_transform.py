@@ -124,8 +124,10 @@ class LaplaceTransform:
             kernels = phi.moments(-s * length, excitation.degree) * powers[:, None]
             delays = np.exp(-s[:, None] * length * np.arange(min(TOGETHER, len(run))))
             for i in range(0, len(run), TOGETHER):
-                own = coefs[run[i : i + TOGETHER]]
-                sums = (delays[:, : len(own)] @ own.reshape(len(own), -1)).reshape(len(s), *own.shape[1:])
+                chunk = coefs[run[i : i + TOGETHER]]
+                sums = (delays[:, : len(chunk)] @ chunk.reshape(len(chunk), -1)).reshape(
+                    len(s), *chunk.shape[1:]
+                )
                 later = np.exp(-s * (left[run[i]] - begin))[:, None]
                 transform += later * np.einsum("js,sjn->sn", kernels, sums)
         # beyond its end the excitation keeps its last value: a jump there would affect the time before it

@@ -178,11 +178,11 @@ class Subsystems:
             decomposed.append((key, system.constant[unknowns] - rows.T @ constants))
         return decomposed
 
-    def _groups(self, found: list[tuple[Key, Array]]) -> list[list[tuple[Key, Array]]]:
+    def _groups(self, entries: list[tuple[Key, Array]]) -> list[list[tuple[Key, Array]]]:
         """Group the decompositions to be joined."""
         groups: list[list[tuple[Key, Array]]] = []
         room = 0  # modes that the first group may still take
-        for entry in found:
+        for entry in entries:
             propagator = self.decompositions[entry[0]].propagator
             if not isinstance(propagator, ModalPropagator) or propagator.u_p is not None:
                 groups.append([entry])

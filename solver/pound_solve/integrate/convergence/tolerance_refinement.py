@@ -152,16 +152,16 @@ class ToleranceRefinement:
         self.floor, self.tol = self.tol, max(share * self.tol, LEAST)
         return None
 
-    def _compare(self, own: Peak) -> None:
+    def _compare(self, peak: Peak) -> None:
         """Estimate the error of a run from its differences to those before."""
-        scales = np.where(own.scales > 0.0, own.scales, 1.0)
+        scales = np.where(peak.scales > 0.0, peak.scales, 1.0)
         apart = np.zeros(len(scales))
         for tol, before in self.peaks:
             fallen = (self.floor / tol) ** POWER
-            apart = np.maximum(apart, fallen * np.abs(own.values - before.values) / scales)
+            apart = np.maximum(apart, fallen * np.abs(peak.values - before.values) / scales)
         for kind in self.tolerances:
             least = max(self.floor, CLAIMED * self.tolerances[kind])
-            self.errors[kind] = max(float(apart[own.kinds == kind].max(initial=0.0)), least)
+            self.errors[kind] = max(float(apart[peak.kinds == kind].max(initial=0.0)), least)
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
 
     def _interrupted(self, stop: Stop, replay: Replay) -> Stop:

@@ -126,10 +126,10 @@ def laid_out(n: int, one: Index, other: Index, joins: Flags) -> Layout:
 
 
 def linear_system(
-    system: ReducedSystem, monitored: MonitoredOutputs, own: Layout, scheme: Scheme, dt: float
+    system: ReducedSystem, monitored: MonitoredOutputs, layout: Layout, scheme: Scheme, dt: float
 ) -> state.LinearSystem:
     """The linear part of the equations of motion, for steps up to `dt`."""
-    o, s, laws = own.order, system.structure, system.structure.laws
+    o, s, laws = layout.order, system.structure, system.structure.laws
     grid = np.ix_(o, o)
     mass, damping, stiffness = (a[grid] for a in (system.mass, system.damping, system.stiffness))
     in_stiffness, in_damping = scheme.beta > 0.0, scheme.gamma > 0.0
@@ -137,7 +137,7 @@ def linear_system(
     without = o[~has_mass]
     varying = [columns for columns, _ in system.corotational.touched()]
     varying += [row for (row, _), x in zip(by_rows(system.law_rows), laws) if x.law.curved]
-    lower = own.pattern.ai.astype(np.int64)
+    lower = layout.pattern.ai.astype(np.int64)
     solved = (mass, damping * in_damping, stiffness * in_stiffness)
     moved = system.support_inputs
     free, nf = np.array(system.columns, int)[o], s.n_free
@@ -151,16 +151,16 @@ def linear_system(
         inputs=np.ascontiguousarray(system.inputs[o].T),
         pushed=np.ascontiguousarray(system.force_inputs[free]),
         constant=system.constant[o],
-        pattern=own.pattern,
-        on_pattern=np.array([at(a, lower, own.column) for a in solved]),
-        column=own.column,
+        pattern=layout.pattern,
+        on_pattern=np.array([at(a, lower, layout.column) for a in solved]),
+        column=layout.column,
         has_mass=has_mass,
         all_mass=bool(has_mass.all()),
         massless_vary=any(len(np.intersect1d(x, without)) for x in varying),
         instant=INSTANT * dt,
         implicit=in_stiffness,
         diagonal=is_diagonal(mass),
-        explicit=not (in_stiffness or len(own.pattern.li) or any(s.damps for s in laws)),
+        explicit=not (in_stiffness or len(layout.pattern.li) or any(s.damps for s in laws)),
         monitored=sparse_rows(monitored.rows[:, o]),
         monitored_inputs=np.ascontiguousarray(monitored.input_rows),
         monitored_constants=np.ascontiguousarray(monitored.constants),
@@ -178,14 +178,14 @@ def places(chosen: Index, count: int) -> Index:
     return place
 
 
-def places_in_pattern(rows: Rows, own: Layout) -> tuple[ldl.Place, ldl.Place, Array]:
+def places_in_pattern(rows: Rows, layout: Layout) -> tuple[ldl.Place, ldl.Place, Array]:
     """Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
-    pairs: list[list[tuple[int, float]]] = [[] for _ in own.joins]
-    for i in np.flatnonzero(own.joins).tolist():
+    pairs: list[list[tuple[int, float]]] = [[] for _ in layout.joins]
+    for i in np.flatnonzero(layout.joins).tolist():
         span = slice(rows.pointers[i], rows.pointers[i + 1])
         on, values = rows.columns[span].tolist(), rows.values[span].tolist()
         pairs[i] = [
-            (own.position[a, b], x * y) for a, x in zip(on, values) for b, y in zip(on, values) if a >= b
+            (layout.position[a, b], x * y) for a, x in zip(on, values) for b, y in zip(on, values) if a >= b
         ]
     return (
         ldl.pointers(pairs),
@@ -216,7 +216,7 @@ def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
 
 
 def law_arrays(
-    system: ReducedSystem, start: Start, own: Layout, scheme: Scheme, rules: Sequence[Rule],
+    system: ReducedSystem, start: Start, layout: Layout, scheme: Scheme, rules: Sequence[Rule],
     dashpot_losses: Array, dt: float,
 ) -> state.Laws:  # fmt: skip
     """The laws in the state of a start, for steps up to `dt`, with the losses of an accumulator; their
@@ -227,8 +227,8 @@ def law_arrays(
     d = np.asarray(system.law_rows @ start.u + system.law_inputs @ value(t), float)
     v = np.asarray(system.law_rows @ start.v + system.law_inputs @ value(t, 1), float)
     rounding = rounding_at_rest(system, start, d)
-    rows = sparse_rows(system.law_rows[:, own.order])
-    pointers, places, values = places_in_pattern(rows, own)
+    rows = sparse_rows(system.law_rows[:, layout.order])
+    pointers, places, values = places_in_pattern(rows, layout)
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
     parameters, internal = _law_numbers(laws, start)
     branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
@@ -281,7 +281,7 @@ def law_arrays(
         impulse=zeros(),
         saved=np.zeros(count, np.int64),
         saved_state=np.zeros((count, 3 + internal.shape[1])),
-        members=member_arrays(system, own, scheme),
+        members=member_arrays(system, layout, scheme),
     )
 
 
@@ -296,15 +296,15 @@ def _law_numbers(laws: Sequence[LawSpring], start: Start) -> tuple[Array, Array]
     return parameters, internal
 
 
-def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.Corotational:
+def member_arrays(system: ReducedSystem, layout: Layout, scheme: Scheme) -> state.Corotational:
     """The corotational members at rest."""
     members = system.corotational
     count = len(members)
     supports = system.structure.corotational.rows[:, system.structure.n_free :]
-    by_member = members.on(own.order.tolist()).touched()
+    by_member = members.on(layout.order.tolist()).touched()
     touched = [x for x, _ in by_member]
     first = ldl.pointers(touched)
-    position = own.position if scheme.beta > 0.0 else {}
+    position = layout.position if scheme.beta > 0.0 else {}
     pairs = [
         [
             (position[i, j], begin + a, begin + b)
@@ -339,10 +339,10 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
 
 
 def step_arrays(
-    system: ReducedSystem, start: Start, own: Layout, linear: state.LinearSystem, extremes: Extremes
+    system: ReducedSystem, start: Start, layout: Layout, linear: state.LinearSystem, extremes: Extremes
 ) -> state.Step:
     """The motion of a start, the factor of the mass, and the extremes of a tracker."""
-    n, o, t = system.size, own.order, float(start.times[0])
+    n, o, t = system.size, layout.order, float(start.times[0])
     inputs = system.inputs.shape[1]
     value = system.excitation.value
 
@@ -356,8 +356,8 @@ def step_arrays(
         right_side=np.zeros(n),
         product=np.zeros(n),
         row=np.zeros(n),
-        matrix=np.zeros(len(own.column)),
-        factors=np.zeros((4, len(own.pattern.li))),
+        matrix=np.zeros(len(layout.column)),
+        factors=np.zeros((4, len(layout.pattern.li))),
         pivots=np.zeros((4, n)),
         extremes=extremes,
     )
@@ -365,12 +365,12 @@ def step_arrays(
     step.now.damping_force[:] = system.damping[np.ix_(o, o)] @ start.v[o]
     step.now.load[:] = system.inputs[o] @ value(t) + linear.constant
     step.now.inputs[:], step.now.input_rates[:] = value(t), value(t, 1)
-    diagonal = own.pattern.ai == own.column
-    mass = np.where(diagonal & ~linear.has_mass[own.column], 1.0, linear.on_pattern[0])
+    diagonal = layout.pattern.ai == layout.column
+    mass = np.where(diagonal & ~linear.has_mass[layout.column], 1.0, linear.on_pattern[0])
     if linear.diagonal:
-        step.pivots[state.MASS] = mass[own.pattern.ap[:-1]]
+        step.pivots[state.MASS] = mass[layout.pattern.ap[:-1]]
     else:
-        ldl.factor(own.pattern, mass, step.factors[state.MASS], step.pivots[state.MASS], step.row)
+        ldl.factor(layout.pattern, mass, step.factors[state.MASS], step.pivots[state.MASS], step.row)
     return step
 
 

@@ -103,17 +103,17 @@ def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
     return total / (k * x)
 
 
-def force_term(own: Array, power: Array, x: float, d: Array, k: int, h: float) -> float:
+def force_term(numbers: Array, power: Array, x: float, d: Array, k: int, h: float) -> float:
     """Coefficient `k` of the force of one contact, from those of its deformation `d` up to `k` + 1."""
     spring, dashpot = power[SPRING], power[DASHPOT]
-    spring[k] = power_term(own[N], x, d, spring, k)
-    force: float = own[K] * spring[k]
-    if own[C] != 0.0:
-        dashpot[k] = power_term(own[Q], x, d, dashpot, k)
+    spring[k] = power_term(numbers[N], x, d, spring, k)
+    force: float = numbers[K] * spring[k]
+    if numbers[C] != 0.0:
+        dashpot[k] = power_term(numbers[Q], x, d, dashpot, k)
         drag = 0.0
         for j in range(k + 1):
             drag += dashpot[j] * (k - j + 1) * d[k - j + 1]
-        force += own[C] * drag / h
+        force += numbers[C] * drag / h
     return force
 
 

@@ -51,25 +51,25 @@ class RowExtremes(NamedTuple):
     polynomial: Array
 
 
-def bound_series(own: RowExtremes, i: int, c: Array, terms: int, h: float) -> None:
+def bound_series(extremes: RowExtremes, i: int, c: Array, terms: int, h: float) -> None:
     """Find the value of series `i` at the start of a step, and how far it can come from it."""
     zeroth, first, second = abs(c[1]) + abs(c[2]), 2.0 * abs(c[2]), 0.0
     for k in range(3, terms + 1):
         zeroth += abs(c[k])
         first += k * abs(c[k])
         second += k * (k - 1) * abs(c[k])
-    own.first[i, 0], own.first[i, 1], own.first[i, 2] = c[0], c[1] / h, 2.0 * c[2] / h / h
-    own.far[i, 0], own.far[i, 1], own.far[i, 2] = zeroth, first / h, second / h / h
+    extremes.first[i, 0], extremes.first[i, 1], extremes.first[i, 2] = c[0], c[1] / h, 2.0 * c[2] / h / h
+    extremes.far[i, 0], extremes.far[i, 1], extremes.far[i, 2] = zeroth, first / h, second / h / h
 
 
-def may_exceed(own: RowExtremes, r: int) -> bool:
+def may_exceed(extremes: RowExtremes, r: int) -> bool:
     """Whether row `r` may exceed its extremes in the present step."""
-    first, far = own.constant[r], 0.0
-    for q in range(own.pointers[r], own.pointers[r + 1]):
-        i, order, factor = own.source[q], own.derivative[q], own.factors[q]
-        first += factor * own.first[i, order]
-        far += abs(factor) * own.far[i, order]
-    return bool(first + far > own.high[r] or first - far < own.low[r])
+    first, far = extremes.constant[r], 0.0
+    for q in range(extremes.pointers[r], extremes.pointers[r + 1]):
+        i, order, factor = extremes.source[q], extremes.derivative[q], extremes.factors[q]
+        first += factor * extremes.first[i, order]
+        far += abs(factor) * extremes.far[i, order]
+    return bool(first + far > extremes.high[r] or first - far < extremes.low[r])
 
 
 def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) -> None:
@@ -78,14 +78,14 @@ def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) ->
         p[k] += factor * derivative_factor(k + order, order, 1.0) * c[k + order]
 
 
-def form_row(shown: Shown, inputs: Array, own: RowExtremes, s: int, r: int) -> None:
+def form_row(shown: Shown, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
     """Make row `r` in step `s` the polynomial at work."""
-    p, terms, n = own.polynomial[POLYNOMIAL], shown.terms[s], shown.coefs.shape[1]
+    p, terms, n = extremes.polynomial[POLYNOMIAL], shown.terms[s], shown.coefs.shape[1]
     for k in range(terms + 1):
         p[k] = 0.0
-    p[0] = own.constant[r]
-    for q in range(own.pointers[r], own.pointers[r + 1]):
-        i, order, factor = own.source[q], own.derivative[q], own.factors[q]
+    p[0] = extremes.constant[r]
+    for q in range(extremes.pointers[r], extremes.pointers[r + 1]):
+        i, order, factor = extremes.source[q], extremes.derivative[q], extremes.factors[q]
         for _ in range(order):
             factor /= shown.length[s]
         if i < n:
@@ -94,23 +94,23 @@ def form_row(shown: Shown, inputs: Array, own: RowExtremes, s: int, r: int) -> N
             add_derivative(inputs[s, i - n], terms, order, factor, p)
 
 
-def count_row(shown: Shown, own: RowExtremes, s: int, r: int) -> None:
+def count_row(shown: Shown, extremes: RowExtremes, s: int, r: int) -> None:
     """Count the polynomial at work into the extremes of row `r`."""
-    p, terms, begin, h = own.polynomial, shown.terms[s], shown.begin[s], shown.length[s]
+    p, terms, begin, h = extremes.polynomial, shown.terms[s], shown.begin[s], shown.length[s]
     first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, terms)
-    if first + far > own.high[r]:
-        value, place = highest(p, terms, 1.0, own.high[r])
+    if first + far > extremes.high[r]:
+        value, place = highest(p, terms, 1.0, extremes.high[r])
         if place >= 0.0:
-            own.high[r], own.t_high[r] = value, begin + h * place
-    if first - far < own.low[r]:
+            extremes.high[r], extremes.t_high[r] = value, begin + h * place
+    if first - far < extremes.low[r]:
         for k in range(terms + 1):
             p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
-        value, place = highest(p, terms, 1.0, -own.low[r])
+        value, place = highest(p, terms, 1.0, -extremes.low[r])
         if place >= 0.0:
-            own.low[r], own.t_low[r] = -value, begin + h * place
+            extremes.low[r], extremes.t_low[r] = -value, begin + h * place
 
 
-def find_extremes(shown: Shown, inputs: Array, own: RowExtremes) -> int:
+def find_extremes(shown: Shown, inputs: Array, extremes: RowExtremes) -> int:
     """Count the steps that were kept into the extremes of all rows.
 
     Parameters
@@ -118,7 +118,7 @@ def find_extremes(shown: Shown, inputs: Array, own: RowExtremes) -> int:
     shown : Shown
     inputs : ndarray, shape (n_steps, n_inputs, TERMS + 1)
         Series of the inputs over each step.
-    own : RowExtremes
+    extremes : RowExtremes
 
     Returns
     -------
@@ -128,11 +128,11 @@ def find_extremes(shown: Shown, inputs: Array, own: RowExtremes) -> int:
     for s in range(shown.kept[STEPS]):
         n, terms, h = shown.coefs.shape[1], shown.terms[s], shown.length[s]
         for i in range(n):
-            bound_series(own, i, shown.coefs[s, i], terms, h)
+            bound_series(extremes, i, shown.coefs[s, i], terms, h)
         for j in range(inputs.shape[1]):
-            bound_series(own, n + j, inputs[s, j], terms, h)
-        for r in range(len(own.high)):
-            if may_exceed(own, r):
-                form_row(shown, inputs, own, s, r)
-                count_row(shown, own, s, r)
+            bound_series(extremes, n + j, inputs[s, j], terms, h)
+        for r in range(len(extremes.high)):
+            if may_exceed(extremes, r):
+                form_row(shown, inputs, extremes, s, r)
+                count_row(shown, extremes, s, r)
     return 0
