@@ -39,21 +39,21 @@ class Addressed(types.Type):
         super().__init__(name=f"{parts.instance_class.__name__}-{key}")
 
 
-def addressed(own: Any) -> Any:
+def addressed(kind: Any) -> Any:
     """The type by which a kernel takes a value of a type: a named tuple comes by address, unless it has
     functions in it.
     """
-    return Addressed(own) if isinstance(own, types.BaseNamedTuple) and n_cells(own) else own
+    return Addressed(kind) if isinstance(kind, types.BaseNamedTuple) and n_cells(kind) else kind
 
 
-def n_cells(own: Any) -> int:
+def n_cells(kind: Any) -> int:
     """Cells that a value of a type takes in a `block.Block`; 0 where it cannot stand there."""
-    if isinstance(own, types.Array):
-        return 2 * own.ndim + PLACE + 1 if own.layout == "C" else 0
-    if isinstance(own, types.BaseTuple):
-        sizes = [n_cells(part) for part in own.types]
+    if isinstance(kind, types.Array):
+        return 2 * kind.ndim + PLACE + 1 if kind.layout == "C" else 0
+    if isinstance(kind, types.BaseTuple):
+        sizes = [n_cells(part) for part in kind.types]
         return sum(sizes) if all(sizes) else 0
-    return int(isinstance(own, types.Number | types.Boolean | types.Record))
+    return int(isinstance(kind, types.Number | types.Boolean | types.Record))
 
 
 @register_default(Addressed)
@@ -62,7 +62,7 @@ class AddressedModel(models.OpaqueModel):
 
 
 @unbox(Addressed)
-def from_address(own: Any, number: Any, c: Any) -> Any:
+def from_address(kind: Any, number: Any, c: Any) -> Any:
     """Take an address that Python hands to a kernel as an integer."""
     return NativeValue(c.pyapi.long_as_voidptr(number))
 
@@ -73,19 +73,19 @@ class Parts(AttributeTemplate):
 
     key = Addressed
 
-    def generic_resolve(self, own: Any, name: str) -> Any:
+    def generic_resolve(self, owner: Any, name: str) -> Any:
         """Type of the part of that name; None where there is none."""
-        fields = own.parts.fields
-        return addressed(own.parts.types[fields.index(name)]) if name in fields else None
+        fields = owner.parts.fields
+        return addressed(owner.parts.types[fields.index(name)]) if name in fields else None
 
 
 @lower_getattr_generic(Addressed)
-def part(context: Any, builder: Any, own: Any, address: Any, name: str) -> Any:
+def part(context: Any, builder: Any, owner: Any, address: Any, name: str) -> Any:
     """Code that reads the part of that name."""
-    number = own.parts.fields.index(name)
-    before = sum(n_cells(other) for other in own.parts.types[:number])
+    number = owner.parts.fields.index(name)
+    before = sum(n_cells(other) for other in owner.parts.types[:number])
     place = builder.gep(builder.bitcast(address, CELL.as_pointer()), [CELL(before)])
-    kind = own.parts.types[number]
+    kind = owner.parts.types[number]
     if isinstance(addressed(kind), Addressed):
         return builder.bitcast(place, cgutils.voidptr_t)
     return read(context, builder, kind, place)

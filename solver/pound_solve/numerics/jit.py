@@ -46,28 +46,28 @@ INNER = "_inner"  #: end of the names of kernels that only other kernels call
 
 
 @cache
-def lighten(found: Any) -> None:
+def lighten(module: Any) -> None:
     """Let numba neither optimise nor emit code of inner kernels, from the first call on.
 
     It would optimise each of them with all that it calls, and again in every kernel that calls it.  Their
     plain code is linked into the outermost kernel, which alone is optimised and emitted: once.
     """
-    library, engine = found.core.codegen.JITCodeLibrary, found.core.codegen.JITCPUCodegen
+    library, engine = module.core.codegen.JITCodeLibrary, module.core.codegen.JITCPUCodegen
     optimise, emit = library._optimize_final_module, library._finalize_final_module
     set_environment = engine.set_env
 
-    def is_inner(own: Any) -> bool:
-        return bool(own.name.endswith(INNER))
+    def is_inner(code: Any) -> bool:
+        return bool(code.name.endswith(INNER))
 
-    def optimise_outermost(own: Any) -> None:
-        if not is_inner(own):
-            optimise(own)
+    def optimise_outermost(code: Any) -> None:
+        if not is_inner(code):
+            optimise(code)
 
-    def emit_outermost(own: Any) -> None:
-        if is_inner(own):
-            own._finalized = True
+    def emit_outermost(code: Any) -> None:
+        if is_inner(code):
+            code._finalized = True
         else:
-            emit(own)
+            emit(code)
 
     def set_if_emitted(self: Any, name: str, environment: Any) -> None:
         if self._engine.is_symbol_defined(name):

@@ -126,19 +126,19 @@ def analyse(n: int, i: Index, j: Index) -> Pattern:
     return Pattern(ap, ai, lp, li, rp, rk, rq)
 
 
-def filled(own: Sequence[set[int]]) -> list[list[int]]:
+def filled(columns: Sequence[set[int]]) -> list[list[int]]:
     """Symbolic factorisation: rows of L below the diagonal, column by column.
 
     A column of L has the entries of A and those of its children in the elimination tree.
 
     Parameters
     ----------
-    own : sequence of set
+    columns : sequence of set
         Rows of A below the diagonal, column by column.
     """
     below: list[list[int]] = []
-    children: list[list[int]] = [[] for _ in own]
-    for column, entries in enumerate(own):
+    children: list[list[int]] = [[] for _ in columns]
+    for column, entries in enumerate(columns):
         rows = entries.union(*(below[child][1:] for child in children[column]))
         below.append(sorted(rows))
         if rows:

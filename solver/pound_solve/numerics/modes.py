@@ -248,9 +248,9 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     wanted, values, shapes = count, np.zeros(0), np.zeros((len(at), 0))
     for _ in range(MISSED):
         # known modes are removed, so that another of the same frequency can be found
-        def follow(push: Array, known: Array = shapes, own: Array = values) -> Array:
+        def follow(push: Array, known: Array = shapes, known_values: Array = values) -> Array:
             x = factor.solve(push.ravel())
-            return np.asarray(x - known @ ((known.T @ push.ravel()) / (own + shift)))
+            return np.asarray(x - known @ ((known.T @ push.ravel()) / (known_values + shift)))
 
         more = max(wanted + MORE - len(values), 1)
         start = follow(m @ _generic(len(at)))
