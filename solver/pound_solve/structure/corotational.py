@@ -194,7 +194,7 @@ class CorotationalMembers:
 
     Parameters
     ----------
-    own : sequence of CorotationalMember
+    members : sequence of CorotationalMember
     rows : Matrix, shape (6 n_members, n)
         Their quantities over the columns of the displacements, six rows for each.
 
@@ -203,9 +203,9 @@ class CorotationalMembers:
     p : ndarray, shape (n_members, 10)
     """
 
-    def __init__(self, own: Sequence[CorotationalMember], rows: Matrix) -> None:
-        self.own, self.rows = tuple(own), rows
-        self.p = np.array([c.p for c in own]).reshape(len(own), 10)
+    def __init__(self, members: Sequence[CorotationalMember], rows: Matrix) -> None:
+        self.own, self.rows = tuple(members), rows
+        self.p = np.array([c.p for c in members]).reshape(len(members), 10)
 
     def __len__(self) -> int:
         return len(self.own)

@@ -27,15 +27,15 @@ BRIEFEST: Final = 1e-4
 RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be those of a textbook
 
 
-def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings whose first mode is damped beyond sense, or not at all under an earthquake."""
     model, problems = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
-    for b, part in found:
+    for b, part in parts:
         if not part.period:
             continue
-        whole, own = part.damped(structure.initial_damping), part.damped(added)
-        by_cards = whole - own
+        whole, xi = part.damped(structure.initial_damping), part.damped(added)
+        by_cards = whole - xi
         place: Card | None = next(iter(model.damping), None)
         dashpots = _dashpots(model, b)
         if place and by_cards > MOST_OWN:
@@ -44,14 +44,14 @@ def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> l
             )
             hint = "XI is a share; ALPHA [1/T] and BETA [T] are factors of M and K, not shares"
             problems.append(Diagnostic("P373", message, place.span, hint, "warning"))
-        elif dashpots and own > MOST_ADDED:
+        elif dashpots and xi > MOST_ADDED:
             message = (
-                f"dashpots give the first mode of {b.name!r} {_percent(own)} of critical: it does not swing"
+                f"dashpots give the first mode of {b.name!r} {_percent(xi)} of critical: it does not swing"
             )
             hint = f"coefficients are in {model.units.text('F*T/L')}"
             problems.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
-        elif dashpots and 0.0 < own < LEAST_ADDED:
-            message = f"dashpots give the first mode of {b.name!r} no more than {_percent(own)} of critical"
+        elif dashpots and 0.0 < xi < LEAST_ADDED:
+            message = f"dashpots give the first mode of {b.name!r} no more than {_percent(xi)} of critical"
             hint = f"coefficients are in {model.units.text('F*T/L')}"
             problems.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
         elif not whole and not model.damping and any(c.spec.name in RECORDS for c in model.equake):
@@ -61,12 +61,12 @@ def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> l
     return problems
 
 
-def frequencies_in_hertz(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def frequencies_in_hertz(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Circular frequencies of DAMPING below the first one of every building that they may mean."""
     model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
         omega, nodes = card.values.get("OMEGA"), card.values.get("NODES")
-        chosen = [part for b, part in found if not nodes or set(nodes) & set(b.nodes)]
+        chosen = [part for b, part in parts if not nodes or set(nodes) & set(b.nodes)]
         periods = [t for part in chosen if (t := part.period)]
         if not omega or not periods:
             continue
@@ -108,7 +108,7 @@ def _axial(model: Model) -> dict[int, float]:
     return stiffness
 
 
-def contact_stiffnesses(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def contact_stiffnesses(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Contacts so soft that the weight of the bodies would press them by more than the height of their
     buildings, or so stiff that a collision ends before it is felt behind the face: one for each property
     set.
@@ -116,7 +116,7 @@ def contact_stiffnesses(structure: Structure, found: Sequence[tuple[Building, Pa
     model, problems = structure.model, dict[str, Diagnostic]()
     beams = _axial(model)
     tall = dict[int, float]()
-    for b, _ in found:
+    for b, _ in parts:
         tall.update(dict.fromkeys(b.nodes, max(model.nodes[n].y for n in b.nodes) - b.base))
     for s in structure.laws:
         e = model.elements[s.element]

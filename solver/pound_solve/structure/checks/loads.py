@@ -111,39 +111,39 @@ def misloaded(structure: Structure) -> list[Diagnostic]:
     return problems
 
 
-def _lifted(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+def _lifted(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
     """Loads that pull upwards by more than a share of what others press."""
     unit = structure.model.units.force
-    up = sum(load.y for load in own if load.y > 0.0)
-    press = -sum(load.y for load in own if load.y < 0.0)
+    up = sum(load.y for load in loads if load.y > 0.0)
+    press = -sum(load.y for load in loads if load.y < 0.0)
     press += b.mass * structure.model.gravity if gravity_acts(structure.model) else 0.0
     if up <= UPWARDS * press:
         return []
-    load = max(own, key=lambda load: load.y)
+    load = max(loads, key=lambda load: load.y)
     message = f"loads pull {b.name!r} upwards by {up:.4g} {unit}, others press by {press:.4g} {unit}"
     hint = f"loads that press are negative: Y and {load.item} point upwards"
     return [Diagnostic("P364", message, load.card.place(load.item), hint, "warning")]
 
 
-def _sideways(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+def _sideways(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
     """Loads along x of the size of the weight."""
-    model, push = structure.model, sum(load.x for load in own)
+    model, push = structure.model, sum(load.x for load in loads)
     weight, unit = b.mass * model.gravity, model.units.force
     if abs(push) < SIDEWAYS * weight:
         return []
-    card = max(own, key=lambda load: abs(load.x)).card
+    card = max(loads, key=lambda load: abs(load.x)).card
     message = f"loads push {b.name!r} sideways by {push:.4g} {unit}; it weighs {weight:.4g} {unit}"
     hint = f"loads that press act along Y: {'FY' if card.spec.name == 'LOADS' else 'WY or PY'} below zero"
     return [Diagnostic("P370", message, card.span, hint, "warning")]
 
 
-def _again(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
     """Loads that repeat the weight, or have other units."""
-    model, press = structure.model, -sum(load.y for load in own)
+    model, press = structure.model, -sum(load.y for load in loads)
     weight, unit = b.mass * model.gravity, model.units.force
     if not press or not weight:
         return []
-    load = min(own, key=lambda load: load.y)
+    load = min(loads, key=lambda load: load.y)
     told = f"loads press {b.name!r} by {press:.4g} {unit}"
     if gravity_acts(model) and TWICE[0] <= press / weight <= TWICE[1]:
         message = f"{told}, and STATIC GRAVITY=YES by its weight, {weight:.4g} {unit}, once more"
@@ -156,20 +156,20 @@ def _again(structure: Structure, b: Building, own: list[Load]) -> list[Diagnosti
     return [Diagnostic("P370", message, load.card.place(load.item), hint, "warning")]
 
 
-def _forgotten(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+def _forgotten(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
     """A floor without load, where the others bear loads of the size of their weights."""
     model = structure.model
     if gravity_acts(model) or len(b.floors) < SEVERAL:
         return []
     close = SAME_LEVEL * (b.levels[-1] - b.base)
-    at = [[load for load in own if abs(model.nodes[load.node].y - f.level) <= close] for f in b.floors]
+    at = [[load for load in loads if abs(model.nodes[load.node].y - f.level) <= close] for f in b.floors]
     press = [-sum(load.y for load in a) / (f.mass * model.gravity) for a, f in zip(at, b.floors)]
     bare = [f for f, p in zip(b.floors, press) if not p]
     if len(bare) != 1 or any(0.0 < p < PRESSES for p in press):
         return []
     message = f"no load presses nodes {some(bare[0].nodes)} of {b.name!r}, as loads press its other floors"
     hint = "load them, too, or their beams"
-    return [Diagnostic("P370", message, own[0].card.span, hint, "warning")]
+    return [Diagnostic("P370", message, loads[0].card.span, hint, "warning")]
 
 
 LOOKS: Final = (_lifted, _sideways, _again, _forgotten)

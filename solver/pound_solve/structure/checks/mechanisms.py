@@ -28,10 +28,10 @@ SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 FASTEST: Final = 1000.0
 
 
-def loose(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def loose(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings of members whose nodes can move although their base is held, as with too many pins."""
     problems = list[Diagnostic]()
-    for b, part in found:
+    for b, part in parts:
         slack = part.slack()
         bent = [m for m in slack[:, ~_allowed(structure, slack)].T if not _rigid(structure, b, m)]
         problems += [_mechanism(structure, b, motion) for motion in bent[:1]]
@@ -39,7 +39,7 @@ def loose(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[
 
 
 def untimely(
-    structure: Structure, found: Sequence[tuple[Building, Part]]
+    structure: Structure, parts: Sequence[tuple[Building, Part]]
 ) -> Iterator[tuple[str, Diagnostic]]:
     """Names of buildings whose first period is beyond what their height allows.
 
@@ -50,7 +50,7 @@ def untimely(
     framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
     sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
     metre = METRE.get(model.units.length.lower(), math.inf)
-    for b, part in found:
+    for b, part in parts:
         t1 = part.period
         high = max(model.nodes[n].y for n in b.nodes) - b.base
         if not t1 or high <= 0.0:
@@ -77,12 +77,12 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
 
 
-def hasty(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def hasty(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Histories of fewer than `FEWEST` steps in the first period of every building, and rows further apart
     than that period.
     """
     model, problems = structure.model, list[Diagnostic]()
-    longest, unit = max((part.period for _, part in found), default=0.0), model.units.time
+    longest, unit = max((part.period for _, part in parts), default=0.0), model.units.time
     for card in (c for c in model.analyses if c.spec.name == "HISTORY" and longest):
         first = f"a motion whose first period is about {longest:.2g} {unit}"
         dt, every = card.values.get("DT"), model.output["EVERY"]

@@ -61,7 +61,7 @@ def listed(card: Card, omega: Array) -> tuple[Array, str]:
 
 
 def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Array, str]:
-    """Ratio of every mode on straight lines between those given, and words."""
+    """Ratio of every mode on straight lines between the given ones, and its description."""
     at = frequencies(card, lambda: omega, context)
     item = "OMEGA" if card["OMEGA"] is not None else "MODES"
     x, name = omega, "omega"
@@ -70,15 +70,15 @@ def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Arr
             raise DampingError("OVER=MODE needs the ratios at MODES", "OVER")
         x, name = np.arange(1.0, len(omega) + 1.0), "mode"
         at = np.minimum(card["MODES"], len(omega)).astype(float)
-    given = ratios(card, len(at))
+    xi_at = ratios(card, len(at))
     if len(at) < 2:
         raise DampingError("a line needs two points; XI alone is the same for all modes", item)
     beyond = card["MODES"] is not None and max(card["MODES"]) > len(omega)
-    if beyond and (at == at[0]).all() and (given == given[0]).all():  # the last mode stands for all of them
-        return np.full(len(omega), given[0]), f"XI {given[0]:.6g} of every mode"
+    if beyond and (at == at[0]).all() and (xi_at == xi_at[0]).all():  # the last mode stands for all of them
+        return np.full(len(omega), xi_at[0]), f"XI {xi_at[0]:.6g} of every mode"
     apart(at, item)
     straight = card["BEYOND"] == "LINEAR"
-    xi = through(x, at, given, straight)
+    xi = through(x, at, xi_at, straight)
     if len(xi) and xi.min() < 0.0:
         n = int(np.argmin(xi))
         raise DampingError(
@@ -86,7 +86,7 @@ def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Arr
             "BEYOND=CONSTANT keeps the last value",
             "BEYOND",
         )
-    text = f"XI {values(given)} at {name} {values(at)}, {'linear' if straight else 'constant'} beyond"
+    text = f"XI {values(xi_at)} at {name} {values(at)}, {'linear' if straight else 'constant'} beyond"
     return xi, f"{text}; {span(omega, 2.0 * xi * omega)}"
 
 
