@@ -152,7 +152,7 @@ def _impulse_responses(target: Target, t: Array) -> Array:
     return np.asarray(-(t[1] - t[0]) * w**2 / wd * np.exp(-target.xi * w * t) * np.sin(wd * t))
 
 
-def _correction(target: Target, t: Array, e: Array, a: Array, found: Array, responses: Array) -> Array:
+def _correction(target: Target, t: Array, e: Array, a: Array, psa: Array, responses: Array) -> Array:
     """Change of the accelerations that moves all peaks to their targets, to first order."""
     n, count = len(t), len(target.periods)
     length = 2 * n
@@ -171,7 +171,7 @@ def _correction(target: Target, t: Array, e: Array, a: Array, found: Array, resp
     rows[count + 2 + np.arange(len(high)), high] = 1.0 / target.psa[0]
     wanted = np.concatenate(
         [
-            1.0 - found / target.psa,
+            1.0 - psa / target.psa,
             -rows[count : count + 2] @ a,
             np.sign(a[high]) * PEAK - a[high] / target.psa[0],
         ]
