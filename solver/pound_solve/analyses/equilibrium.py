@@ -28,7 +28,7 @@ class SupportReactions:
     structure : Structure
     axial : ndarray, shape (n_geometric,)
         Axial forces that its geometric stiffness is made of.
-    own : collection of int, or None
+    nodes : collection of int, or None
         Nodes of the building whose base shear is meant; None: of all.
 
     Attributes
@@ -37,9 +37,9 @@ class SupportReactions:
         Motions of the whole along x and y, and its turn about the origin, over all columns.
     """
 
-    def __init__(self, structure: Structure, axial: Array, own: Collection[int] | None = None) -> None:
+    def __init__(self, structure: Structure, axial: Array, nodes: Collection[int] | None = None) -> None:
         model = structure.model
-        self.own = frozenset(model.nodes if own is None else own)
+        self.own = frozenset(model.nodes if nodes is None else nodes)
         bare = assemble(replace(model, damping=()), fixed_dofs(structure), structure.self_weight)
         self.structure, self.n = bare.stressed(axial), bare.n_free
         self.laws = structure.laws  # with what damping has made of them

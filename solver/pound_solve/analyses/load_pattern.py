@@ -23,7 +23,7 @@ class LoadPattern:
     ----------
     structure : Structure
     card : Card
-    own : collection of int, or None
+    building : collection of int, or None
         Nodes of the building that is pushed; None: of all.
 
     Attributes
@@ -34,29 +34,29 @@ class LoadPattern:
         Mass that is pushed [F T^2/L].
     """
 
-    def __init__(self, structure: Structure, card: Card, own: Collection[int] | None) -> None:
-        own = tuple(structure.model.nodes) if own is None else own
+    def __init__(self, structure: Structure, card: Card, building: Collection[int] | None) -> None:
+        building = tuple(structure.model.nodes) if building is None else building
         n, d = structure.n_free, "XY".index(card["DIRECTION"])
         model, dofs = structure.model, structure.dofs
         kind, nodes = card["PATTERN"], card["NODES"]
         self.by_mode, self._stiff = kind == "MODE", 1
         self.along = np.array([float(at == d) for _, at in dofs.free])  # the whole moves by one
         pushed = np.zeros(n)
-        for node in own if nodes is None else nodes:
+        for node in building if nodes is None else nodes:
             pushed[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
         self.structure_mass = structure.mass[:n, :n]
         self.pushed = pushed * self.along
         self.mass = float(self._share(np.ones(n)).sum())
         self.forces = np.zeros(n)
         if kind == "LOADS":
-            (columns,) = columns_of(model, dofs.free, [own])
+            (columns,) = columns_of(model, dofs.free, [building])
             self.forces[columns] = structure.loads[columns]
         elif kind == "FORCES":
             self.forces = dofs.row([(node, d) for node in nodes], card["FORCES"])[:n]
         elif kind == "UNIFORM":
             self.forces = self._of(np.ones(n))
         elif kind == "TRIANGULAR":
-            base = min((model.nodes[x].y for x in own if model.nodes[x].fixed), default=0.0)
+            base = min((model.nodes[x].y for x in building if model.nodes[x].fixed), default=0.0)
             height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in dofs.free]
             self.forces = self._of(np.array(height))
 

@@ -40,7 +40,7 @@ BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers o
 
 
 def recorded_sums(
-    system: ReducedSystem, supports: Sequence[int], found: Sequence[Building]
+    system: ReducedSystem, supports: Sequence[int], tracked: Sequence[Building]
 ) -> dict[str, LinearSums]:
     """Forces of the supports (X, Y, moment of each) and of the buildings on the ground (the same of each),
     what is out of balance in these; drifts, shears and moments of the storeys, accelerations of the floors.
@@ -48,11 +48,11 @@ def recorded_sums(
     equations = Equations(system)
     return {
         "reaction": reactions(equations, supports),
-        "base": base_sums(equations, found),
-        "imbalance": imbalance_sums(equations, found),
-        "drift": drift_sums(system, found),
-        "storey": storey_sums(equations, found),
-        "acceleration": acceleration_sums(system, found),
+        "base": base_sums(equations, tracked),
+        "imbalance": imbalance_sums(equations, tracked),
+        "drift": drift_sums(system, tracked),
+        "storey": storey_sums(equations, tracked),
+        "acceleration": acceleration_sums(system, tracked),
     }
 
 
