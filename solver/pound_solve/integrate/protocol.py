@@ -84,8 +84,8 @@ class Motion(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Rows of a matrix on a motion, of which the columns are u, v, a, and the forces of the laws: what they
-    hold, row by row, shape (n_entries,) each.
+    """Sparse rows of a matrix whose columns are u, v, a and the forces of the laws: entries, row by row,
+    shape (n_entries,) each.
 
     Attributes
     ----------
@@ -104,8 +104,8 @@ class Rows(NamedTuple):
         return Rows(self.number[entries], self.columns[entries], self.factors[entries])
 
     def summed(self, values: Array) -> tuple[Index, Array]:
-        """Numbers of the rows that hold anything, and the sums of what they have of the values of every
-        entry, shape (n_entries, n), shape (n_used, n).
+        """Numbers of the rows that have entries, and for each of them the sum of its factors times the
+        `values` of the entries, which have shape (n_entries, n); shape (n_used, n).
         """
         if not len(self.number):
             return self.number, values
@@ -135,7 +135,7 @@ class RowPeaks(NamedTuple):
 
 
 class Course(NamedTuple):
-    """The motion between two samples: at instants that rise, and from each of them on.
+    """The motion between two samples: at ascending instants and, where it is known, from each of them on.
 
     Attributes
     ----------
@@ -171,11 +171,11 @@ class Envelopes(Protocol):
         ...
 
     def blank(self) -> Self:
-        """Return one that has seen nothing."""
+        """Return empty envelopes of the same quantities."""
         ...
 
     def widen(self, other: Self) -> None:
-        """Count in what another one has seen."""
+        """Include the extremes of another one."""
         ...
 
 
@@ -205,20 +205,20 @@ class Recorder(Protocol):
         ...
 
     def trial(self, t: float, doing: str = "") -> None:
-        """Be told the time reached by a run whose samples may not count, or what keeps it waiting there."""
+        """Receive the time reached by a run whose samples may not be used, or what keeps it waiting."""
         ...
 
 
 class EnvelopeRecorder(Recorder, Protocol):
-    """A sink that keeps envelopes, and takes samples of a run that is over."""
+    """A recorder that keeps envelopes, and takes samples of a run that is over."""
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples, as `sample` does, whose progress was told before."""
+        """Take some samples, as `sample` does, whose progress has been reported before."""
         ...
 
     @property
     def envelopes(self) -> Envelopes:
-        """What it has seen between the samples, and may be at them."""
+        """Envelopes of the motion between the samples, and possibly at them."""
         ...
 
 
@@ -343,8 +343,8 @@ def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL
 
 
 def between_check(peaks: Peaks) -> Check:
-    """Check how far peaks rely on the motion between the steps, which rates at their ends tell; wrong rates
-    make peaks that never were.
+    """Check how far peaks depend on the motion between the steps, which is interpolated by the rates at
+    their ends: wrong rates give peaks that never occurred.
     """
     told = "peaks lie far above both ends of a step; a shorter DT shows them"
     return at_most(Subject.STEPS, BETWEEN, peaks.between, MOST_BETWEEN, told)

@@ -34,7 +34,7 @@ BALANCED = 1e-14  #: share of the forces at a joint that their sum may be by rou
 
 
 class JumpingRun(Protocol):
-    """A run as its joints without mass see it.
+    """Interface of a run for the release of its joints without mass.
 
     Attributes
     ----------
@@ -61,7 +61,9 @@ class JumpingRun(Protocol):
         ...
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Count the work that a falling force has done into that on its law, and what loads have put in."""
+        """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
+        the input.
+        """
         ...
 
     def stop(self, code: str, why: str) -> Stop:
@@ -82,8 +84,8 @@ def falls(before: Branch, after: Branch, d: float) -> bool:
 
 
 def share_of_way(event: EventFunction, d: float, move: float) -> float:
-    """Share of the way of a law by `move` from the deformation `d` at which an event is, infinite if it has
-    none.
+    """Share of the change `move` of a law's deformation, from `d` on, at which an event occurs; infinite if
+    it does not.
     """
     if event.d_factor == 0.0:
         return 0.0 if event.v_factor * move > 0.0 else np.inf
@@ -92,7 +94,9 @@ def share_of_way(event: EventFunction, d: float, move: float) -> float:
 
 
 def first_on_way(branches: Sequence[Branch], d: Array, move: Array) -> tuple[float, int, int]:
-    """Share of the way of all laws up to their first event, its law and its number; 1 and -1 without."""
+    """Share of the changes `move` of all deformations `d` up to the first event, its law and its number; 1
+    and -1 where there is none.
+    """
     first = 1.0, -1, -1
     for i in np.flatnonzero(np.abs(move) > ALONG * np.abs(move).max(initial=0.0)).tolist():
         for e, event in enumerate(branches[i].events):
@@ -110,12 +114,12 @@ def quick(system: ReducedSystem, branches: Sequence[Branch]) -> Index:
 
 
 def sizes(system: ReducedSystem, u: Array, force: Array) -> Array:
-    """Sizes of the forces whose sum is that at the unknowns, shape (n,): of structure and laws."""
+    """Magnitudes of the terms of the forces on the unknowns, from structure and laws, shape (n,)."""
     return np.asarray(abs(system.stiffness) @ np.abs(u) + abs(system.law_rows).T @ np.abs(force))
 
 
 def release(run: JumpingRun, law: int) -> None:
-    """Take joints without mass to where they are in balance without the force that `law` has lost.
+    """Move joints without mass to where they are in balance without the force that `law` has lost.
 
     Raises
     ------

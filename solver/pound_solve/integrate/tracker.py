@@ -57,7 +57,7 @@ class Collision:
 
 @dataclass
 class Peaks:
-    """What a run found beyond its samples.
+    """Results of a run that its samples do not show: extremes, collisions, yields, losses.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Peaks:
 
 
 class Peak(Protocol):
-    """Something that keeps extremes, as `Extreme`."""
+    """An object that keeps extremes, such as `Extreme`."""
 
     @property
     def high(self) -> float:

@@ -64,7 +64,7 @@ def remembers_yield(spring: LawSpring) -> bool:
 
 
 class Uniqueness:
-    """Looks at the instants of a run at which laws give way together.
+    """Examines the instants of a run at which laws give way together.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Uniqueness:
         self._known: set[bytes] = set()
 
     def take(self, t: float, stiffness: Array, damping: Array, rising: Array) -> None:
-        """Look at an instant.
+        """Examine an instant at which laws come to the ends of their branches together.
 
         Parameters
         ----------
@@ -117,20 +117,22 @@ class Uniqueness:
             self.first, self.elements = t, elements
 
     def changed(self, t: float, law: int, branch: int) -> None:
-        """Take in that a law leaves its branch for another, by number."""
+        """Record that a law changes from its branch to another, by number."""
         for since, first, others in self._falls:
             if t >= since and others.pop(law, branch) != branch:
                 self._tell(since, [first, law])
 
     def rests(self, t: float, law: int, other: int, branch: int) -> None:
-        """Take in that a law turns while another, or itself, is where a branch begins, by number."""
+        """Record that a law reverses while another one, or itself, stands at the beginning of a branch, by
+        number.
+        """
         spring = self.system.structure.laws[other]
         yields = spring.law.rule.branches[branch].kind is BranchKind.YIELDING
         if yields and not self.elements and remembers_yield(spring):
             self._tell(t, [law, other])
 
     def _tell(self, t: float, laws: list[int]) -> None:
-        """Note that any of some laws may go on."""
+        """Record that it is open which of some laws goes on."""
         if not self.elements:
             self.first = t
             self.elements = sorted({self.system.structure.laws[i].element for i in laws})

@@ -56,7 +56,7 @@ class DenseOutput:
             subsystem.states = propagator.march(subsystem.q, subsystem.forcing, lengths)
 
     def _loads(self, subsystem: Subsystem) -> Array:
-        """Load polynomials of a subsystem, with the deformations that it is held to."""
+        """Load polynomials of a subsystem, with the prescribed deformations of closed rigid contacts."""
         decomposition, n = subsystem.decomposition, len(subsystem.constant)
         loads = self.input_coefs @ decomposition.propagator.inputs.T
         loads[:, 0, :n] += subsystem.constant
@@ -79,7 +79,7 @@ class DenseOutput:
         return loads
 
     def kept(self) -> DenseOutput:
-        """One that stays as it is when the run goes on."""
+        """Return a copy that does not change when the run goes on."""
         snapshot = copy.copy(self)
         snapshot.__dict__.pop("end", None)  # nobody asks for it then
         snapshot.branches = list(self.branches)

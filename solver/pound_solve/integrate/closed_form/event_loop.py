@@ -88,8 +88,8 @@ class EventDrivenRun(ABC):
         self.tracker.force(law).take(force, self.t)
 
     def change(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Let a law leave its branch, look which others come to the end of theirs with it, and let joints
-        without mass move where its force falls; `d` and `v` are those of all laws.
+        """Let a law leave its branch, note which others come to the ends of theirs at the same instant, and
+        release joints without mass where its force falls; `d` and `v` are those of all laws.
         """
         law, event_index = self._before_slack(law, event_index, d, v)
         self._look_for_rests(law, event_index, d, v)
@@ -106,19 +106,21 @@ class EventDrivenRun(ABC):
         return self.laws[law].law.force(self.states[law], d)[:2]
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Count the work that a falling force has done into that on its law, and what loads have put in."""
+        """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
+        the input.
+        """
         at, d, work, m = self.states[law]
         self.states[law] = at, d, work + lost, m
         self.take_works(np.array([put_in, 0.0, 0.0]))
 
     def take_works(self, works: Array) -> None:
-        """Count works that are done in no time, shape (3,)."""
+        """Add works that are done at one instant, shape (3,)."""
         before = self.energy.array()
         self.energy.advance(np.array([before, before + works]))
 
     def _arriving(self, law: int, d: Array, v: Array) -> Iterator[tuple[int, int, State, Branch]]:
-        """Other laws at unknowns without mass that come to an event now: the law, the event, and the state
-        and the branch after it.
+        """Other laws at unknowns without mass whose events occur now: the law, the event, and the state and
+        the branch after it.
         """
         from pound_solve.integrate.kernels.ties import event_arrives  # which most decks do not need
 
@@ -133,7 +135,9 @@ class EventDrivenRun(ABC):
                     break
 
     def _before_slack(self, law: int, event_index: int, d: Array, v: Array) -> tuple[int, int]:
-        """The law and the event that go before one that becomes slack, or this (see `kernels.ties`)."""
+        """Law and event to be taken first where this one makes its law slack (see `kernels.ties`); else
+        this one.
+        """
         before, deformation = self.branches[law], float(d[law])
         if self.laws[law].role.collides or not self._massless_laws[law] or before.stiffness == 0.0:
             return law, event_index
@@ -146,7 +150,9 @@ class EventDrivenRun(ABC):
         return law, event_index
 
     def _look_for_rests(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Look which laws are at the beginning of a branch as one turns (see `kernels.ties.note_rests`)."""
+        """Record which laws stand at the beginning of a branch as `law` reverses (see
+        `kernels.ties.note_rests`).
+        """
         event = self.branches[law].events[event_index]
         turns = event.d_factor == 0.0 and event.v_factor != 0.0
         if not turns or self.laws[law].role.collides or not self._massless_laws[law]:
@@ -158,7 +164,7 @@ class EventDrivenRun(ABC):
                     self.uniqueness.rests(self.t, law, i, branch)
 
     def _branch_begun(self, law: int, d: float, v: float, turns: bool) -> int:
-        """Branch at whose beginning a law `turns`, or else rests; -1 for none."""
+        """Branch at whose beginning a law stands, as it `turns` or else rests; -1 for none."""
         from pound_solve.integrate.kernels.ties import RESTS, TIED, event_near  # as above
 
         state, largest = self.states[law], self.largest[:, law].tolist()
@@ -171,8 +177,8 @@ class EventDrivenRun(ABC):
         return state[0] if entered else -1
 
     def _look_for_ties(self, law: int, d: Array, v: Array, fell: bool) -> None:
-        """Look which laws come to the end of their branches with one that is softer now, or whose force
-        `fell`.
+        """Record which laws come to the ends of their branches together with one that has become softer, or
+        whose force `fell`.
         """
         k, c = (np.array([getattr(b, name) for b in self.branches]) for name in ("stiffness", "damping"))
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
@@ -187,7 +193,9 @@ class EventDrivenRun(ABC):
             self.uniqueness.take(self.t, k, c, rising)
 
     def count_change(self, elapsed: float, rounding: float) -> None:
-        """Count changes of branch at one instant: an event after a share `rounding` of the time is one."""
+        """Count the changes of branch at one instant: `elapsed` up to a share `rounding` of the time counts
+        as none.
+        """
         same = elapsed <= rounding * max(1.0, self.t)
         self.changes_at_instant = self.changes_at_instant + 1 if same else 0
 
@@ -212,9 +220,9 @@ class EventDrivenRun(ABC):
         return 0.5 * float(v @ self.system.mass @ v)
 
     def reaching(self, u: Array) -> Array:
-        """Largest magnitudes of the rows and their rates where the bodies that contacts are between come to
-        displacements `u`: to these their deformations are rounded, and those of bodies that move alike are
-        nothing else.
+        """Largest magnitudes of the rows and their rates; those of contacts at least the displacements of
+        the two bodies at `u`.  The rounding of a contact's deformation is a share of these, and for bodies
+        that move alike the deformation is nothing but rounding.
         """
         largest = self.largest.copy()
         far = np.abs(self.rows.rows[self.contacts]) @ np.abs(u)

@@ -117,7 +117,7 @@ class Exact(EventDrivenRun):
         return self.outcome()
 
     def _charge(self, cost: float) -> None:
-        """Add a cost to the run's."""
+        """Add a cost to the budget of the run."""
         decompositions = len(self.subsystems.decompositions)
         self.budget.charge(cost, self.t, decompositions)
 
@@ -136,7 +136,7 @@ class Exact(EventDrivenRun):
         return DenseOutput(self.subsystems, self.branches, self.system.excitation.about(starts), lengths)
 
     def _sample_now(self) -> None:
-        """Add a sample of the present."""
+        """Add a sample of the present motion."""
         at = np.array([self.t])
         motion = self._dense_output(np.zeros(1), at).motions(0, np.zeros(1))
         self.samples.add(at, motion, np.array([self.work.entries]), self.states, self.branches)
@@ -211,7 +211,7 @@ class Exact(EventDrivenRun):
     def _accept_event(
         self, window: Window, dense: DenseOutput, grid_event: GridEvent, end: GridSamples, cursor: int
     ) -> int:
-        """Advance to an event, where the rows are those of `end`; return the new cursor."""
+        """Advance to an event, where the values of the rows are those of `end`; return the new cursor."""
         law, event_index, tau = grid_event.event
         interval, local = dense.locate(tau)
         self._sample(dense, cursor, interval)
@@ -226,8 +226,8 @@ class Exact(EventDrivenRun):
         return cursor + interval
 
     def _switch(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Let a law leave its branch, and all that follows from it at the same instant; `d` and `v` are the
-        deformations and rates of all laws.
+        """Let a law leave its branch, and carry out all that follows from it at the same instant; `d` and
+        `v` are the deformations and rates of all laws.
         """
         self.events += 1
         try:
@@ -252,11 +252,11 @@ class Exact(EventDrivenRun):
         return linear_forces(self.branches)(d, v)
 
     def take_works(self, works: Array) -> None:
-        """Count works that are done in no time, shape (3,)."""
+        """Add works that are done at one instant, shape (3,)."""
         self.work.add(works)
 
     def take_impact(self, put_in: float, lost: Array) -> None:
-        """Count the works of an impact of rigid contacts (see `RigidRun`)."""
+        """Add the works of an impact of rigid contacts (see `RigidRun`)."""
         self.take_works(np.array([put_in, 0.0, lost.sum()]))
         self.energy.dashpot_losses += lost
 
@@ -328,7 +328,7 @@ class Exact(EventDrivenRun):
                 collision.impulse += dense.impulse(law, i, tau)
 
     def _add_total_work(self, dense: DenseOutput, interval: int, tau: float) -> None:
-        """Add the work over the first `tau` of an interval in the total form."""
+        """Add the work over the first `tau` of an interval, see `work_integrals.total_work`."""
         work = work_integrals.total_work(
             self.system,
             tau,

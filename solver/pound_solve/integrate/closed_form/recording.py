@@ -133,5 +133,5 @@ class EnvelopeSamples:
 
 
 def joined(motions: Sequence[Motion]) -> Motion:
-    """The motion at the instants of all."""
+    """Concatenate several motions: one motion at the instants of all."""
     return Motion(*(np.concatenate(x, axis=-1) for x in zip(*motions)))

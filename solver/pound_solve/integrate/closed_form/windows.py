@@ -50,15 +50,15 @@ class Windows:
         self.restart()
 
     def restart(self) -> None:
-        """Begin with few intervals again, after an event."""
+        """Begin again with windows of few intervals, after an event."""
         self._intervals = INTERVALS_AFTER_EVENT
 
     def narrow(self) -> None:
-        """Go to the next goal only."""
+        """Let the next window end at the next goal."""
         self._intervals = 0
 
     def widen(self) -> None:
-        """Take more intervals next, as there was no event."""
+        """Double the number of intervals of the next window, up to a limit, as there was no event."""
         self._intervals = min(max(2 * self._intervals, 1), MAX_INTERVALS)
 
     def next(self, t: float, goals: Array, spectral_radius: float) -> Window:

@@ -51,7 +51,9 @@ class Peak(NamedTuple):
 
 
 def measured(extremes: Sequence[Extreme], kinds: Sequence[str]) -> Peak:
-    """Extremes, each relative to its own size, but at least to `FLOOR` times the largest of its kind."""
+    """Extremes as values to be compared, the scale of each being its own size, but at least `FLOOR` times
+    the largest of its kind.
+    """
     values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
     size = np.abs(values).max(axis=1, initial=0.0)
     scales = np.repeat(_floored(size, np.array(kinds)), 2)
@@ -63,7 +65,7 @@ def _all(kind: int, count: int) -> Index:
 
 
 def _floored(size: Array, kinds: Array, share: float = FLOOR) -> Array:
-    """Sizes, but at least a share of the largest of their kind."""
+    """Sizes, raised to at least a `share` of the largest of their kind."""
     floored = size.copy()
     for kind in np.unique(kinds):
         alike = kinds == kind
@@ -125,8 +127,8 @@ def figures(system: ReducedSystem, peaks: Peaks, witness: Witness, asked: Collec
 
 
 def hardest(peaks: Peaks) -> float:
-    """Return how long the collision of the largest force lasts [T], or twice the time in which that rises
-    where this is less; infinite without collisions.
+    """Return the duration of the collision with the largest force [T], or twice the time to its peak where
+    this is less; infinite without collisions.
 
     A long collision may reach its peak early, by a mode that is faster than the whole: steps have to follow
     that.  A force that is largest at once jumps, by a dashpot, which a located event resolves.

@@ -40,7 +40,8 @@ BISECTIONS = 30  #: to the observed power
 
 
 def observed_order(before: Array, now: Array, first: float, second: float) -> Array:
-    """Return the powers of the step with which some errors fall, between `SLOWEST` and `FASTEST`.
+    """Return the observed orders of convergence: powers of the step with which errors fall, between
+    `SLOWEST` and `FASTEST`.
 
     Parameters
     ----------
@@ -58,14 +59,14 @@ def observed_order(before: Array, now: Array, first: float, second: float) -> Ar
 
 
 def trusted_order(observed: Array) -> Array:
-    """Return the powers that errors are assumed to fall with."""
+    """Return the orders of convergence that are assumed for the `observed` ones."""
     by_chance = observed > FASTEST - 2.0 * (FASTEST - SLOWEST) / 2**BISECTIONS
     return np.where(by_chance, SLOWEST, np.minimum(observed, ORDER))
 
 
 def differences(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> tuple[Array, Array]:
-    """Differences of the peaks of some runs from those of the last, relative to `scales`, shape (runs, n),
-    and how many times the steps of each the last one took, shape (runs, 1).
+    """Differences between the peaks of each run and those of the last, relative to `scales`, shape (runs,
+    n), and the number of steps of the last run over that of each, shape (runs, 1).
     """
     apart = [np.abs(peaks[-1] - p) / scales for p in peaks[:-1]]
     ratios = steps[-1] / np.array(steps[:-1], float)
@@ -73,9 +74,7 @@ def differences(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> 
 
 
 def last_order(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> Array:
-    """Powers that the errors of the last three runs are seen to fall with; the slowest where there are
-    fewer.
-    """
+    """Orders of convergence observed in the last three runs; the slowest where there are fewer runs."""
     if len(steps) < 3:
         return np.full(scales.shape, SLOWEST)
     before, now = (np.abs(peaks[k] - peaks[k - 1]) / scales for k in (-2, -1))

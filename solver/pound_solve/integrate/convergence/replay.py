@@ -12,7 +12,8 @@ from pound_solve.structure.reduction import ReducedSystem
 
 
 class Witness:
-    """Sees the samples of a run that does not count, and nothing between them.
+    """Recorder of a run whose results are only compared: keeps extremes at the samples, nothing between
+    them.
 
     Attributes
     ----------
@@ -34,13 +35,13 @@ class Witness:
         self.trial(float(t[-1]))
 
     def see(self, u: Array, laws: LawValues) -> None:
-        """Count in what some samples hold."""
+        """Update extremes and lost energies with some samples."""
         self.high = np.maximum(self.high, u.max(axis=1))
         self.low = np.minimum(self.low, u.min(axis=1))
         self.lost = laws.lost[:, -1].tolist()
 
     def between(self, course: Course) -> None:
-        """Look away (see `Recorder`)."""
+        """Ignore the motion between samples (see `Recorder`)."""
 
     @property
     def shown(self) -> Flags:
@@ -58,7 +59,9 @@ class Witness:
 
 
 class Watch(Witness):
-    """Sees the samples of a run that counts, and passes everything on at once."""
+    """Recorder of a run whose results are used: keeps extremes at the samples, and passes everything on at
+    once.
+    """
 
     def __init__(self, recorder: EnvelopeRecorder) -> None:
         super().__init__(recorder)
@@ -132,7 +135,7 @@ class Replay(Witness):
         return envelopes.peaks()
 
     def pass_on(self) -> None:
-        """Pass everything on to the recorder."""
+        """Pass the samples and envelopes on to the recorder."""
         self.recorder.envelopes.widen(self.envelopes)
         for sample in self.samples:
             self.recorder.keep(*sample)

@@ -44,7 +44,7 @@ MAX_RUNS = 6  #: after which smaller tolerances are given up
 
 
 class UnfitError(Exception):
-    """LAGUERRE stops on its way, where another method may pass, or because it is `dear`."""
+    """LAGUERRE cannot finish where another method may, or is too expensive (`dear`)."""
 
     def __init__(self, why: str, dear: bool) -> None:
         super().__init__(why)

@@ -31,7 +31,7 @@ class RowSet(NamedTuple):
 
 
 class Sampled(Protocol):
-    """Rows at the points of some segments, and between them.
+    """Values of rows at the sample points of time segments, and between these points.
 
     Attributes
     ----------
@@ -88,12 +88,14 @@ class RowFunctions:
         return curvatures
 
     def scale(self, largest: Array) -> Array:
-        """Largest magnitude of their terms, shape (n,), from that of rows and rates (2, n_rows)."""
+        """Largest magnitude of the terms of each function, shape (n,), from that of rows and rates (2,
+        n_rows).
+        """
         a, b, c = np.abs(self.factors)
         return np.asarray(a * largest[0, self.row] + b * largest[1, self.row] + c)
 
     def evaluator(self, samples: Sampled) -> grid.Evaluate:
-        """Return what evaluates one of them, its value and its slope, within a cell."""
+        """Return a function that computes value and slope of one of these functions within a cell."""
         a, b, c = self.factors.tolist()
         row = self.row.tolist()
 

@@ -30,13 +30,13 @@ POLYNOMIAL, CELLS = range(2)
 
 
 def room(terms: int) -> tuple[int, int]:
-    """Shape of what the kernels work on."""
+    """Shape of the work array of the kernels for polynomials of highest power `terms`."""
     return DEPTH + 2, terms + 3
 
 
 @loose
 def size(p: Array, row: int, terms: int) -> float:
-    """How far the polynomial in a row can come from its value at 0, up to 1."""
+    """Bound of the change of the polynomial in a row from its value at 0, over [0, 1]."""
     total = 0.0
     for k in range(1, terms + 1):
         total += abs(p[row, k])
@@ -45,7 +45,7 @@ def size(p: Array, row: int, terms: int) -> float:
 
 @loose
 def rate_size(p: Array, row: int, terms: int) -> float:
-    """How far the derivative of the polynomial in a row can come from its value at 0, up to 1."""
+    """Bound of the change of the polynomial's derivative in a row from its value at 0, over [0, 1]."""
     total = 0.0
     for k in range(2, terms + 1):
         total += k * abs(p[row, k])

@@ -18,7 +18,7 @@ BACK = 1e-6  #: share of its largest rate that a law must move back with before 
 
 
 def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, float]:
-    """Event function `e` of law `i` at deformation `d` and rate `v`, and the size of its terms."""
+    """Event function `e` of law `i` at deformation `d` and rate `v`, and the magnitude of its terms."""
     on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
     if on_d == 0.0 and constant == 0.0:  # what hardly moves would reverse again and again
         back = max(BACK * laws.largest_rate[i], STILL * laws.largest_terms[i])
@@ -34,17 +34,17 @@ def start_value(laws: Laws, i: int, e: int) -> float:
 
 
 def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
-    """Event function at the start of the step, for an interpolation; NaN where it falls at first.
+    """Event function at the start of the step, for an interpolation; NaN where its slope there is negative.
 
-    A law that has just come through an event and moves on stands next to zero there: an interpolation would
-    take the way back to that event, late in the step, for one at once.
+    Just after an event the event function of a law that moves on is still close to zero: an interpolation
+    would mistake a return to that event, late in the step, for an event at its start.
     """
     return np.nan if all_slopes(laws, step, i, e)[0] < 0.0 else start_value(laws, i, e)
 
 
 def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
-    """Slopes of event function `e` of law `i` at both ends of the step that was tried, but for what
-    accelerations add; how fast the limit of a rate changes is left out.
+    """Slopes of event function `e` of law `i` at both ends of the trial step, without the terms from
+    accelerations and, for events of the rate alone, without the change of their limit.
     """
     on_d = laws.events[i, e, 0]
     s0, s1 = on_d * laws.now.rate[i], on_d * laws.trial.rate[i]
@@ -57,7 +57,7 @@ def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
 
 
 def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
-    """Those with what accelerations add."""
+    """Slopes of event function `e` of law `i` at both ends of the trial step, with all their terms."""
     s0, s1 = slopes(laws, i, e)
     on_v = laws.events[i, e, 1]
     if on_v != 0.0:
@@ -67,11 +67,12 @@ def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
 
 
 def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
-    """The first event in the step of length `h` that was tried, see `none`.
+    """First event in a trial step of length `h`; law -1 where there is none (see `none`).
 
-    Its time is that of the cubic through values and slopes at both ends, for an event at a rate that of the
-    straight line.  An event of a contact counts if it is there before that of another law: bodies that move
-    alike meet only in a trial in which a hinge of one has yielded, and that of the other has not yet.
+    Its time is found from the cubic through values and slopes at both ends, for an event of the rate from
+    the straight line.  An event of a contact counts beside one of another law only if its event function is
+    clearly above zero before that: bodies that move alike only seem to meet in a trial step in which a
+    hinge of one has yielded, and that of the other has not yet.
     """
     first = none(np.inf)
     for i in range(len(laws.rule)):
@@ -89,8 +90,8 @@ def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
 
 
 def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool:
-    """Whether the cubic of event function `e` of law `i` in the step of length `h` is above rounding up to
-    the time `t`.
+    """Whether the cubic of event function `e` of law `i` in the step of length `h` exceeds rounding at a
+    point before the time `t`.
     """
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
     s0, s1 = all_slopes(laws, step, i, e)
@@ -102,7 +103,7 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
 
 
 def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
-    """Time of event `e` of law `i` in the step that was tried; infinite where there is none."""
+    """Time of event `e` of law `i` in the trial step; infinite where there is none."""
     on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
     if on_d == 0.0 and on_v == 0.0:
         return np.inf

@@ -205,9 +205,9 @@ def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
 
 
 def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
-    r"""What rounding makes of the deformations `d` at a start, shape (n_laws,): of the strain energy E
-    there a law has a share of :math:`\epsilon^2`, so that it moves by :math:`\epsilon\sqrt{2E/k}`, whatever
-    units its deformation has.
+    r"""Rounding errors of the deformations `d` at a start, shape (n_laws,): of the strain energy E there a
+    law has a share of :math:`\epsilon^2`, so that it moves by :math:`\epsilon\sqrt{2E/k}`, whatever units
+    its deformation has.
     """
     k = np.array([s.steepest for s in system.structure.laws], float)
     doubled = float(np.abs(start.u) @ np.abs(system.stiffness @ start.u) + k @ d**2)

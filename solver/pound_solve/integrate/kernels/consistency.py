@@ -42,7 +42,7 @@ def touches_massless(linear: LinearSystem, laws: Laws, i: int) -> bool:
 
 
 def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: float, d: float) -> bool:
-    """Whether law `i` has lost a force that holds an unknown without mass, as it left a branch of that
+    """Whether law `i` lost a force that had held an unknown without mass, when it left a branch of that
     `stiffness` and `offset` at the deformation `d`.
     """
     if laws.contact[i] or laws.curved[i]:
@@ -112,7 +112,7 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
 def force_rates(
     linear: LinearSystem, laws: Laws, velocity: Array, rate: Array, input_rates: Array, out: Array
 ) -> None:
-    """Rates of the forces on the massless unknowns, dashpots apart, at some velocities and rates of the
+    """Rates of the forces on the massless unknowns, dashpots excluded, at some velocities and rates of the
     laws.
     """
     multiply(linear.stiffness, velocity, out)
@@ -174,7 +174,7 @@ def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
 
 
 def jump_massless_rates(sim: Simulation) -> None:
-    """Give massless unknowns the velocities that the present branches ask for (see the module's head)."""
+    """Set the velocities of massless unknowns to those on the present branches (see the module's head)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
     now, change, force, size = step.now, step.trial.acceleration, step.right_side, step.product
     rate = factorise_massless(sim, laws.members.now.quantities)

@@ -32,7 +32,7 @@ def subtract_force(members: Corotational, c: int, forces: Array, out: Array) -> 
 
 
 def add_tangent_force(tangent: Array, c: int, quantities: Array, out: Array, sign: float) -> None:
-    """Add the force that the tangent of member `c` gives at some quantities."""
+    """Add `sign` times the tangent of member `c` times its quantities to row `c` of `out`."""
     for i in range(6):
         total = 0.0
         for j in range(6):
@@ -71,7 +71,7 @@ def form_members(laws: Laws, step: Step) -> None:
 
 
 def predict_members(laws: Laws, step: Step) -> None:
-    """Begin the members' iterations: a line through their forces where the step leads without its end."""
+    """Linearise the members' forces about the displacements that lack the acceleration at the end."""
     members = laws.members
     form_quantities(members, step.trial.displacement, step.trial.inputs, members.predicted)
     for c in range(len(members.parameters)):
@@ -80,21 +80,22 @@ def predict_members(laws: Laws, step: Step) -> None:
 
 
 def predicted_force(members: Corotational, c: int) -> None:
-    """Force of member `c` on its line at the predicted quantities, as its force at the end of the step."""
+    """Set the force of member `c` at the end of the step to the linearised one where it is predicted."""
     for j in range(6):
         members.trial.forces[c, j] = members.at_zero[c, j]
     add_tangent_force(members.tangent, c, members.predicted, members.trial.forces, 1.0)
 
 
 def anchor_member(members: Corotational, c: int) -> None:
-    """Draw the line of member `c` through its force at the end of the step."""
+    """Shift the linearised force of member `c` so that it agrees with the force at the end of the step."""
     for j in range(6):
         members.at_zero[c, j] = members.trial.forces[c, j]
     add_tangent_force(members.tangent, c, members.trial.quantities, members.at_zero, -1.0)
 
 
 def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
-    """Find the members' forces at the acceleration that was tried, and draw their lines through them.
+    """Compute the members' forces for the trial acceleration, and shift the linearised ones to agree with
+    them.
 
     Returns
     -------
@@ -142,6 +143,6 @@ def force_size(state: MemberState, c: int, length: float) -> float:
 
 
 def take_tangents(members: Corotational, quantities: Array) -> None:
-    """Take the members' tangents at some quantities for the factor to come."""
+    """Compute the members' tangents at some quantities, for the next factorisation."""
     for c in range(len(members.parameters)):
         quantity_stiffness(members.parameters, c, quantities, 0, members.tangent, c)

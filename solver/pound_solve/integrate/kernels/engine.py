@@ -132,7 +132,9 @@ class KernelEngine(ABC):
         """Self-checks of the run."""
 
     def begin(self, advance: Function) -> None:
-        """Note the contacts that are closed at the start, before a kernel advances."""
+        """Record the contacts that are closed at the start, and set the limits of friction, before a kernel
+        runs.
+        """
         laws, t = self.laws, float(self.times[0])
         for i, s in enumerate(self.springs):
             kind = s.law.rule.branches[laws.branch[i]].kind
@@ -148,7 +150,7 @@ class KernelEngine(ABC):
             self.recorder.trial(t, told)
 
     def advance(self, kernel: Function, *given: Any) -> None:
-        """Let a kernel advance to the end, and take in what it keeps."""
+        """Run a kernel until it has reached the end, and fetch what it keeps whenever it returns."""
         ready = provider().ready(kernel)
         while True:
             with np.errstate(all="ignore"):  # a runaway is reported in words
@@ -160,11 +162,11 @@ class KernelEngine(ABC):
                 self.resume(why)
 
     def resume(self, why: int) -> None:
-        """Do what a kernel came back for, that it may go on; stop where it cannot."""
+        """Deal with the reason why a kernel has returned, so that it can go on; stop where it cannot."""
         raise self.trouble(why)
 
     def fetch(self) -> None:
-        """Take in the samples and the transitions that were kept."""
+        """Fetch transitions, the motion between samples, and samples from the buffers."""
         self.fetch_transitions()
         self.fetch_shown()
         self._fetch_samples()
@@ -173,7 +175,7 @@ class KernelEngine(ABC):
         self.state.kept = self.state.shown = 0
 
     def fetch_transitions(self) -> None:
-        """Take in the transitions that were kept, and which laws came to theirs together."""
+        """Fetch the transitions from the buffers, and which laws came to theirs together."""
         for k in range(int(self.state.tied)):
             self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
         for t, law, other, branch in self.buffers.rests[: self.state.rests].tolist():
@@ -190,7 +192,7 @@ class KernelEngine(ABC):
         self.state.logged = 0
 
     def fetch_shown(self) -> None:
-        """Show the recorder the motion that was kept between the samples."""
+        """Pass the motion between the samples from the buffers to the recorder."""
         buffers, shown = self.buffers, self.state.shown
         if not shown:
             return
@@ -216,7 +218,7 @@ class KernelEngine(ABC):
         self.recorder.sample(buffers.time[:kept].copy(), u, v, a, values, buffers.works[:kept].T.copy())
 
     def trouble(self, why: int) -> Stop:
-        """What a kernel came back for, in words."""
+        """The `Stop` that says in words why a kernel has returned early."""
         fault = int(self.state.fault)
         if why == RUNAWAY:
             fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
@@ -277,7 +279,7 @@ class KernelEngine(ABC):
         return bool(np.linalg.eigvalsh(elastic + (rows.T * stiffness) @ rows)[0] <= 0.0)
 
     def outcome(self) -> Outcome:
-        """What the run gathered."""
+        """Results of the run."""
         laws = self.laws
         for law, collision in self.tracker.open.items():
             running = laws.peak_force[law], laws.peak_time[law], laws.impulse[law]

@@ -53,7 +53,7 @@ def proportional_damping(laws: Laws, i: int, k: float) -> float:
 
 
 def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
-    """Take over the linear branch that law `i` is on, and its event functions."""
+    """Copy the linear branch of law `i` and its event functions into the arrays of the kernels."""
     b = branch_of(
         rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
     )
@@ -72,7 +72,7 @@ def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
 
 
 def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
-    """Work done on law `i` so far, dashpots apart."""
+    """Work done on law `i` so far, dashpots excluded."""
     before: float = laws.entry_work[i]
     if laws.curved[i]:
         return before + curved_force(laws, rules, i, d, 0.0)[3]
@@ -90,7 +90,9 @@ def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
 
 
 def drag_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
-    """Force whose work at the rate `v` law `i` dissipates, by its own rate and by proportional dashpots."""
+    """Dissipative force of law `i` at the rate `v`: its own dependence on the rate, and proportional
+    dashpots.
+    """
     if not laws.curved[i]:
         dashpot: float = laws.damping[i] * v
         return dashpot
@@ -132,7 +134,8 @@ def leave_branch(laws: Laws, rules: Tables, i: int, event: int, d: float, v: flo
 
 
 def press_friction(laws: Laws, i: int, force: float, rate: float, v: float) -> None:
-    """Press coupled law `i` with the force of its contact and the rate of that, but not while it pulls.
+    """Set the normal force of coupled law `i`, and its rate, to those of its contact; zero while that
+    pulls.
 
     It pulls only as the bodies part, at a rate `v` below zero: a force below zero at touch is rounding.
     """
@@ -141,16 +144,14 @@ def press_friction(laws: Laws, i: int, force: float, rate: float, v: float) -> N
 
 
 def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
-    """Give coupled law `i` its normal force and the rate of that, at the motion of the law that makes
-    it.
-    """
+    """Compute the normal force of coupled law `i` and its rate from the motion of its contact."""
     j = laws.normal[i]
     press_friction(laws, i, linear_force(laws, j, d, v), laws.stiffness[j] * v + laws.damping[j] * a, v)
 
 
 def enter_coupled(laws: Laws, rules: Tables, i: int) -> None:
-    """Take over the branch that coupled law `i` is on and its event functions, and the rates at which its
-    force and their limits grow with the normal force, in which they are linear.
+    """Copy the branch of coupled law `i` and its event functions into the arrays, with the rates at which
+    its force and the limits of its events change: they are linear in the normal force.
     """
     push = laws.internal[i, PUSH]
     laws.internal[i, PUSH] = push + laws.internal[i, PUSH_RATE]
@@ -175,7 +176,7 @@ def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> No
 
 
 def hold_friction_limits(laws: Laws) -> None:
-    """Keep the limits of the coupled laws and their rates as those of the start of the coming step."""
+    """Store the limits of the coupled laws and their rates as those at the start of the next step."""
     for i in laws.coupled:
         for e in range(laws.events.shape[1]):
             laws.limits_at_start[i, e] = laws.events[i, e, 2]

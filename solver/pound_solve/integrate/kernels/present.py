@@ -14,7 +14,7 @@ from pound_solve.laws.automaton import Branch
 
 
 class KernelPresent:
-    """One instant of a run, see `release.JumpingRun`.
+    """State of a kernel run at one instant, for the release of joints (see `release.JumpingRun`).
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class KernelPresent:
         self._branches[law] = engine.springs[law].branch(engine.law_state(law))
 
     def enter(self, law: int) -> None:
-        """Take over the branch that a law has gone to, where that is not a straight line."""
+        """Linearise the branch that a law has changed to, if the law is curved."""
         laws = self.engine.laws
         if laws.curved[law]:
             d, v = float(laws.now.deformation[law]), float(laws.now.rate[law])
@@ -57,12 +57,14 @@ class KernelPresent:
         return self.engine.springs[law].law.force(self.engine.law_state(law), d)[:2]
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Count the work that a falling force has done into that on its law, and what loads have put in."""
+        """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
+        the input.
+        """
         self.engine.laws.entry_work[law] += lost
         self.take_input(put_in)
 
     def take_input(self, put_in: float) -> None:
-        """Count work that is put in in no time."""
+        """Add work that is put in at one instant."""
         works = self.engine.accumulator.works
         works.input += put_in
         works.gross_input += abs(put_in)
@@ -72,7 +74,7 @@ class KernelPresent:
         return self.engine.stop(code, why)
 
     def hand_back(self) -> None:
-        """Let the run go on from the displacements and velocities that are reached."""
+        """Let the run continue from the displacements and velocities that were reached."""
         laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
         now.displacement[:], now.velocity[:] = self.u[order], self.v[order]
         inputs = [self.system.excitation.value(self.t, derivative) for derivative in (0, 1)]

@@ -56,8 +56,8 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
 
 
 def track_peaks(sim: Simulation, t: float, since: float) -> None:
-    """Count the motion at the start of the coming step into the peaks, and stationary points on the same
-    branches since the last count, `since` ago.
+    """Update the peaks with the motion at the start of the next step and, on unchanged branches, with the
+    stationary points since the last update, `since` ago (0: none).
     """
     laws, step = sim.laws, sim.step
     extremes, forces = step.extremes, len(sim.linear.monitored_constants) + len(laws.rule)
@@ -132,7 +132,7 @@ def take_first_sample(sim: Simulation, rules: Tables) -> None:
 def store_motion(sim: Simulation, rules: Tables, t: float) -> None:
     """Keep the present motion for the envelopes.
 
-    Of a step that is cut into more parts than there is room for, the others are passed over.
+    If a step is cut into more parts than there is room for, the rest is not kept.
     """
     laws, buffers, run = sim.laws, sim.buffers, sim.run
     if len(buffers.which) + len(buffers.acting) == 0 or run.shown == len(buffers.shown_time):

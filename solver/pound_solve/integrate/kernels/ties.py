@@ -23,19 +23,19 @@ RESTS = 1e-4  #: share of its largest rate up to which a law stands still
 
 
 def event_near(a: float, b: float, c: float, d: float, largest: float) -> bool:
-    """Whether the event function ``a d + b v + c`` is of a deformation alone and zero at `d`, where the
-    largest deformation so far is `largest`.
+    """Whether the event function ``a d + b v + c`` depends on the deformation alone and is zero at `d`, to
+    within a share of its terms at the `largest` deformation so far.
     """
     return b == 0.0 and a != 0.0 and abs(a * d + c) <= TIED * (abs(a) * largest + abs(c))
 
 
 def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
-    """Whether such an event function comes to zero at `d` and the rate `v`."""
+    """Whether such an event function is zero at the deformation `d` and rises at the rate `v`."""
     return a * v > 0.0 and event_near(a, b, c, d, largest)
 
 
 def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
-    """Which event of a law comes to zero now, where the law holds an unknown without mass; -1 for none."""
+    """Number of the event of a law that occurs now, if the law holds an unknown without mass; else -1."""
     if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
         return -1
     d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest_deformation[i]
@@ -47,7 +47,7 @@ def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
 
 def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event: int) -> bool:
     """Whether a law that holds an unknown without mass has neither stiffness nor force after an event, and
-    no force to lose by it.
+    loses no force by it.
     """
     d, v, k, f0 = laws.now.deformation[i], laws.now.rate[i], laws.stiffness[i], laws.offset[i]
     if laws.contact[i] or laws.curved[i] or not touches_massless(linear, laws, i):
@@ -61,8 +61,9 @@ def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event
 
 
 def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> tuple[int, int]:
-    """The law and its event that go before a law that becomes slack by an `event`: one that comes to no
-    force with it and keeps a stiffness (see the module's head); else these two.
+    """Law and event to be taken first where `law` becomes slack by its `event`: those of another law that
+    comes to zero force at the same instant and keeps a stiffness (see the module's head); else the given
+    ones.
     """
     linear, laws = sim.linear, sim.laws
     if laws.stiffness[law] != 0.0 and becomes_slack(linear, laws, rules, law, event):
@@ -74,8 +75,8 @@ def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> 
 
 
 def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns: bool) -> int:
-    """Branch at whose beginning a law that holds an unknown without mass `turns`, or else rests; -1 for
-    none.
+    """Branch at whose beginning law `i` stands, as it `turns` or else rests; -1 for none, and for laws that
+    hold no unknown without mass.
     """
     if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
         return -1
@@ -95,7 +96,9 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns:
 
 
 def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
-    """Keep which laws are at the beginning of a branch as `law` turns by an `event`, itself included."""
+    """Record which laws, `law` included, stand at the beginning of a branch as `law` reverses by its
+    `event`.
+    """
     laws, buffers, run = sim.laws, sim.buffers, sim.run
     turns = laws.events[law, event, 0] == 0.0 and laws.events[law, event, 1] != 0.0
     if not turns or laws.contact[law] or not touches_massless(sim.linear, laws, law):
@@ -109,12 +112,12 @@ def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
 
 
 def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset: float) -> None:
-    """Keep what becomes of the laws if all go on that come to their events together with `law`; nothing
-    where none does.
+    """Record the tangents that the laws have if all that come to their events together with `law` change
+    branch; nothing where no other does.
 
-    It has just left a branch of that `stiffness` and `offset`.  Where it has become softer, these are other
-    laws that do, and their tangents; where its force has fallen, other laws whose forces fall: minus
-    infinity, and the branch that they go to.
+    `law` has just left a branch of that `stiffness` and `offset`.  Where it has become softer, the tangents
+    of other laws that become softer are recorded; where its force has fallen, minus infinity and the next
+    branch of other laws whose forces fall.
     """
     linear, laws, buffers, run = sim.linear, sim.laws, sim.buffers, sim.run
     plain = not laws.contact[law] and not laws.curved[law]

@@ -21,7 +21,7 @@ OVERLAP = 1e-10  #: share of its terms beyond which a deformation overlaps at th
 
 
 class RigidRun(Protocol):
-    """A run as its rigid contacts see it.
+    """Interface of a run for its rigid contacts.
 
     Attributes
     ----------
@@ -91,8 +91,8 @@ class RigidInstants:
         return np.array([self.run.branches[i].held for i in self.contacts.laws], bool)
 
     def begin(self) -> bool:
-        """Stop where rigid bodies overlap at the start; let those that are closed there strike, stay
-        together or part, as their velocities and forces have it, and return whether there are rigid bodies.
+        """Stop where rigid bodies overlap at the start; let contacts that are closed then strike, stay
+        closed or open, as their velocities and forces require, and return whether there are rigid contacts.
 
         Their deformations have the rounding of the static displacements.
 
@@ -150,7 +150,7 @@ class RigidInstants:
                 run.transition(law, 0, float(d[i]), float(after[i]))
 
     def _slow(self, inputs: Array) -> Array:
-        """Rates up to which an approach has no rebound, shape (n_rigid,).
+        """Approach rates up to which there is no rebound, shape (n_rigid,).
 
         The last rebounds of a body that comes to rest are lost in the rounding of its deformation: after
         an approach at v, with the restitution e, it rises by (e v)^2 / 2a, a being the
@@ -165,7 +165,7 @@ class RigidInstants:
         return slow
 
     def open_pulled(self, spectral_radius: float = 0.0) -> None:
-        """Open those of the closed rigid contacts whose force would be tensile.
+        """Open the closed rigid contacts whose force would be tensile.
 
         Parameters
         ----------

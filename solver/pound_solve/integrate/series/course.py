@@ -28,7 +28,7 @@ TERMS = 16  #: of the series of a step for each of its cells, which have some 2.
 
 
 class ShownSteps:
-    """Steps that were kept; `order` tells the unknowns from their places in the order of elimination."""
+    """Steps kept for the envelopes; `order` holds the unknowns in the order of elimination."""
 
     def __init__(self, shown: Shown, order: Index, excitation: Excitation) -> None:
         self.shown, self.size, self.excitation = shown, len(order), excitation
@@ -41,7 +41,7 @@ class ShownSteps:
         self.derivatives = np.append(np.repeat(np.arange(3), self.size), 0 * shown.acting)
 
     def _motion(self, steps: Index, places: Array) -> Motion:
-        """The motion at places in some steps."""
+        """The motion at places between 0 and 1 in some steps."""
         x, n, count = self.shown, len(self.unknowns), len(places)
         first, last = (int(steps[0]), int(steps[-1]) + 1) if len(steps) else (0, 0)
         coefs = x.coefs[first:last] if last - first == len(steps) else x.coefs[steps]
@@ -99,7 +99,7 @@ class ShownSteps:
         )
 
     def course(self) -> Course:
-        """The motion of all that were kept."""
+        """The motion over all steps that were kept."""
         steps, shares = np.arange(self.shown.kept[STEPS]), np.arange(self.cells) / self.cells
         motion = self._motion(steps, shares)
         lengths = np.repeat(self.shown.length[steps] / self.cells, self.cells)
@@ -117,13 +117,13 @@ def _powers(places: Array, count: int) -> Array:
 
 
 def _of_cells(x: Array, chosen: Index, count: int) -> Array:
-    """What is known of some of the cells at `count` places of each."""
+    """Columns of an array that belong to some of the cells, `count` for each cell."""
     cells = x.reshape(*x.shape[:-1], x.shape[-1] // count, count)
     return np.asarray(cells[..., chosen, :].reshape(*x.shape[:-1], len(chosen) * count))
 
 
 class ShownIntervals:
-    """Intervals in modes that were kept, over the parts of the structure."""
+    """Intervals in modes kept for the envelopes, part by part of the structure."""
 
     def __init__(self, shown: Shown, modal: Modal, order: Index) -> None:
         self.shown, self.modal, self.size = shown, modal, len(order)
@@ -132,7 +132,9 @@ class ShownIntervals:
         self.rows = [self._rows(b) for b in range(len(modal.counts))]
 
     def _rows(self, b: int) -> Array:
-        """Rows of a part for displacements, velocities, accelerations and the forces of the laws on x."""
+        """Rows that give displacements, velocities, accelerations and forces of laws of a part from its
+        x.
+        """
         modal, acting, (_, q, _, seen) = self.modal, self.shown.acting, self.modal.counts[b]
         place = modal.place[b, acting]
         force = np.where(
@@ -147,8 +149,8 @@ class ShownIntervals:
         return rate, q, modal.steady.shape[2] // 2
 
     def _on_grid(self, b: int, count: int) -> Array:
-        """The rows of a part at the starts of all cells of the first `count` intervals, shape
-        (n_rows, n_intervals, n_cells), by rows that are taken to these places.
+        """The rows of a part at the starts of all cells of the first `count` intervals, shape (n_rows,
+        n_intervals, n_cells): one table serves all intervals.
         """
         rate, q, n_inputs = self._rates(b)
         places = np.arange(self.cells) / self.cells
@@ -161,8 +163,8 @@ class ShownIntervals:
         return np.asarray(moved.reshape(count, self.cells, -1).transpose(2, 0, 1))
 
     def _at(self, b: int, intervals: Index, places: Array) -> Array:
-        """The rows of a part at places in some intervals, shape (n_rows, n_intervals, n_places), by the
-        modes there.
+        """The rows of a part at places in some intervals, shape (n_rows, n_intervals, n_places), with the
+        modes evaluated there.
         """
         rate, q, n_inputs = self._rates(b)
         x = self.shown.x[intervals, b, None]
@@ -188,7 +190,7 @@ class ShownIntervals:
         return Motion(t.ravel(), u, v, a, forces)
 
     def course(self) -> Course:
-        """The motion of all that were kept."""
+        """The motion over all intervals that were kept."""
         count, parts = int(self.shown.kept[INTERVALS]), range(len(self.rows))
         places = np.arange(self.cells)[None] / self.cells
         motion = self._motion(np.arange(count), places, [self._on_grid(b, count) for b in parts])

@@ -63,13 +63,15 @@ def overlap(laws: Laws, i: int) -> float:
 
 
 def touch_overlap(laws: Laws, i: int) -> float:
-    """Overlap of contact `i` that counts as none."""
+    """Overlap of contact `i` up to which it counts as zero."""
     x: float = TOUCH * (laws.largest_deformation[i] + abs(laws.parameters[i, GAP]))
     return x
 
 
 def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
-    """Take over the branch that curved law `i` is on."""
+    """Copy the force law of curved law `i` on its branch, and find its phase: apart, pressed or
+    released.
+    """
     r = curved.number[i]
     powers = powers_of(
         rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
@@ -137,7 +139,7 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
 
 
 def any_overlap(curved: Curved) -> bool:
-    """Whether any of the contacts has an overlap to speak of."""
+    """Whether any of the contacts has an overlap beyond rounding."""
     overlaps = False
     for r in range(len(curved.laws)):
         overlaps = overlaps or curved.phase[r] != APART
@@ -145,7 +147,9 @@ def any_overlap(curved: Curved) -> bool:
 
 
 def right_part(force: Array, terms: int, end: float) -> float:
-    """Part of a step, or multiple of it, up to which the series of a force is right, `end` at most."""
+    """Fraction or multiple of a step up to which the series of a force is accurate, at most `end`; NaN
+    where its terms are not finite.
+    """
     last, most = terms - 2, 0.0
     for k in range(last + 1):
         most = max(most, abs(force[k]))
@@ -156,7 +160,7 @@ def right_part(force: Array, terms: int, end: float) -> float:
 
 
 def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
-    """Part of a step, or multiple of it, up to which all forces are right, `end` at most."""
+    """Fraction or multiple of a step up to which the forces of all contacts are accurate, at most `end`."""
     for r in range(len(curved.laws)):
         if curved.phase[r] != APART:
             end = right_part(curved.force[r], terms, end)

@@ -88,8 +88,8 @@ def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> fl
 def structural_forces(
     linear: LinearSystem, series: Series, k: int, on_stiffness: float, on_damping: float, out: Array
 ) -> None:
-    """Forces of structure and laws at the coefficients `k`, of its dashpots at those `k` + 1, times factors
-    and turned round; zero for unknowns without mass, which need none.
+    """Negative forces of structure and laws from the coefficients `k` and of dashpots from those `k` + 1,
+    times factors; zero for unknowns without mass, for which they are not needed.
     """
     c, held, springs = series.motion, series.massless, series.springs
     if len(held.unknown):
@@ -151,7 +151,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
 
 
 def begin_series(sim: Simulation, series: Series, coefs: Array, begin: float, h: float) -> None:
-    """First two coefficients, from the present state."""
+    """Set the first two coefficients of the series from the present state."""
     laws = sim.laws
     c, now, top = series.motion, sim.step.now, len(coefs)
     expand_inputs(series, coefs, begin, h)
@@ -167,7 +167,7 @@ def begin_series(sim: Simulation, series: Series, coefs: Array, begin: float, h:
 
 
 def right_up_to(series: Series, terms: int, end: float) -> float:
-    """Part of a step, or multiple of it, up to which forces that are series are right, `end` at most."""
+    """Fraction or multiple of a step up to which forces that are series are accurate, at most `end`."""
     end = contacts_right_up_to(series.curved, terms, end)
     end = smooth_right_up_to(series.smooth, terms, end)
     return drags_right_up_to(series.viscous, terms, end)
@@ -223,7 +223,7 @@ def expand_series(
 
 
 def derivative_factor(k: int, order: int, h: float) -> float:
-    """What a derivative makes of the power `k`."""
+    """Factor of the power `k` in a derivative of the given order, for a step of length `h`."""
     factor = 1.0
     for j in range(order):
         factor *= (k - j) / h

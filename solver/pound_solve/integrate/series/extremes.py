@@ -26,13 +26,13 @@ class RowExtremes(NamedTuple):
         Where the entries of each row begin.
     source, derivative, factors : ndarray, shape (n_entries,)
         Number of the series: of an unknown or a force (see `Shown`), then of the inputs; order of its
-        derivative; what that is times by.
+        derivative; factor of that.
     constant : ndarray, shape (n_rows,)
     high, t_high, low, t_low : ndarray, shape (n_rows,)
         Largest and smallest values so far, and their times.
     first, far : ndarray, shape (n_series, 3)
-        Of the derivatives of every series in the present step: value at the start, and how far it can come
-        from it.
+        Of the derivatives of every series in the present step: value at the start, and a bound of its
+        change.
     polynomial : ndarray
         Work space, see `polynomial_roots.room`.
     """
@@ -52,7 +52,9 @@ class RowExtremes(NamedTuple):
 
 
 def bound_series(extremes: RowExtremes, i: int, c: Array, terms: int, h: float) -> None:
-    """Find the value of series `i` at the start of a step, and how far it can come from it."""
+    """Value and first two derivatives of series `i` at the start of a step, and bounds of their changes in
+    it.
+    """
     zeroth, first, second = abs(c[1]) + abs(c[2]), 2.0 * abs(c[2]), 0.0
     for k in range(3, terms + 1):
         zeroth += abs(c[k])
@@ -79,7 +81,7 @@ def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) ->
 
 
 def form_row(shown: Shown, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
-    """Make row `r` in step `s` the polynomial at work."""
+    """Write row `r` in step `s` as a polynomial into the work space."""
     p, terms, n = extremes.polynomial[POLYNOMIAL], shown.terms[s], shown.coefs.shape[1]
     for k in range(terms + 1):
         p[k] = 0.0
@@ -95,7 +97,7 @@ def form_row(shown: Shown, inputs: Array, extremes: RowExtremes, s: int, r: int)
 
 
 def count_row(shown: Shown, extremes: RowExtremes, s: int, r: int) -> None:
-    """Count the polynomial at work into the extremes of row `r`."""
+    """Update the extremes of row `r` with the polynomial in the work space."""
     p, terms, begin, h = extremes.polynomial, shown.terms[s], shown.begin[s], shown.length[s]
     first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, terms)
     if first + far > extremes.high[r]:
@@ -111,7 +113,7 @@ def count_row(shown: Shown, extremes: RowExtremes, s: int, r: int) -> None:
 
 
 def find_extremes(shown: Shown, inputs: Array, extremes: RowExtremes) -> int:
-    """Count the steps that were kept into the extremes of all rows.
+    """Update the extremes of all rows with the steps that were kept.
 
     Parameters
     ----------

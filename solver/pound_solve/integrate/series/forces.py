@@ -15,7 +15,7 @@ from pound_solve.numerics.types import Array
 
 
 def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
-    """Take over the branch that law `i` has gone to, where its force is a series."""
+    """Copy the branch that law `i` has changed to into the arrays of curved contacts and of friction."""
     if series.curved.number[i] >= 0:
         enter_curved(laws, rules, series.curved, i)
     if series.friction.number[i] >= 0:
@@ -75,7 +75,7 @@ def force_at(force: Array, terms: int, s: float) -> float:
 
 
 def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
-    """Make the forces at the place `s` those of the laws' branches."""
+    """Set the offsets of rigid and curved contacts and of friction to their forces at the place `s`."""
     update_friction(laws, series, terms, s, h)
     rigid, curved = series.rigid, series.curved
     for q in range(rigid.n_held[0]):
@@ -88,7 +88,7 @@ def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: fl
 
 
 def count_largest(laws: Laws, series: Series) -> None:
-    """Count the present forces into the largest so far."""
+    """Update the largest force of each rigid and curved contact."""
     rigid, curved = series.rigid, series.curved
     for r in range(len(rigid.laws)):
         rigid.largest[r] = max(rigid.largest[r], abs(laws.offset[rigid.laws[r]]))

@@ -47,7 +47,7 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
 
 
 def side_of(laws: Laws, friction: Friction, i: int) -> None:
-    """Take over the branch that friction law `i` is on."""
+    """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 where it does not."""
     at = laws.branch[i]
     friction.side[friction.number[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
@@ -87,7 +87,7 @@ def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
 
 
 def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
-    """Make the normal forces at the place `s` those of the friction laws, and the forces that follow."""
+    """Set the normal forces of the friction laws, and the forces of sliding, to those at the place `s`."""
     friction = series.friction
     for r in range(len(friction.laws)):
         i = friction.laws[r]
@@ -104,8 +104,8 @@ def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) 
 
 
 def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
-    """The event of friction `r` that follows from a change of its contact, whose force it is told; -1 for
-    none.
+    """Set the normal force of friction `r` after a change of its contact, and return the event that
+    follows; -1 for none.
     """
     i, j = friction.laws[r], friction.normal[r]
     pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
@@ -122,7 +122,7 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
 
 
 def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
-    """The instant at which the contact of friction `i` begins to pull, or to press again."""
+    """Instant at which the contact of friction `i` begins to pull, or to press again; law -1 for none."""
     friction, p = series.friction, series.polynomial[POLYNOMIAL]
     r = friction.number[i]
     sign = -1.0 if friction.pressing[r] else 1.0

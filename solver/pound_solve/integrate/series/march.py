@@ -168,8 +168,9 @@ def add_works(
 
 
 def count_reach(laws: Laws, series: Series, terms: int, end: float) -> None:
-    """Count the displacements of the bodies that contacts are between, up to the place `end`, into what
-    their deformations are rounded to: of bodies that move alike these are nothing else.
+    """Update the largest deformations of contacts with the displacements of their two bodies up to the
+    place `end`: rounding of the deformation is a share of these, and for bodies that move alike the
+    deformation is nothing but rounding.
     """
     rows, motion = laws.rows, series.motion
     for i in range(len(laws.rule)):
@@ -184,7 +185,7 @@ def count_reach(laws: Laws, series: Series, terms: int, end: float) -> None:
 
 
 def accept_step(laws: Laws, now: MotionState, series: Series, terms: int, h: float, end: float) -> None:
-    """Make the place `end` the present."""
+    """Set the present motion and the state of the laws to those at the place `end` of the step."""
     evaluate_motion(series.motion, terms, end, h, 0, now.displacement)
     evaluate_motion(series.motion, terms, end, h, 1, now.velocity)
     for i in range(len(laws.rule)):
@@ -255,8 +256,8 @@ def count_instant(run: Run, h: float) -> None:
 
 
 def renew_branches(sim: Simulation, rules: Tables, series: Series) -> bool:
-    """Take over the branches of the laws after a change, and the tangents of smooth ones; False where they
-    leave an unknown without mass loose, which `run.fault` names.
+    """Update what depends on the branches after a change: tangents of smooth laws and dampers, sums, modes,
+    factors; False where an unknown without mass is not held, which `run.fault` names.
     """
     laws, run = sim.laws, sim.run
     held = series.massless
@@ -274,8 +275,8 @@ def renew_branches(sim: Simulation, rules: Tables, series: Series) -> bool:
 
 
 def settle_state(sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float) -> int:
-    """Give the unknowns without mass the rates that the present branches ask for, and closed rigid contacts
-    their forces.
+    """Make the velocities of unknowns without mass and the forces of closed rigid contacts consistent with
+    the present branches.
 
     These rates jump where a stiffness or a dashpot among them changes, and a law whose rate changes its
     sign so must leave its branch, too.  Of several the first in number does, then all are looked at again:
@@ -324,8 +325,8 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, coefs: Array, b
 
 
 def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
-    """Whether the contact of an event is at rest where an implicit step begins: the first powers of its
-    motion may be below the error of the polynomial then, which does not know which way it turns.
+    """Whether the contact of an event is at rest at the start of an implicit step: the first powers of its
+    motion may be below the error of the polynomial then, so that its direction is not known.
     """
     at_rest = event.law >= 0 and laws.contact[event.law] and laws.now.rate[event.law] == 0.0
     return at_rest and is_implicit(series)
@@ -348,8 +349,8 @@ def step_length(lengths: Lengths, t: float, goal: float) -> float:
 
 
 def shorten_step(lengths: Lengths, h: float, fit: float) -> None:
-    """Have a step tried again that did not fit, shorter by a tenth at least: where less is missing, the
-    equal parts of what is left would be as long as before.
+    """Choose a shorter step after one that did not fit, shorter by a tenth at least: with less, the equal
+    parts of what is left would be as long as before.
     """
     lengths.next = h * (min(fit, SHORTER) if fit > SHRINK else SHRINK)
     lengths.rejected += 1
@@ -365,7 +366,7 @@ def take_step(
     end: float,
     rules: Tables,
 ) -> None:
-    """Take the step up to its place `end`: peaks, looks, works, and the motion there."""
+    """Accept the step up to its place `end`: update peaks, kept motion, works, and the present motion."""
     laws, run = sim.laws, sim.run
     t = run.time
     track_outputs(sim, series, terms, h, end, t, len(coefs))
@@ -383,7 +384,7 @@ def answer_event(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, terms: int, h: float,
     end: float, event: LocatedEvent,
 ) -> int:  # fmt: skip
-    """Let the law of an event at the present time change; `end` is how far its step was searched.
+    """Carry out an event at the present time; its step was searched for events up to the place `end`.
 
     Returns
     -------
@@ -478,7 +479,7 @@ def step_to_goal(
 def reach_goal(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
 ) -> int:
-    """Take the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
+    """Advance the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
     step, run = sim.step, sim.run
     if not has_room(series.shown):
         return FULL
@@ -518,7 +519,7 @@ def take_sample(sim: Simulation, rules: Tables, series: Series, coefs: Array, be
 
 
 def load_times_place(linear: LinearSystem, step: Step, series: Series, coefs: Array, s: float) -> float:
-    """Loads on the unknowns without mass at the local time `s` of a piece, times their displacements."""
+    """Sum over the unknowns without mass of load, at the local time `s` of a piece, times displacement."""
     total, trial = 0.0, step.trial
     evaluate_inputs(coefs, s, trial.inputs, trial.input_rates)
     for i in series.massless.unknown:
@@ -529,8 +530,8 @@ def load_times_place(linear: LinearSystem, step: Step, series: Series, coefs: Ar
 def settle_after_jump(
     sim: Simulation, rules: Tables, series: Series, goals: Goals, before: int, piece: int
 ) -> int:
-    """Settle the state where another piece of the excitation begins: unknowns without mass move with loads
-    that jump, whose work is that of the mean load.
+    """Settle the state at the beginning of another piece of the excitation: unknowns without mass jump with
+    the loads, whose work is then that of the mean load.
     """
     old, new = sim.run.time - goals.begins[before], sim.run.time - goals.begins[piece]
     put = 0.0

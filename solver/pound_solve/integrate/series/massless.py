@@ -106,7 +106,7 @@ def allocate(
 
 
 def form_matrix(laws: Laws, held: Massless, which: int) -> None:
-    """Fill in C of the unknowns of order one, or K of those of order zero; ones for the others."""
+    """Fill in C or K (`which`) of the unknowns without mass, with the laws on their present branches."""
     for q in range(len(held.matrix)):
         held.matrix[q] = held.on_pattern[which, q]
     for n in range(len(held.laws)):
@@ -151,9 +151,7 @@ def factorise_orders(laws: Laws, held: Massless) -> int:
 
 
 def undamped_unknowns(laws: Laws, held: Massless) -> Index:
-    """Numbers of the unknowns of order one that move where their dashpots do not resist: of the motion that
-    is resisted least.
-    """
+    """Numbers of the unknowns of order one that take part in the motion which dashpots resist least."""
     form_matrix(laws, held, DAMPING)
     c = np.zeros((len(held.unknown), len(held.unknown)))
     c[held.pattern.ai, held.column] = c[held.column, held.pattern.ai] = held.matrix
@@ -180,8 +178,8 @@ def solve_order(held: Massless, which: int) -> None:
 
 
 def balance_forces(series: Series, k: int, top: int, which: int) -> None:
-    """Right sides of the unknowns of one order: load less the forces of K, of the laws' springs and what
-    tangents leave at the coefficients `k`.
+    """Right sides for the unknowns of one order: loads less the forces of K and of the laws, with the parts
+    of smooth laws and dampers beyond their tangents, at the coefficients `k`.
     """
     held, springs, c = series.massless, series.springs, series.motion[k]
     members, x = held.members[which], held.right_side
@@ -203,7 +201,7 @@ def balance_forces(series: Series, k: int, top: int, which: int) -> None:
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
-    """Add the unknowns of order one to the coefficients `k` > 0."""
+    """Compute the coefficients `k` > 0 of the unknowns of order one."""
     held, c, x = series.massless, series.motion, series.massless.right_side
     members = held.members[DAMPING]
     balance_forces(series, k - 1, top, DAMPING)
@@ -224,8 +222,8 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
 
 
 def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: int) -> None:
-    """Add the unknowns without mass to the coefficients `k` (see the module's head), where they are zero
-    for `k` > 1.
+    """Compute the coefficients `k` of the unknowns without mass (see the module's head), which must be zero
+    before for `k` > 1.
     """
     held, c, x = series.massless, series.motion, series.massless.right_side
     if k < 2:
@@ -252,10 +250,11 @@ def joints_jump(laws: Laws, series: Series, top: int) -> bool:
 
 
 def first_violated(laws: Laws, which: Index) -> tuple[int, int]:
-    """The first of some laws at fault and its event: its rate has jumped, and an event function that
-    depends on it is above zero; -1 where there is none.
+    """First of some laws whose rate has jumped so that an event function of the rate is above zero, and its
+    event; -1 where there is none.
 
-    A rate that the rounding of its force leaves to a dashpot counts as none: at rest there is no other.
+    A rate up to the rounding of the force over the dashpot's coefficient counts as zero: at rest it is
+    nothing else.
     """
     for i in which:
         d, v, c = laws.now.deformation[i], laws.now.rate[i], laws.damping[i]

@@ -40,7 +40,9 @@ DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_m
 
 @loose
 def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, before: float) -> None:
-    """Product of a matrix with a vector, of so many rows and columns, and `before` times what was there."""
+    """Set the first `rows` of `out` to the product of a matrix and a vector plus `before` times what they
+    were.
+    """
     for i in range(rows):
         total = before * out[i]
         for j in range(columns):
@@ -49,7 +51,7 @@ def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, befo
 
 
 def renew_modes(laws: Laws, series: Series) -> None:
-    """See whether modes serve on the present branches, and where these come to rest."""
+    """Check whether the modes are valid on the present branches, and compute where these come to rest."""
     modal = series.modal
     modal.serves[0] = 0
     if modal.length[0] == 0.0:
@@ -73,7 +75,7 @@ def renew_modes(laws: Laws, series: Series) -> None:
 
 
 def to_modes(modal: Modal, step: Step) -> None:
-    """Take the present motion over into the modes."""
+    """Convert the present motion to modal coordinates."""
     now = step.now
     for b in range(len(modal.counts)):
         n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
@@ -86,7 +88,7 @@ def to_modes(modal: Modal, step: Step) -> None:
 
 
 def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
-    """Take the motion over from the modes, if it is there."""
+    """Convert the modal coordinates back to the present motion, if the motion is in modes."""
     if not modal.is_present[0]:
         return
     now = step.now
@@ -105,7 +107,7 @@ def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
 
 
 def start_interval(modal: Modal, inputs: Array) -> None:
-    """Find x at the ends and the middles of all cells."""
+    """Compute the state x, of modes and inputs, at the ends and the middles of all cells."""
     n_inputs, places = inputs.shape[1], modal.growth.shape[1]
     for b in range(len(modal.counts)):
         count, x = modal.counts[b, MODES], modal.x[b]
@@ -128,7 +130,9 @@ def start_interval(modal: Modal, inputs: Array) -> None:
 
 
 def follow_cells(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
-    """Find the followed quantities at the ends of all cells, and how far they depart from chords."""
+    """Compute the followed quantities at the ends of all cells, and bounds of their departure from
+    chords.
+    """
     n_followed, outputs, ends = len(modal.offset), len(linear.monitored_constants), len(modal.values)
     for i in range(n_followed):
         modal.apart[i] = 0.0
@@ -202,7 +206,9 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
 
 
 def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
-    """Whether the bounds let law `i` leave its branch within a cell; they do not know its rate."""
+    """Whether law `i` may leave its branch within a cell, by the bounds of its deformation, not of its
+    rate.
+    """
     low, high = cell_bounds(modal, cell, i)
     for e in range(laws.n_events[i]):
         on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
@@ -212,7 +218,7 @@ def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
 
 
 def is_quiet(laws: Laws, series: Series, n_inputs: int) -> bool:
-    """Whether no law leaves its branch within the interval for certain."""
+    """Whether it is certain that no law leaves its branch within the interval."""
     modal = series.modal
     cells = len(modal.values) - 1
     h = modal.length[0] / cells
@@ -233,8 +239,8 @@ def exceeds_peaks(extremes: Extremes, i: int, low: float, high: float) -> bool:
 def count_ends(
     laws: Laws, step: Step, modal: Modal, i: int, at: int, k: float, constant: float, t: float
 ) -> None:
-    """Count ``k y + constant`` at the ends of the cells into peak `at`, y being followed quantity `i`: what
-    cells hold beyond is then seldom more.
+    """Update peak `at` with ``k y + constant`` at the ends of the cells, y being followed quantity `i`: the
+    motion within cells seldom exceeds it then.
     """
     cells = len(modal.values) - 1
     for end in range(cells + 1):
@@ -243,7 +249,7 @@ def count_ends(
 
 
 def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> bool:
-    """Count what exceeds the peaks within the interval; False if its series is not known."""
+    """Update the peaks with the motion within the interval; False if a power series would be too long."""
     laws, step = sim.laws, sim.step
     modal, n_laws, outputs = series.modal, len(laws.rule), len(sim.linear.monitored_constants)
     cells, extremes = len(modal.values) - 1, step.extremes
@@ -306,7 +312,7 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
 
 
 def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, goal: float) -> bool:
-    """Take the interval up to a goal in modes; False where that is not certain to be right.
+    """Advance in modes over the interval up to a goal; False where that is not certain to be right.
 
     The motion stays in the modes, see `from_modes`.
     """

@@ -16,7 +16,7 @@ from pound_solve.numerics.types import Array, Index
 
 
 class Present(KernelPresent):
-    """One instant of a run, see `rigid.instants.RigidRun`.
+    """State of a run by series at one instant, for its rigid contacts (see `rigid.instants.RigidRun`).
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Present(KernelPresent):
         return forces
 
     def enter(self, law: int) -> None:
-        """Take over the branch that a law has gone to, where its force is a series."""
+        """Copy the branch that a law has changed to into the arrays of curved contacts and of friction."""
         take_over(self.engine.laws, self.engine.rules, self.series, law)
 
     def take_impact(self, put_in: float, lost: Array) -> None:
@@ -52,7 +52,7 @@ class Present(KernelPresent):
         self.engine.laws.dashpot_loss[:] += lost
 
     def turn_back(self, which: Index) -> None:
-        """Let those of some laws leave their branches whose rates an impact has turned."""
+        """Let those of some laws leave their branches whose rates an impact has reversed."""
         now, laws = self.engine.laws.now, self.engine.laws
         for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
             law, event = first_violated(laws, which)

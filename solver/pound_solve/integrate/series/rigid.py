@@ -42,7 +42,7 @@ def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> 
 
 
 def take_over(rigid: Rigid, contacts: RigidContacts, held: Flags) -> None:
-    """Take over which contacts are closed."""
+    """Set which contacts are closed, and the inverse matrix for their forces."""
     at = np.flatnonzero(held)
     rigid.is_held[:], rigid.n_held[0], rigid.held[: len(at)] = held, len(at), at
     rigid.inverse[: len(at), : len(at)] = contacts.inverse(at)

@@ -41,7 +41,7 @@ def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
 
 
 def is_full(shown: Shown) -> bool:
-    """Whether no step has room."""
+    """Whether there is no room for another step."""
     return bool(shown.kept[STEPS] == len(shown.begin))
 
 

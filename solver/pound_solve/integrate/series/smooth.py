@@ -65,8 +65,8 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
 
 
 def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
-    """Measure rates against such as move the laws in the `length` of the run: laws at rest would reverse
-    with the rounding of the others' rates for ever.
+    """Raise the largest rates, which others are compared with, to a creep over the `length` of the run:
+    otherwise laws at rest would reverse for ever with the rounding of other laws' rates.
     """
     for r in range(len(smooth.laws)):
         i, creep = smooth.laws[r], CREEP * abs(smooth.numbers[r, Y]) / length
@@ -74,13 +74,13 @@ def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
 
 
 def is_product(n: float) -> bool:
-    """Whether a power is found by multiplication."""
+    """Whether the power `n` is computed by multiplication: a whole number that is not too large."""
     return n == np.floor(n) and n < 2.0**BITS
 
 
 def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
-    """Put the present tangents in the place of the smooth laws' branches, and see how far their series
-    hold.
+    """Replace the branches of the smooth laws by their present tangents, and find the ranges in which their
+    series are valid.
     """
     for r in range(len(smooth.laws)):
         i, numbers = smooth.laws[r], smooth.numbers[r]
@@ -135,7 +135,7 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
 
 
 def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
-    """Take in the coefficient `k` of the motion: that of the force of smooth law `r`, and of the power."""
+    """Compute the coefficients `k` of deformation, force and power of smooth law `r` from the motion."""
     smooth, i = series.smooth, series.smooth.laws[r]
     numbers, share, d = smooth.numbers[r], smooth.share[r], deformation_term(laws, series, k, top, i)
     series.deformation[i, k] = d
@@ -154,7 +154,7 @@ def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
 
 
 def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
-    """Find the coefficients `k` of what the tangents leave of the smooth laws, from the motion up to
+    """Compute the coefficients `k` of the smooth laws' parts beyond their tangents, from the motion up to
     `k` - 1; the inputs have `top` coefficients.
     """
     smooth = series.smooth
@@ -172,21 +172,23 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
 
 
 def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
-    """Coefficient `k` of what the tangent leaves of the dashpot of smooth law `r`."""
+    """Coefficient `k` of the dashpot force of smooth law `r` beyond that of its tangent."""
     rate = (k + 1) / h * smooth.rest[r, k + 1]
     force: float = laws.tangent_damping[smooth.laws[r]] * smooth.numbers[r, Q] * rate
     return force
 
 
 def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
-    """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
+    """Add the coefficients `k` of the smooth laws' forces beyond their tangents to the right side `new` of
+    the coefficients `k` + 2.
+    """
     for r in range(len(smooth.laws)):
         rest = smooth.numbers[r, Q] * smooth.rest[r, k] + dashpot_rest(laws, smooth, r, k, h)
         add_row(laws.rows, smooth.laws[r], -h * h * rest, new)
 
 
 def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
-    """What w/y lacks at the place `s` for the power's series, which is cut off, as a share of it."""
+    """Relative error of w/y at the place `s` that comes from truncating the series of its power."""
     numbers, share = smooth.numbers[r], smooth.share[r, 0]
     x, power = 0.0, 0.0
     for k in range(terms - 1, -1, -1):
@@ -198,9 +200,10 @@ def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
 
 
 def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
-    """Part of a step, or multiple of it, up to which the forces are right, `end` at most.
+    """Fraction or multiple of a step up to which the forces are accurate, at most `end`.
 
-    A power that begins with a high term is not seen before that: it is looked at at the end, too.
+    Where the series of a power begins with a high term, the last terms do not show its error: this is
+    evaluated at the end, too.
     """
     for r in range(len(smooth.laws)):
         end = right_part(smooth.force[r], terms, end)
@@ -213,7 +216,9 @@ def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
 
 
 def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
-    """The instant at which smooth law `i` goes on with another power, or the `first` event."""
+    """The instant at which smooth law `i` leaves the range in which its series is valid, or the `first`
+    event.
+    """
     smooth, p = series.smooth, series.polynomial[POLYNOMIAL]
     r = smooth.number[i]
     for sign in (-1.0, 1.0):
@@ -228,7 +233,7 @@ def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> Locat
 
 
 def shorten_for_bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> None:
-    """Choose the length of the first step of smooth law `i` whose power is seen."""
+    """Shorten the first step in which the power of smooth law `i` is no longer negligible."""
     r = smooth.number[i]
     if smooth.high[r] < np.inf:
         far = smooth.high[r] * abs(smooth.numbers[r, Y])

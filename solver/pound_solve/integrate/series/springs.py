@@ -60,7 +60,7 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
 
 
 def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
-    """Add up the laws on their present branches.
+    """Sum the tangents, constant forces and input loads of the laws on their present branches.
 
     The forces of rigid and of curved contacts, and of friction that slides, are series instead.
     """

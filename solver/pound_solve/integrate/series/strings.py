@@ -52,7 +52,9 @@ def add_strings(laws: Laws, series: Series, k: int, h: float, top: int, new: Arr
 
 
 def string_power(laws: Laws, series: Series, terms: int, s: float, h: float) -> float:
-    """Power put in at the place `s`; the forces of the members become those there."""
+    """Power that the strings put in at the place `s`; sets the members' transverse forces to those
+    there.
+    """
     members, strings, power = laws.members, series.strings, 0.0
     for c in range(len(members.parameters)):
         y, rate, force = 0.0, 0.0, 0.0

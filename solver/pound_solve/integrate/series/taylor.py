@@ -195,7 +195,9 @@ class Taylor(KernelEngine):
         return state.Damped(unknown, matrix, np.zeros((terms, n)), np.zeros(n), np.zeros(n))
 
     def _intervals(self) -> Array:
-        """Times between which intervals may be taken in modes; none where more acts than modes know."""
+        """Times between which intervals may be taken in modes; none where something acts that modes do not
+        cover.
+        """
         laws, linear = self.laws, self.linear
         others = (
             len(laws.members.parameters)
@@ -222,7 +224,7 @@ class Taylor(KernelEngine):
 
     def resume(self, why: int) -> None:
         """Let rigid contacts strike, close or part, or joints without mass move where a force falls; stop
-        where there is no going on.
+        where the run cannot go on.
         """
         if why not in (STRIKE, FALL):
             raise self.trouble(why)
@@ -248,7 +250,9 @@ class Taylor(KernelEngine):
         return True
 
     def _at_instant(self, happens: Callable[[RigidInstants], bool]) -> None:
-        """Let something happen to the rigid contacts, and go on from there where it does."""
+        """Apply an action to the rigid contacts at the present instant, and continue from there if it took
+        place.
+        """
         present = Present(self, self.series)
         instants = RigidInstants(present, self.contacts)
         try:
@@ -261,7 +265,7 @@ class Taylor(KernelEngine):
         self._hold(instants.rounding)
 
     def _hold(self, rounding: Array | float = 0.0) -> None:
-        """Take over which rigid contacts are closed, and the `rounding` of their forces."""
+        """Set which rigid contacts are closed, and the `rounding` of their forces."""
         x = self.series.rigid
         kinds = [self.springs[i].law.rule.branches[self.laws.branch[i]].kind for i in x.laws]
         rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
@@ -293,7 +297,7 @@ class Taylor(KernelEngine):
         return f", which {'LAGUERRE and ' if linear else ''}NEWMARK need not follow"
 
     def trouble(self, why: int) -> Stop:
-        """What the kernel came back for, in words."""
+        """The `Stop` that says in words why the kernel has returned early."""
         if why == SHORT:
             return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
         if why == LOOSE:
@@ -321,7 +325,7 @@ class Taylor(KernelEngine):
         return self.system.loose(int(self.order[fault]))
 
     def _softest(self) -> int:
-        """Unknown without mass that moves most where those without mass and dashpot are least stiff."""
+        """Unknown without mass that moves most in the softest motion of those without mass and dashpot."""
         light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
         if len(light) > MOST_DENSE:
             return int(self.order[int(self.state.fault)])

@@ -105,7 +105,9 @@ def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) ->
 def count_crest(
     laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, i: int, law: int
 ) -> None:
-    """Count the polynomial at work into peak `i`; `law` is not negative for the force of a law."""
+    """Update peak `i` with the polynomial in the work space; `law` is not negative for the force of a
+    law.
+    """
     extremes, p = step.extremes, series.polynomial
     known = extremes.high[i]
     contact = law >= 0 and laws.contact[law]

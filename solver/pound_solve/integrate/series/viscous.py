@@ -59,7 +59,7 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
 
 
 def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
-    """Put the present tangents in the place of the dampers' branches."""
+    """Replace the branches of the dampers by their present tangents."""
     for r in range(len(viscous.laws)):
         i, numbers = viscous.laws[r], viscous.numbers[r]
         numbers[K], numbers[N], _, _, _, _ = powers_of(
@@ -86,7 +86,7 @@ def is_fast(viscous: Viscous, i: int) -> bool:
 
 
 def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> None:
-    """Take in the coefficient `k` of the rate of damper `r`: that of its force."""
+    """Compute the coefficients `k` of rate and force of damper `r` from the motion."""
     viscous, i = series.viscous, series.viscous.laws[r]
     numbers, sign = viscous.numbers[r], 1.0 if viscous.numbers[r, K] > 0.0 else -1.0
     x = sign * (k + 1) / h * deformation_term(laws, series, k + 1, top, i)
@@ -99,8 +99,8 @@ def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
 
 
 def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
-    """Find the coefficients `k` of what the tangents leave of the dampers, from the motion up to `k`; the
-    inputs have `top` coefficients.
+    """Compute the coefficients `k` of the dampers' forces beyond their tangents, from the motion up to `k`;
+    the inputs have `top` coefficients.
     """
     viscous = series.viscous
     for r in range(len(viscous.laws)):
@@ -117,14 +117,18 @@ def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
 
 
 def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> None:
-    """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
+    """Add the coefficients `k` of the dampers' forces beyond their tangents to the right side `new` of the
+    coefficients `k` + 2.
+    """
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
             add_row(laws.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
 
 
 def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
-    """Part of a step, or multiple of it, up to which all is right that steps go on with, `end` at most."""
+    """Fraction or multiple of a step up to which the dampers' forces, and the rates of those that hold
+    unknowns without mass, are accurate, at most `end`.
+    """
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
             end = right_part(viscous.force[r], terms, end)
@@ -135,7 +139,9 @@ def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
 
 
 def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int) -> LocatedEvent:
-    """The instant at which damper `i` becomes fast, or slow, or the `first` event."""
+    """The instant at which the rate of damper `i` passes the limit of its power series, or the `first`
+    event.
+    """
     viscous, d, p = series.viscous, series.deformation[i], series.polynomial[POLYNOMIAL]
     r = viscous.number[i]
     k, limit = viscous.numbers[r, K], viscous.numbers[r, LIMIT]
@@ -150,8 +156,8 @@ def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int
 
 
 def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
-    """Whether the tangents of those that hold unknowns without mass were at the present rates, as near as
-    Newton's iteration needs and rounding of the `velocity` of the unknowns lets them be.
+    """Whether the tangents of the dampers that hold unknowns without mass were taken at the present rates,
+    within the tolerance of Newton's iteration and the rounding of the `velocity` of the unknowns.
     """
     for r in viscous.light:
         i, numbers = viscous.laws[r], viscous.numbers[r]

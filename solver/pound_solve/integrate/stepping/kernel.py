@@ -53,8 +53,8 @@ from pound_solve.numerics.types import Array, Index
 
 
 def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
-    """Drive law `i` along a straight path from its start in the step to its end, by the branches on the
-    way; False where it loses a force on it that holds a joint without mass.
+    """Drive law `i` along a straight path from its start in the step to its end, through the branches on
+    the way; False where it loses a force on the way that holds a joint without mass.
     """
     laws = sim.laws
     d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
@@ -74,7 +74,7 @@ def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
 
 
 def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
-    """Drive the laws that pass an event to the end of the step, and let the factor follow.
+    """Drive the laws that pass an event to the end of the step, and update the factor.
 
     Returns
     -------
@@ -120,8 +120,9 @@ def step_through(
     length: float,
     tried: bool,
 ) -> int:
-    """Advance by `length` without a cut at events: Newton to the forces of the laws at its end, each driven
-    along a straight path from its start; `tried` says that the first trial is made.
+    """Advance by `length` without cutting the step at events: iterate until the step agrees with the laws
+    at its end, each driven along a straight path from its start; `tried`: the first trial step is made
+    already.
     """
     laws, run = sim.laws, sim.run
     for i in range(len(laws.rule)):
@@ -216,7 +217,7 @@ def begin_goal(sim: Simulation, scheme: Scheme, coefs: Array, s: float, h: float
 
 
 def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
-    """Factorise A for steps of length `h` where the factor at hand is of another, or was updated too
+    """Factorise A for steps of length `h`, if the present factor is for another, or was updated too
     often.
     """
     run = sim.run

@@ -146,7 +146,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
 
 
 def go_on(sim: Simulation, rules: Tables) -> None:
-    """Make the state consistent after what has jumped, and keep it.
+    """Make the state consistent after a jump, and keep the motion for the envelopes.
 
     Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant
     itself counts as one before.
@@ -196,7 +196,9 @@ def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
 def search_verdict(
     b: Bracket, g: float, size: float, tau: float, guess: float, passed: bool, last: bool, h: float
 ) -> int:
-    """Whether the search ends at `tau`, and whether an event is MET there; `size` is that of its terms."""
+    """Result of a search at `tau`: MET at an event, NONE where there is none, or GO_ON; `size` is the
+    magnitude of the event function's terms.
+    """
     if abs(g) <= STILL * size or last or 0.0 <= tau - guess <= CLOSE * h:
         # no event after all: rates of massless unknowns may mislead
         return NONE if not passed and abs(g) > NEAR * size else MET

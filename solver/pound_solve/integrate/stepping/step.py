@@ -180,7 +180,7 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
 
 
 def redraw_members(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
-    """Take the members' tangents anew, with the factor; False where that fails."""
+    """Recompute the members' tangents, and factorise again; False where that fails."""
     members = sim.laws.members
     take_tangents(members, members.trial.quantities)
     for c in range(len(members.parameters)):
@@ -249,7 +249,7 @@ def try_step(
 
 
 def start_again(laws: Laws, rules: Tables) -> None:
-    """Linearise all that is curved at the start of the step."""
+    """Linearise the curved laws and the members at the start of the step."""
     linearise_laws(laws, rules)
     take_tangents(laws.members, laws.members.now.quantities)
 
@@ -330,11 +330,11 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
 
 
 def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> None:
-    """Make the end of the step that was tried the start of the next; count it, if it is longer than the
-    time in which a falling branch gives way.
+    """Make the end of the trial step the start of the next; count it, if it is longer than the time in
+    which a falling branch gives way.
 
-    A then has a negative eigenvalue, which its pivots in row `at` tell (Sylvester's law of inertia): along
-    that mode the method goes against the force, where the motion goes with it.
+    A then has a negative eigenvalue, as its pivots in row `at` show (Sylvester's law of inertia): along
+    that mode the method moves against the force, the true motion with it.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     now, trial = step.now, step.trial
