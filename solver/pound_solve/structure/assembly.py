@@ -68,7 +68,7 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
 
 
 def _joined(model: Model, dofs: DofMap, elements: _Elements) -> Structure:
-    """Sum of the parts of all elements, before any damping model is applied."""
+    """Assemble the matrices, laws and loads of all elements, before any damping model is applied."""
     parts, mass = elements.ordered(), elements.mass
     laws = tuple(s for p in parts for s in p.laws)
     law_rows = dofs.rows([(s.dofs, s.row) for s in laws])

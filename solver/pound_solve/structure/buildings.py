@@ -52,7 +52,7 @@ class Floor:
 
 @dataclass(frozen=True)
 class Building:
-    """A connected part.
+    """A connected part of a structure, with its base, floors and storeys.
 
     Attributes
     ----------
@@ -101,8 +101,8 @@ def parts(model: Model) -> list[tuple[int, ...]]:
 
 
 def stands(model: Model, nodes: Collection[int]) -> bool:
-    """Whether a connected part has a height and members in it, as a frame has; a ball, a floor or a
-    bar that lies has none.
+    """Whether a connected part has a height and members in it, as a frame has, unlike a ball, a floor or a
+    horizontal bar.
     """
     inside = frozenset(nodes)
     joined = any(i in inside and j in inside for i, j in joints(model))
@@ -110,7 +110,7 @@ def stands(model: Model, nodes: Collection[int]) -> bool:
 
 
 def joints(model: Model) -> list[tuple[int, int]]:
-    """The pairs of nodes that elements join, contacts apart."""
+    """Pairs of nodes that elements other than contacts join."""
     return [
         (e.i, e.j)
         for e in model.elements.values()
@@ -138,7 +138,7 @@ def buildings(structure: Structure) -> list[Building]:
 
 
 class Levels:
-    """Where a building begins, and its levels of nodes with mass.
+    """The base of a building, and its levels of nodes with mass.
 
     Parameters
     ----------
@@ -173,7 +173,9 @@ class Levels:
         self._levels = [_floor(nodes, heavy, height) for nodes in levels]
 
     def floors(self, named: Collection[int]) -> tuple[Floor, ...]:
-        """Those of the levels that are floors: of some nodes, or, where there are none, by their mass."""
+        """The levels that count as floors: those of the `named` nodes or, without such, those with enough
+        mass.
+        """
         if named:
             at = [self.at(n) for n in named]
             return tuple(level for level in self._levels if level in at)
@@ -204,7 +206,9 @@ def building(structure: Structure, name: str) -> Building:
 
 
 def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection[int]]) -> list[Index]:
-    """Columns of each of some groups of nodes, and of what is inside the elements between them."""
+    """Columns of each of some groups of nodes, with the internal DOFs of elements between nodes of the
+    group.
+    """
     places: dict[int, list[tuple[int, int]]] = {}
     for column, (owner, d) in enumerate(columns):
         i, j = (owner, owner) if d < 3 else (model.elements[owner].i, model.elements[owner].j)

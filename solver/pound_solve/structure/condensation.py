@@ -48,8 +48,8 @@ class Condensed:
         return np.asarray(0.5 * (displacements * (self.loads @ s)).sum(axis=0))
 
     def all(self, u: Array, s: Array, order: int = 0) -> Array:
-        """All unknowns from those that are left and the inputs `s`, shape (n,); `order` 1: velocities,
-        2: accelerations.  Columns are instants where there are several.
+        """All unknowns from the remaining ones and the inputs `s`, shape (n,); `order` 1: velocities, 2:
+        accelerations.  Columns are instants where there are several.
         """
         whole = self.expand @ u + self.follow @ s
         return (whole.T + self.constant).T if order == 0 else whole

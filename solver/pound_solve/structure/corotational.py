@@ -211,7 +211,7 @@ class CorotationalMembers:
         return len(self.own)
 
     def on(self, columns: list[int] | slice) -> CorotationalMembers:
-        """The same over some of the columns, the others at rest."""
+        """The same members over some of the columns only, the others being at rest."""
         return CorotationalMembers(self.own, self.rows[:, columns])
 
     def quantities(self, u: Array) -> Array:
@@ -219,7 +219,9 @@ class CorotationalMembers:
         return np.asarray(self.rows @ u, float).reshape(-1, QUANTITIES)
 
     def touched(self) -> list[tuple[Index, Array]]:
-        """Columns that each member touches, ascending, and its six quantities over them, (6, n_touched)."""
+        """Columns that each member depends on, ascending, and the rows of its quantities over them, (6,
+        n_touched).
+        """
         rows, by_member = by_rows(self.rows), []
         for c in range(len(self)):
             six = rows[QUANTITIES * c : QUANTITIES * (c + 1)]
@@ -257,14 +259,16 @@ class CorotationalMembers:
         return actions
 
     def turning(self, s: Array, members: Index) -> Array:
-        """`member_turning` of some members at their quantities `s`, shape (n_times, n_members, 6)."""
+        """Forces by `member_turning` of some members at their quantities `s`, shape (n_times, n_members,
+        6).
+        """
         turning = np.zeros(s.shape)
         provider().ready(member_turning)(self.p[members], np.ascontiguousarray(s), turning)
         return turning
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:
-        """Member and share of its eta, rho and shear in each of some (element, quantity),
-        shapes (n,) and (n, 3).
+        """For each of some outputs (element, quantity): its member, and the factors of eta, rho and shear
+        in it, shapes (n,) and (n, 3).
         """
         place = {c.element: i for i, c in enumerate(self.own)}
         at = np.array([place.get(element, 0) for element, _ in outputs], np.intp)

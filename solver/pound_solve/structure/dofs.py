@@ -74,7 +74,7 @@ class DofMap:
         return row
 
     def rows(self, sums: Sequence[tuple[Collection[Dof], Collection[float]]]) -> Matrix:
-        """Several such rows, shape (len(sums), size)."""
+        """Rows of several such sums, shape (len(sums), size)."""
         terms = [
             (i, column, value * factor)
             for i, (dofs, values) in enumerate(sums)

@@ -60,15 +60,15 @@ def released(structure: Structure) -> Structure:
 
 @dataclass(frozen=True)
 class Weights:
-    """How often each row of the equations of motion counts in some sums, by the kind of its terms;
-    shape (n_sums, n_columns) each.
+    """Factors of the rows of the equations of motion in some sums, by the kind of their terms; shape
+    (n_sums, n_columns) each.
 
     Attributes
     ----------
     elements : Matrix
         Forces of the elements: stiffness, damping between nodes, springs, dampers.
     geometric : Matrix
-        What axial forces add to them on displaced members.
+        Contribution of axial forces to these on displaced members.
     contacts : Matrix
         Forces of the contacts and of the friction in them.
     inertia : Matrix
@@ -155,7 +155,7 @@ class Equations:
         return np.array([along, up, x * up - y * along - turn])
 
     def _damping_to_ground(self) -> Matrix:
-        """Damping of the unknowns that has no place between two nodes, shape (n_columns, n_columns)."""
+        """Damping of the unknowns that does not act between two nodes, shape (n_columns, n_columns)."""
         i, j, c = entries(self.system.structure.damping[: self.n])
         place = np.concatenate([np.arange(self.n), np.array(self._moved, np.int64)])
         p, q, between = entries(self.structure.damping[: self.n])
@@ -202,8 +202,8 @@ class Equations:
 
 
 class LinearSums:
-    """Quantities that are linear in the motion, the laws' forces and the inputs; and in what the turning of
-    members adds.
+    """Quantities that are linear in the motion, the laws' forces, the inputs and the forces of corotational
+    members.
 
     Parameters
     ----------
@@ -236,8 +236,8 @@ class LinearSums:
         self.members: Index = np.flatnonzero(members)
 
     def turned(self, u: Array, s: Array) -> Array:
-        """What corotational members add, at displacements of the unknowns and inputs, shape (n, n_times)
-        each; shape (n_sums, n_times).
+        """Contribution of corotational members, at displacements of the unknowns and inputs, shape (n,
+        n_times) each; shape (n_sums, n_times).
         """
         seen = self.system.quantities(u.T, s.T)[:, self.members]
         turned = self.system.structure.corotational.turning(seen, self.members)

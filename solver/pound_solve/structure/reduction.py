@@ -114,7 +114,9 @@ class ReducedSystem:
         return np.concatenate([free, self.support_inputs @ s])
 
     def over(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
-        """Rows over all columns of the structure as rows over unknowns and inputs, and constants."""
+        """Convert rows over all columns of the structure to rows over unknowns and over inputs, and
+        constants.
+        """
         n = self.structure.n_free
         free = rows[:, :n]
         over = free @ self.expand
@@ -325,8 +327,8 @@ def _support_shares(structure: Structure, motion: Motion) -> list[float]:
 
 
 def _live(structure: Structure, inputs: Inputs, start: Array, start_rate: Array) -> Flags:
-    """Which unknowns anything can set in motion: all that are coupled, directly or through others, to one
-    that is loaded or starts in motion.
+    """Which unknowns can be set in motion: all that are coupled, directly or through others, to one that is
+    loaded or starts in motion.
     """
     n = structure.n_free
     matrices = [a[:n, :n] for a in (structure.stiffness, structure.damping, structure.mass)]

@@ -47,8 +47,9 @@ def base_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums
 
 
 def imbalance_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
-    """What is left of the equations of motion, summed over the unknowns of every building as above; then
-    the inertia among it; then what drives the building, the loads and its inertia in the ground's motion.
+    """Three groups of sums over the unknowns of every building, each along x, along y and of moments: the
+    residual of the equations of motion; the total inertia in it; the loads and the inertia in the ground's
+    motion, which drive the building.
 
     These tell the size of the terms where a building does not stand on the ground.  The inertia alone does
     not: a body that nothing touches stays where it is while the ground moves.
@@ -114,7 +115,7 @@ def storeys(buildings: Sequence[Building]) -> Iterator[tuple[Building, int]]:
 
 
 def _sums(system: ReducedSystem, motion: list[Matrix], inputs: list[Array], constant: Array) -> LinearSums:
-    """Sums without forces."""
+    """Sums that depend on the motion and inputs only, not on forces of laws and members."""
     laws, members = len(system.structure.laws), 6 * len(system.structure.corotational)
     nothing = (gathered((len(constant), n), [], [], []) for n in (laws, members))
     return LinearSums(system, motion, inputs, constant, *nothing)

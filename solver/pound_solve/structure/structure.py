@@ -27,13 +27,13 @@ class Structure:
     Attributes
     ----------
     stiffness : Matrix, shape (n, n)
-        Linear stiffness, laws apart [F/L].
+        Linear stiffness without that of laws [F/L].
     initial_stiffness : Matrix, shape (n, n)
         The same with the initial stiffness of all hysteretic laws.
     mass : Matrix, shape (n, n)
         [F T^2/L]
     damping : Matrix, shape (n, n)
-        Dashpots of laws apart [F T/L].
+        Without the dashpots of laws [F T/L].
     initial_damping : Matrix, shape (n, n)
         The same with the dashpots of hysteretic laws, at their initial stiffness.
     loads : ndarray, shape (n,)
@@ -64,7 +64,7 @@ class Structure:
     carried : ndarray, shape (n_geometric,)
         Axial forces that the geometric stiffness is made of [F].
     mass_blocks : tuple of MassBlock
-        What `mass` is the sum of.
+        Matrices of which `mass` is the sum.
     remarks : list of Diagnostic
         Warnings of the assembly.
     basis : Matrix, shape (n_free, n_free), or None
@@ -112,14 +112,14 @@ class Structure:
         return self.vibration(None)
 
     def vibration(self, count: int | None) -> modes.Modes:
-        """Its `count` slowest modes, or more; None: all."""
+        """The `count` slowest modes of the initial structure, contacts open, or more; None: all."""
         if "free_vibration" in self.__dict__:
             return self.free_vibration
         slowest = modes.solve(self.tied(self.initial_stiffness), self.tied(self.mass), count)
         return slowest if self.basis is None else replace(slowest, shapes=self.basis @ slowest.shapes)
 
     def tied(self, k: Matrix) -> Matrix:
-        """The part of a matrix over all columns that modes are made of, shape (n_free, n_free)."""
+        """Part of a matrix over all columns from which modes are computed, shape (n_free, n_free)."""
         free = k[: self.n_free, : self.n_free]
         return free if self.basis is None else self.basis.T @ free @ self.basis
 
@@ -160,7 +160,9 @@ class Structure:
         return replace(self, initial_stiffness=k)
 
     def framed(self, k: Matrix) -> Matrix:
-        """The part of a matrix over all columns, or over the unknowns, that is theirs; zeros elsewhere."""
+        """Part of a matrix over all columns or over the unknowns that belongs to the unknowns; zeros
+        elsewhere.
+        """
         (i, j, x), n = entries(k), self.n_free
         inside = (i < n) & (j < n)
         return gathered(self.stiffness.shape, i[inside], j[inside], x[inside])

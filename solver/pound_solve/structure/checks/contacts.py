@@ -121,7 +121,7 @@ def idle(structure: Structure) -> list[Diagnostic]:
 
 
 def _columns(model: Model) -> dict[float, list[Node]]:
-    """Nodes above each other, by their x."""
+    """Nodes by their x coordinate."""
     columns = defaultdict[float, list[Node]](list)
     for n in model.nodes.values():
         columns[n.x].append(n)
@@ -129,8 +129,8 @@ def _columns(model: Model) -> dict[float, list[Node]]:
 
 
 def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -> tuple[int, int] | None:
-    """Node above or below an end of a contact, at the height of its other end, if there is one, and that
-    end: it is the node of a floor which meets the other one.
+    """Node above or below one end of a contact at the height of its other end, as where a floor meets that
+    end, and the end in whose column it is; None if there is no such node.
     """
     nodes = model.nodes
     for one, other in ((e.i, e.j), (e.j, e.i)) if e.j is not None else ():
@@ -176,7 +176,9 @@ def _misaligned(
 
 
 def _floors(model: Model) -> dict[int, int]:
-    """By node, a number for what lies along x in one piece: members that lie, and nodes slaved along x."""
+    """For every node the number of its rigid row along x: nodes joined by horizontal members, or slaved
+    along x.
+    """
     number = {n: i for i, n in enumerate(model.nodes)}
     pairs = [(n.id, n.slaved["X"]) for n in model.nodes.values() if "X" in n.slaved]
     for e in (e for members in kinds(model).values() for e in members):
@@ -189,7 +191,7 @@ def _floors(model: Model) -> dict[int, int]:
 
 
 def _way(spring: LawSpring) -> tuple[float, float]:
-    """Direction of a contact, from I towards J."""
+    """Unit direction of a contact, from I towards J."""
     angle = math.radians(spring.facts["angle"])
     return math.cos(angle), math.sin(angle)
 

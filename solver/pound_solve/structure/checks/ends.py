@@ -26,7 +26,7 @@ def loose_ends(structure: Structure) -> list[Diagnostic]:
 
 
 class Ends:
-    """What ends at each node.
+    """Members, other elements, masses and loads at each node, and the nodes at one place.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Ends:
         return bool({"X", "Y"} & set(self.model.nodes[n].fixed))
 
     def reach(self, n: int) -> tuple[float, float]:
-        """Heights that the members at a node reach, from the lowest to the highest end [L]."""
+        """Heights of the lowest and the highest end of the members at a node [L]."""
         nodes = self.model.nodes
         y = [nodes[n].y, *(nodes[m].y for e in self.members[n] for m in (e.i, e.j) if m is not None)]
         return min(y), max(y)
@@ -86,7 +86,7 @@ class Ends:
 
 
 def places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
-    """Nodes at every place, and the number of the place of each node."""
+    """Groups of nodes at one place, and for each node the number of its group."""
     x, y = np.array([(n.x, n.y) for n in model.nodes.values()]).T
     unit = SAME_PLACE * max(np.ptp(x), np.ptp(y)) or 1.0
     by_place: dict[tuple[float, float], list[int]] = defaultdict(list)

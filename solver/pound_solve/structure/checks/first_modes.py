@@ -28,7 +28,7 @@ RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may 
 
 
 def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Buildings whose first mode is damped beyond sense, or not at all under an earthquake."""
+    """Buildings whose first mode has an implausible damping ratio, or none at all under an earthquake."""
     model, problems = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
     for b, part in parts:
@@ -62,7 +62,9 @@ def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> l
 
 
 def frequencies_in_hertz(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Circular frequencies of DAMPING below the first one of every building that they may mean."""
+    """Circular frequencies of DAMPING that are below the first mode of all buildings concerned: hertz are
+    likely.
+    """
     model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
         omega, nodes = card.values.get("OMEGA"), card.values.get("NODES")
@@ -86,7 +88,7 @@ def _by_dashpots(structure: Structure) -> Matrix:
 
 
 def _dashpots(model: Model, b: Building) -> Card | None:
-    """Property set of a dashpot above the base of a building."""
+    """Property set of a dashpot above the base of a building; None without one."""
     above = {n for n in b.nodes if model.nodes[n].y > b.base}
     cards = (model.props[e.prop] for e in model.elements.values() if e.j and {e.i, e.j} & above)
     return next((card for card in cards if card.spec.name == "DASHPOT"), None)
@@ -97,7 +99,7 @@ def _percent(share: float) -> str:
 
 
 def _axial(model: Model) -> dict[int, float]:
-    """Sum of EA/L of the members that lie, by their nodes [F/L]."""
+    """Sum of EA/L of the horizontal members at each node [F/L]."""
     stiffness = defaultdict[int, float](float)
     for label, members in kinds(model).items():
         card = model.props[label]
@@ -109,9 +111,9 @@ def _axial(model: Model) -> dict[int, float]:
 
 
 def contact_stiffnesses(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Contacts so soft that the weight of the bodies would press them by more than the height of their
-    buildings, or so stiff that a collision ends before it is felt behind the face: one for each property
-    set.
+    """Contacts, one for each property set, so soft that the weight of the bodies would compress them by
+    more than the height of their buildings, or so stiff that the beams behind them, or the duration of a
+    collision, make it implausible.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
     beams = _axial(model)

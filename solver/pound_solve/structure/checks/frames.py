@@ -58,7 +58,7 @@ def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
 
 
 class Lines:
-    """Members that lie and members that stand, by their nodes.
+    """Horizontal members and elements that lead up and down, by their nodes.
 
     Attributes
     ----------
@@ -92,11 +92,13 @@ class Lines:
                 self.down[high].append(e)
 
     def beamed(self, n: int) -> bool:
-        """Whether a beam ends at the place of a node, perhaps at another one behind a joint."""
+        """Whether a beam ends at the place of a node, at this node or at another one in the same place."""
         return any(self.beams[m] for m in self.group[self.at[n]])
 
     def held(self, n: int) -> bool:
-        """Whether a node is a support, or hangs on a master or on the ground."""
+        """Whether a node is supported vertically, slaved vertically, or joined to the ground by an
+        element.
+        """
         node = self.model.nodes[n]
         return "Y" in node.fixed or "Y" in node.slaved or n in self.grounded
 
@@ -141,7 +143,7 @@ def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
 
 
 def _passing_a_floor(lines: Lines, b: Building) -> Iterator[Diagnostic]:
-    """Elements that pass a node from which nothing leads up."""
+    """Elements that pass through the place of a node at which a lower element ends."""
     nodes = lines.model.nodes
     ends = [n for n in b.nodes if lines.down[n] and not lines.up[n] and n not in lines.grounded]
     for n in ends:
@@ -158,7 +160,7 @@ def _by_x(model: Model, floor: Floor) -> list[int]:
 
 
 def _foot(lines: Lines, n: int, floor: Floor) -> int | None:
-    """Node of a floor on which the only column below a node stands."""
+    """Node of a floor on which the only column below a node stands; None otherwise."""
     lower = {m for e in lines.down[n] for m in (e.i, e.j) if m != n}
     return lower.pop() if len(lower) == 1 and lower <= set(floor.nodes) else None
 

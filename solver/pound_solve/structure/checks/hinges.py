@@ -43,7 +43,9 @@ def facing(structure: Structure) -> list[Diagnostic]:
 
 
 def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:
-    """Strength at which both stay, where the other's moment is `ratio` times that of one; 0 for none."""
+    """Common strength of two hinges that both yield without hardening, where the moment in the other is
+    `ratio` times that in the one; 0 for none.
+    """
     for side in (0, 1):
         facing_side = side if ratio > 0.0 else 1 - side
         mine, theirs = _flat_strength(one, side), _flat_strength(other, facing_side)
@@ -53,7 +55,9 @@ def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:
 
 
 def _flat_strength(spring: LawSpring, side: int) -> float:
-    """Strength of a hinge on a side where it does not harden; 0 where it does, or does not yield."""
+    """Strength of a hinge on a side where it yields without hardening; 0 where it hardens or does not
+    yield.
+    """
     law = spring.law
     if law.curved or spring.strengths is None or spring.yields is None:
         return 0.0

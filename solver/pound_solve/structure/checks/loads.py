@@ -36,7 +36,7 @@ class Load(NamedTuple):
 
 
 def given(model: Model) -> Iterator[Load]:
-    """Forces of LOADS that stay and of MEMBER_LOADS, half of these at either end."""
+    """Loads on nodes from LOADS that stay and from MEMBER_LOADS, half of the latter at either end."""
     for c in model.loads:
         if c.spec.name == "LOADS" and c["HELD"] == "YES":  # not those that weights make
             yield from (Load(n, c["FX"], c["FY"], c, "FY") for n in c["NODES"])
@@ -138,7 +138,7 @@ def _sideways(structure: Structure, b: Building, loads: list[Load]) -> list[Diag
 
 
 def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """Loads that repeat the weight, or have other units."""
+    """Loads that repeat the weight, or seem to be in other units."""
     model, press = structure.model, -sum(load.y for load in loads)
     weight, unit = b.mass * model.gravity, model.units.force
     if not press or not weight:

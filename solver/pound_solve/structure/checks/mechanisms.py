@@ -41,7 +41,7 @@ def loose(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[
 def untimely(
     structure: Structure, parts: Sequence[tuple[Building, Part]]
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings whose first period is beyond what their height allows.
+    """Names of buildings whose first period is implausible for their height, with the warning.
 
     One that is slower than a pendulum of its height, standing on its head, falls over by its own weight.
     Those on springs may be rigid on purpose.
@@ -98,7 +98,9 @@ def hasty(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[
 
 
 def standing(structure: Structure) -> list[tuple[Building, Part]]:
-    """The buildings of some height that the ground shakes along x, if computing does not fail them."""
+    """Buildings with a height that the ground shakes along x, with their stiffness, where it can be
+    computed.
+    """
     model, pairs = structure.model, list[tuple[Building, Part]]()
     if "X" not in shaken(model):
         return pairs
@@ -110,7 +112,7 @@ def standing(structure: Structure) -> list[tuple[Building, Part]]:
 
 
 def _part(structure: Structure, columns: Index) -> Part | None:
-    """The stiffness of a building, unless its numbers are beyond computing."""
+    """Stiffness of a building; None where its numbers leave the range of computation."""
     try:
         with np.errstate(all="ignore"):
             return Part(structure, columns)
@@ -119,7 +121,7 @@ def _part(structure: Structure, columns: Index) -> Part | None:
 
 
 class Part:
-    """The stiffness of a building, contacts open, scaled to a diagonal of ones; without rotations that
+    """Stiffness of a building with open contacts, scaled to a diagonal of ones, without rotations that
     nothing holds.
     """
 
@@ -132,7 +134,7 @@ class Part:
         self.held = modes.Held(scaled(stiffness, self.factors))
 
     def slack(self) -> Array:
-        """Motions that it does not resist, shape (n, n_slack), over all columns."""
+        """Motions that the stiffness does not resist, shape (n, n_slack), over all columns."""
         slack = self.held.slack.copy()
         slack[abs(slack) < ROUNDING] = 0.0  # else what is left of rounding counts as a deformation
         motions = np.zeros((self.structure.dofs.size, slack.shape[1]))
@@ -141,7 +143,7 @@ class Part:
 
     @cached_property
     def period(self) -> float:
-        """First period along x, by the quotient of Rayleigh of the sag under its weight along x [T]; 0
+        """First period along x by Rayleigh's quotient of the displacements under its weight along x [T]; 0
         where there is none.
         """
         push = self.structure.ground[0, self.columns]
@@ -171,7 +173,9 @@ class Part:
                 return None
 
     def _form(self, matrix: Matrix) -> float:
-        """Quadratic form of the sag and a matrix over all columns; 0 for a mechanism."""
+        """Quadratic form of the displacements under the weight along x with a matrix over all columns; 0
+        for a mechanism.
+        """
         if self.sag is None:
             return 0.0
         with np.errstate(all="ignore"):
@@ -179,7 +183,9 @@ class Part:
 
 
 def _allowed(structure: Structure, slack: Array) -> Flags:
-    """Which motions dashpots, contacts that touch or other laws resist, or leave all nodes in place."""
+    """Which of the `slack` motions are resisted by dashpots, closed contacts or other laws, or leave all
+    nodes in place.
+    """
     shifts = [i for i, (_, d) in enumerate(structure.dofs.free) if d < 2]
     still = np.abs(slack[shifts]).max(axis=0, initial=0.0) == 0.0
     return np.asarray(still | resisted(structure, slack, touching=True).any(axis=0))

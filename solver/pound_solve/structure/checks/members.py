@@ -77,14 +77,14 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
 
 
 def _exchanged(card: Card, long: float, beyond: float) -> bool:
-    """Whether the section of a member of a length, `beyond` times as deep as its building is large, becomes
-    usual if A and I change places.
+    """Whether A and I of a section have been exchanged: it is `beyond` times as deep as its building is
+    large, and with A and I exchanged its depth would be usual for a member of the length `long`.
     """
     return beyond > FAR and USUAL[0] <= math.sqrt(12.0 * card["A"] / card["I"]) / long <= USUAL[1]
 
 
 def kinds(model: Model) -> dict[str, list[Element]]:
-    """Members by their property sets."""
+    """Members (elements of frame types) by their property sets."""
     by_set: dict[str, list[Element]] = defaultdict(list)
     for e in model.elements.values():
         if model.props[e.prop].spec.name in MEMBERS and e.j is not None:
@@ -213,8 +213,8 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
 
 
 def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[Diagnostic]:
-    """Hinges at both ends that together are longer than the middle one of their members, or that harden as
-    nothing does.
+    """Hinges at both ends that together are longer than a typical member, or whose hardening is
+    implausible.
     """
     card, e = model.props[label], sorted(members, key=lambda e: length(model, e))[len(members) // 2]
     both = card.values.get("HINGES") == "BOTH" or None not in (card.values.get("MI"), card.values.get("MJ"))
@@ -237,7 +237,7 @@ def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[D
 def _strain(
     model: Model, card: Card, element: Element, strengths: tuple[float, float]
 ) -> Iterator[Diagnostic]:
-    """A yield moment out of all proportion to the stiffness of its section."""
+    """A yield moment that does not fit the stiffness of its section: the strain at yield is implausible."""
     h, unit = depth(card), model.units.text("F*L")
     moment = max((abs(m) for m in strengths if math.isfinite(m)), default=0.0)
     ei = card["E"] * card["I"]
@@ -255,7 +255,9 @@ def _strain(
 
 
 def _rotation(model: Model, card: Card, spring: LawSpring) -> Iterator[Diagnostic]:
-    """A yield moment that a hinge or spring of its own stiffness reaches at a rotation beyond sense."""
+    """A yield moment that a hinge or spring with a stiffness of its own reaches at an implausible
+    rotation.
+    """
     at = max((abs(x) for x in spring.yields or () if math.isfinite(x)), default=0.0)
     if at > MOST_ROTATION:
         k, m = ("KH", "MI") if card.spec.name in MEMBERS else ("KR", "MR")

@@ -130,7 +130,8 @@ def _shift(structure: Structure, d: int) -> Array:
 
 
 def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Array:
-    """Motions of all columns: those of some nodes, given, of the ends of the beams between them, and zeros.
+    """Motions over all columns: those given of some nodes, those of the beam ends between them, zero
+    elsewhere.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Ar
 
 
 def _inside(model: Model, e: Element, j: int, d: int, motions: Mapping[int, Array]) -> Array:
-    """Motion of the end of a beam behind a hinge, which goes with its node: a turn, or along the member."""
+    """Motion of a beam end behind a hinge that moves with its node: a rotation, or along the member."""
     end = motions[e.i if d in ENDS_AT_I else j]
     if d in TURNS:
         return np.asarray(end[2])
@@ -158,7 +159,7 @@ def _inside(model: Model, e: Element, j: int, d: int, motions: Mapping[int, Arra
 
 
 def resisted(structure: Structure, motions: Array, touching: bool = False) -> Array:
-    """What opposes motions: forces of the initial stiffness and of dashpots, deformations of laws.
+    """Resistance to motions: forces of the initial stiffness and of dashpots, deformations of laws.
 
     Parameters
     ----------

@@ -101,7 +101,9 @@ def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> floa
 
 
 def _strain(model: Model, b: Building, weight: float) -> float:
-    """Strain of the members that stand on the base, if nothing else does; else 0."""
+    """Axial strain under the weight of the members that stand on the base; 0 where other elements do,
+    too.
+    """
     stiffness = 0.0
     for e in _lowest(model, b):
         card = model.props[e.prop]
@@ -112,7 +114,7 @@ def _strain(model: Model, b: Building, weight: float) -> float:
 
 
 def _lowest(model: Model, b: Building) -> list[Element]:
-    """Elements between the base of a building, or the ground, and what is above."""
+    """Elements that join the base of a building, or the ground, to what is above it."""
     inside = frozenset(b.nodes)
     top = b.base + SAME_LEVEL * (max(model.nodes[n].y for n in b.nodes) - b.base)
     lowest = []
@@ -126,7 +128,7 @@ def _lowest(model: Model, b: Building) -> list[Element]:
 
 
 def misarmed(structure: Structure) -> list[Diagnostic]:
-    """Buildings on springs whose strength together is beyond sense beside the weight on them."""
+    """Buildings on springs whose total strength is implausible for the weight that they carry."""
     model, problems = structure.model, list[Diagnostic]()
     along = {s.element: s for s in structure.laws if s.component == "X" and s.strengths is not None}
     for b in _standing(structure):

@@ -96,13 +96,13 @@ AFTER = Field(
 
 
 class Chosen(NamedTuple):
-    """Elements of property sets (None: of all) that end at some nodes (None: at any)."""
+    """A choice of elements: of property sets (None: of all) that end at some nodes (None: at any)."""
 
     props: Collection[str] | None
     nodes: Collection[int] | None
 
     def has(self, element: Element) -> bool:
-        """Whether an element is one of them."""
+        """Whether an element belongs to the choice."""
         of_these = self.props is None or element.prop in self.props
         return of_these and (self.nodes is None or element.i in self.nodes)
 
@@ -151,7 +151,7 @@ class DampingError(Exception):
 
 
 def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext) -> Array:
-    """Circular frequencies that OMEGA or MODES of a card name; a mode beyond the last one is the last one.
+    """Circular frequencies of OMEGA, or of MODES on a card; numbers beyond the last mode mean the last one.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def apart(at: Array, item: str) -> None:
 
 
 def values(numbers: Array) -> str:
-    """Numbers in words for the report."""
+    """Numbers as text for the report."""
     return ", ".join(f"{x:.6g}" for x in numbers)
 
 

@@ -38,7 +38,9 @@ from pound_solve.structure.damping.base import (
 
 
 def through(x: Array, at: Array, xi: Array, straight: bool) -> Array:
-    """Piecewise linear function through (`at`, `xi`) at `x`, with ends that go on straight or constant."""
+    """Piecewise linear function through (`at`, `xi`), evaluated at `x`; beyond its ends it goes on straight
+    or constant.
+    """
     order = np.argsort(at)
     at, xi = at[order], xi[order]
     line = np.interp(x, at, xi)
@@ -50,7 +52,7 @@ def through(x: Array, at: Array, xi: Array, straight: bool) -> Array:
 
 
 def listed(card: Card, omega: Array) -> tuple[Array, str]:
-    """Ratio of every mode out of a list, and words."""
+    """Ratio of every mode from a list, and its description for the report."""
     numbers = card["XI"]
     for item in ("BEYOND", "OVER"):
         if item in card.spans:
@@ -61,7 +63,7 @@ def listed(card: Card, omega: Array) -> tuple[Array, str]:
 
 
 def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Array, str]:
-    """Ratio of every mode on straight lines between the given ones, and its description."""
+    """Ratio of every mode by straight lines between given ones, and its description for the report."""
     at = frequencies(card, lambda: omega, context)
     item = "OMEGA" if card["OMEGA"] is not None else "MODES"
     x, name = omega, "omega"

@@ -119,7 +119,7 @@ class LawSpring:
     @property
     def steepest(self) -> float:
         """Stiffness that none of its straight branches exceeds [F/L] or [F L]; 0 for a damper, whose force
-        comes of the rate.
+        depends on the rate.
         """
         return 0.0 if self.role is Role.DAMPER else self.law.rule.steepest(self.law.p)
 
@@ -129,7 +129,7 @@ class LawSpring:
         return self.role.viscous or bool(self.beta or self.secant) or self.law.curved
 
     def whole(self, deformation: float, force: float) -> float:
-        """Deformation as `yields` count it, of the one of the law."""
+        """Deformation in the sense of `yields`, with the elastic part beside it, from that of the law."""
         return deformation + self.beside * force
 
     def branch(self, state: State) -> Branch:
@@ -354,7 +354,7 @@ def hysteretic(
 
 
 def _rounded_down(x: float) -> float:
-    """The next number of four digits that is not above a positive one, but for its rounding."""
+    """The largest number of four digits that is not above `x` > 0, but for its rounding."""
     unit = 10.0 ** (math.floor(math.log10(x)) - 3)
     return math.floor(x / unit * (1.0 + 1e-12)) * unit
 

@@ -58,7 +58,7 @@ INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a h
 
 @dataclass(frozen=True)
 class Member:
-    """A beam and how its hinges open.
+    """A beam, and the relation between its DOFs and the deformation of its hinges.
 
     Attributes
     ----------
@@ -299,7 +299,7 @@ def _add_geometry(
 
 
 def _loads(context: ElementContext, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
-    """Consistent loads on the beam's ends, initial forces among them, and what stands on the end blocks,
+    """Consistent loads on the beam's ends, initial forces included, and the loads on the rigid end blocks,
     shape (6,) each, local and global.
     """
     p = context.prop

@@ -101,7 +101,9 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
 
 
 def spare(k: Array, length: float, ea: float, joints: Array, taken: Array, pins: list[int]) -> float:
-    """How many times the flexibility `taken` off the ends would leave a beam without any."""
+    """Multiple of the flexibility `taken` off the ends that would leave the beam without any
+    flexibility.
+    """
     flexibility = np.zeros((3, 3))
     flexibility[0, 0] = length / ea
     flexibility[1:, 1:] = np.linalg.inv(k[np.ix_([2, 5], [2, 5])])

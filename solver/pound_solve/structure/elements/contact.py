@@ -61,7 +61,7 @@ def adjacent(context: ElementContext, nodes: list[int], normal: tuple[float, flo
 def rubbing(
     context: ElementContext, ends: list[tuple[int, float]], normal: tuple[float, float]
 ) -> tuple[list[LawSpring], str]:
-    """Friction of the contact, if it has any, and its figures in the report."""
+    """Friction of the contact, if it has any, and its text for the report."""
     card, (nx, ny) = context.prop, normal
     if card["MU"] is None:
         for item in ("MUD", "KT"):
@@ -94,7 +94,7 @@ def rubbing(
 def across(
     ends: list[tuple[int, float]], unit: tuple[float, float]
 ) -> tuple[tuple[Dof, ...], tuple[float, ...]]:
-    """DOFs of the nodes, and their share in the displacement of I against J along a unit vector."""
+    """DOFs of the nodes, and their factors in the displacement of I against J along a unit vector."""
     pairs = [((node, d), sign * n) for node, sign in ends for d, n in enumerate(unit) if n != 0.0]
     return tuple(f for f, _ in pairs), tuple(x for _, x in pairs)
 

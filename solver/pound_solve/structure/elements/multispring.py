@@ -71,7 +71,7 @@ def no_tension(
 
 
 def _row(context: ElementContext, y: float) -> dict[Dof, float]:
-    """Deformation of the spring at `y`."""
+    """Factors of the DOFs in the deformation of the spring at `y`."""
     ax, _ = axes(context.prop["ANGLE"])
     ends = [(context.i.id, 1.0)] if context.j is None else [(context.j.id, 1.0), (context.i.id, -1.0)]
     return {(node, d): sign * x for node, sign in ends for d, x in enumerate((*ax, -y))}

@@ -75,7 +75,9 @@ def _axes(context: ElementContext) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def _at(way: tuple[float, float], context: ElementContext, first: bool) -> list[tuple[int, float]]:
-    """Displacement of the spring's end at node I (or J) along a direction: direction of the DOF, factor."""
+    """Displacement of the spring's end at node I (or J) along a direction, as terms: direction of the DOF,
+    factor.
+    """
     terms = [(0, way[0]), (1, way[1])]
     arm = context.prop["ARM"]
     if arm is not None:
