@@ -55,10 +55,11 @@ def below(d: float) -> tuple[float, float, float]:
 
 
 def passes(x: float, end: float, size: float) -> bool:
-    """Whether a deformation passes the end of a line by more than the rounding of one of that `size`.
+    """Whether the deformation `x` is beyond the `end` of a line by more than the rounding of a value of
+    that `size`.
 
     Where a spring in series has the same strength and yields, a law rests at the end of its line until the
-    motion reverses.  What it remembers must not hang on the last digit then: it has not gone on.
+    motion reverses.  Its internal variables must not depend on the last digit then: it has not gone on.
     """
     return x - end > AT_END * size
 

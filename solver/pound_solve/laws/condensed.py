@@ -37,7 +37,7 @@ place = 0  #: of g among the parameters
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Branch by the deformation that is left."""
+    """Branch as a function of the remaining deformation, without the elastic part."""
     g = p[place]
     k, c, f0, a1, b1, c1, a2, b2, c2, a3, b3, c3 = own_branch(p[:place], at, m)
     s = 1.0 / (1.0 - g * k)
@@ -49,7 +49,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Transition at the whole deformation."""
+    """Transition of the original rule, at the whole deformation."""
     g = p[place]
     now = own_branch(p[:place], at, m)
     s = 1.0 / (1.0 - g * now[0])

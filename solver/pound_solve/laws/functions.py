@@ -159,12 +159,12 @@ half = 0
 
 
 def one(a: Array, i: int, j: int) -> Numbers:
-    """Number `j` in row `i` of an array."""
+    """Number `j` of row `i` of an array, as a tuple of one."""
     return (a[i, j],)
 
 
 def both(a: Array, i: int, j: int) -> Numbers:
-    """Numbers in row `i` of an array, from `j` on."""
+    """Numbers in row `i` of an array, from `j` on, as a tuple."""
     return first(a, i, j) + second(a, i, j + half)
 
 
@@ -221,13 +221,13 @@ def curve(
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power that a rule states itself."""
+    """Power by the rule's own function."""
     stated: float = own(p[:parameters], at, m[:variables], d, v)
     return stated
 
 
 def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power that follows from the curve of a rule."""
+    """Power computed from the curve of a rule."""
     return rate_power(own, p[:parameters], at, m[:variables], d, v)
 
 

@@ -160,7 +160,9 @@ class Pair:
 
     @property
     def _kept(self) -> float:
-        """Mean velocity of bar 1 afterwards over the approach speed, bar 2 being at rest before."""
+        """Mean velocity of bar 1 after the collision over the approach speed, bar 2 being at rest
+        before.
+        """
         one, two = self._ordered
         if one.period == 0.0:
             return math.exp(-2.0 * two.mass / one.mass)

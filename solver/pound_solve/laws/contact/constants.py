@@ -44,7 +44,7 @@ def fields(name: str, doc: str, published: str) -> tuple[Field, Field, Field]:
 
 
 def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: float, free: str = "") -> str:
-    """Name of the one of several items that is given; all but `free` need masses.
+    """Name of the one item of several that the card gives; all but `free` need masses.
 
     Raises
     ------

@@ -47,7 +47,9 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """The internal variables: normal force and its rate, displacement at which the spring has no force."""
+    """Branch; internal variables: normal force and its rate, displacement at which the spring has no
+    force.
+    """
     kt, mu, mud = p[:3]
     if at == OPEN:
         return linear(0.0, 0.0)

@@ -58,7 +58,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def reach(p: Numbers, m: Numbers) -> float:
-    """Overlap that a free impact reaches; the slow damping is the larger one up to there."""
+    """Overlap that a free impact reaches; up to there the damping for slow touches is the larger one."""
     k, n, _, constant, slow = p[:5]
     return (slow * m[0] / (constant * k)) ** (2.0 / (n + 1.0)) if constant > 0.0 else math.inf
 

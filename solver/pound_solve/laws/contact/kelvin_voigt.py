@@ -61,7 +61,9 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring, which a released contact gives up to itself as the overlap goes."""
+    """Energy of the contact spring; after a release it is lost within the contact as the overlap
+    vanishes.
+    """
     return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[GAP]) ** 2
 
 

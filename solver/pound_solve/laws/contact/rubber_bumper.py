@@ -69,7 +69,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, with the approach speed; reverse; use up the rubber or come back from there; or part."""
+    """Touch, with the approach speed; reverse; reach the limit of the rubber or come back from it; or
+    part.
+    """
     if at == OPEN:
         return APPROACH, (max(v, 0.0),)
     approaching = at in (APPROACH, STIFF_APPROACH)

@@ -200,7 +200,7 @@ def curve(p: Numbers, x: float) -> float:
 
 
 def share(p: Numbers, x: float) -> float:
-    """Share of the yield force that ductility `x` has left."""
+    """Share of the yield force that is left at ductility `x`."""
     return 1.0 if p[FORM] == _CYCLES else curve(p, x)
 
 
@@ -210,18 +210,18 @@ def is_largest(p: Numbers) -> bool:
 
 
 def worst(p: Numbers, m: Numbers, s: float) -> float:
-    """Ductility that has driven the loss of a side so far."""
+    """Largest ductility so far that determines the loss of strength of a side."""
     return max(m[0], m[1]) if is_largest(p) else reached(m, s)
 
 
 def cycles(m: Numbers, s: float) -> float:
-    """Inelastic cycles of a side: those of its yields that one of the other side followed."""
+    """Number of inelastic cycles of a side: its yields that were followed by one of the other side."""
     changes = abs(m[CHANGES]) - (s * m[CHANGES] > 0.0)
     return float(changes // 2.0)
 
 
 def factor(p: Numbers, m: Numbers, s: float) -> float:
-    """Share of the yield force of a side that cycles have left."""
+    """Share of the yield force of a side that is left after its cycles."""
     if p[FORM] == _CYCLES:
         return curve(p, cycles(m, s))
     if p[FORM] < _COUNTING:
@@ -230,8 +230,8 @@ def factor(p: Numbers, m: Numbers, s: float) -> float:
 
 
 def piece(p: Numbers, mu: float, x: float) -> tuple[float, float, float]:
-    """Line of the share on from ductility `x`, if `mu` has driven the loss: slope, value at zero, and the
-    ductility where it ends (0: it does not).
+    """Straight line of the share of the yield force from ductility `x` on, where `mu` determines the loss
+    so far: slope, value at zero, and the ductility where it ends (0: it does not).
     """
     begin, end, left, gone = p[5], p[6], p[7], p[GONE]
     driven = max(mu, begin)
@@ -270,7 +270,9 @@ def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
 
 
 def changed(m: Numbers, s: float, x: float) -> float:
-    """Changes of the yielding side when side `s` has followed the backbone to the ductility `x`."""
+    """Changes of the yielding side, as counted when side `s` has followed the backbone to the ductility
+    `x`.
+    """
     rests = not passes(x, m[MET], max(m[0], m[1]))
     return m[CHANGES] if rests or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
 

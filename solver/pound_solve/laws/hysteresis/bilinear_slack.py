@@ -60,7 +60,9 @@ def line(p: Numbers, at: int) -> tuple[float, float, float]:
 
 
 def yields_back(p: Numbers, at: int, m: Numbers) -> float:
-    """Force at which an elastic spring yields back, if it reaches that before it becomes slack."""
+    """Force at which an elastic spring yields in the opposite direction, if it has not become slack
+    before.
+    """
     k, plus, minus, _, _, r, grow = p[:7]
     if grow != 0.0:
         return 0.0

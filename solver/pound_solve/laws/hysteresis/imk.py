@@ -66,7 +66,7 @@ def own(m: Numbers, s: float) -> Numbers:
 
 
 def renew(m: Numbers, s: float, mine: Numbers) -> Numbers:
-    """Internal variables with those of a side replaced."""
+    """Internal variables in which those of side `s` are replaced by `mine`."""
     return mine + m[5:16] if s > 0.0 else m[0:5] + mine + m[10:16]
 
 
@@ -104,7 +104,9 @@ def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
 
 
 def share(energy: float, before: float, capacity: float, c: float) -> float:
-    """Deterioration beta of an excursion; 1 if the energy is exhausted, 0 if the mode is off."""
+    """Deterioration parameter beta of an excursion; 1 if the energy capacity is exhausted, 0 if the mode is
+    off.
+    """
     left = capacity - before - energy
     if capacity == 0.0 or energy <= 0.0:
         return 0.0
@@ -112,20 +114,20 @@ def share(energy: float, before: float, capacity: float, c: float) -> float:
 
 
 def advance(line: Numbers, m: Numbers, d: float) -> Numbers:
-    """Internal variables, with the work done on a branch up to `d` included."""
+    """Internal variables after adding the work done on a branch up to `d`."""
     k, f0, d0 = line[0], line[2], m[ENTERED]
     return (*m[0:14], m[SPENT] + (0.5 * k * (d + d0) + f0) * (d - d0), d)
 
 
 def softened(p: Numbers, m: Numbers, f: float) -> float:
-    """Unloading stiffness of a motion that reverses at the force `f`."""
+    """Deteriorated unloading stiffness of a motion that reverses at the force `f`."""
     before = m[KU_BEFORE]
     energy = m[SPENT] - 0.5 * f * f / before
     return before * (1.0 - min(share(energy, m[DONE], p[13], p[15]), 0.5))
 
 
 def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, float, bool]:
-    """Close an excursion at `d` and deteriorate side `s`, which is entered.
+    """End an excursion at `d`, and deteriorate side `s`, which is loaded next.
 
     Returns
     -------

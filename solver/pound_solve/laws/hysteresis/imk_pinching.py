@@ -114,7 +114,7 @@ def break_point(p: Numbers, s: float, m: Numbers) -> tuple[bool, Point]:
 
 
 def ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
-    """Points between which a reloading branch goes."""
+    """End points of a reloading branch."""
     first, last = (s * m[FOOT], 0.0), peak(p, s, m)
     if kind >= LOCAL_BREAK:
         first = local(s, m)
@@ -128,7 +128,7 @@ def ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
 
 
 def by_local(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
-    """Whether the path from a point to the peak passes the local peak."""
+    """Whether the path from a point to the peak goes through the last turning point of that side."""
     (d1, f1), (d2, f2) = local(s, m), peak(p, s, m)
     inside = d < d1 < d2 and f < f1 < f2 and f1 <= backbone(p, s, m, d1)
     return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)
@@ -154,7 +154,9 @@ def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
 
 
 def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
-    """Branch after a loading branch (of one side, by the first of its pair), and where it begins."""
+    """Branch that follows a loading branch (the positive side's number stands for both sides), and the
+    deformation where it begins.
+    """
     if kind == ELASTIC:
         return HARDENING, peak(p, s, m)[0]
     if kind == HARDENING:

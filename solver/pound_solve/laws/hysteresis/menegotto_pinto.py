@@ -55,7 +55,7 @@ REVERSAL, MEETING, EXPONENT, HIGH, LOW = 0, 2, 4, 5, 6
 
 
 def knee(n: float, x: float) -> tuple[float, float]:
-    """Value and slope of x (1 + x^n)^(-1/n), for x up to zero of x."""
+    """Value and slope of x (1 + x^n)^(-1/n); for `x` up to zero, of x itself."""
     if x <= 0.0:
         return x, 1.0
     if x <= 1.0:
@@ -67,7 +67,7 @@ def knee(n: float, x: float) -> tuple[float, float]:
 
 
 def ratios(a: float, c: float, t: float) -> float:
-    """Sum of (a)_j / (c)_j t^j, t up to 1/2."""
+    """Sum of (a)_j / (c)_j t^j with Pochhammer symbols, t up to 1/2."""
     j, term, total = 0.0, 1.0, 1.0
     while abs(term) > 1e-17:
         term *= (a + j) / (c + j) * t

@@ -55,7 +55,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
-    """Slope of the reloading line of side `s`, and the ductility where it meets the backbone."""
+    """Slope of the reloading line of side `s`, and the ductility at which it meets the backbone."""
     mu, fy = reached(m, s), yield_force(p, s)
     target = mu - p[BETA] * (mu - 1.0)
     steepest = unloading(p, mu)

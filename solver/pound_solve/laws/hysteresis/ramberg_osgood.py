@@ -93,7 +93,7 @@ def origin(m: Numbers) -> tuple[float, float, float]:
 
 
 def from_dropped(m: Numbers) -> bool:
-    """Whether the present branch began on a curve that was dropped."""
+    """Whether the present branch began on a curve whose reversals are no longer stored."""
     return m[1] != 0.0 and (m[0] == 2.0 or m[0] == 3.0)
 
 
@@ -105,8 +105,9 @@ def bound(m: Numbers) -> tuple[float, float]:
 def end(p: Numbers, m: Numbers) -> tuple[float, float]:
     """Deformation and force where a branch meets the curve that it came from.
 
-    Of a dropped curve it is where it meets the next outer one: the branch is the steeper of the two,
-    so that bisection finds it, between its own origin and the mirror image of the other's.
+    Where that curve is no longer stored, the end is the intersection with the next outer one: the branch is
+    the steeper of the two, so that bisection finds it, between its own origin and the mirror image of the
+    other's.
     """
     if m[0] == 1.0:
         return -m[2], -m[3]
@@ -154,7 +155,9 @@ def turn(m: Numbers, d: float, f: float) -> Numbers:
 
 
 def close(m: Numbers) -> Numbers:
-    """Drop the reversals of the closed loop; from the skeleton on, all."""
+    """Internal variables without the reversals of the closed loop; without any, where the skeleton goes
+    on.
+    """
     if from_dropped(m):
         d0, f0 = bound(m)
         if m[0] == 2.0:

@@ -79,7 +79,7 @@ def unloading(p: Numbers, s: float, x: float) -> float:
 
 
 def softness(p: Numbers, s: float, m: Numbers) -> float:
-    """Stiffness of unloading of a side."""
+    """Unloading stiffness of a side."""
     return unloading(p, s, largest(m, s))
 
 
@@ -89,7 +89,7 @@ def pinch(p: Numbers, s: float, m: Numbers) -> Point:
 
 
 def corner(s: float, m: Numbers) -> Point:
-    """Corner of a side, or its last reversal while no inner loop is on; (0, 0): there was none."""
+    """Corner of an inner loop on a side, or without a loop its last reversal; (0, 0) if there was none."""
     return (m[3], m[4]) if s > 0.0 else (m[5], m[6])
 
 
@@ -102,14 +102,14 @@ def short(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
 
 
 def by_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
-    """Whether the way from a point to the peak leads over the pinch point."""
+    """Whether the path from a point to the peak goes through the pinch point."""
     (xp, fp), (xt, ft) = pinch(p, s, m), peak(p, s, m)
     flatter = (fp - f) * (xt - x) < (ft - f) * (xp - x)
     return x < xp < xt and f <= fp < ft and flatter and ft - fp <= softness(p, s, m) * (xt - xp)
 
 
 def onward(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
-    """Line that a loading side follows from a point on."""
+    """Line that a side follows from a point on as it is loaded: to the pinch point or to the peak."""
     return pair(TO_PINCH if by_pinch(p, s, m, x, f) else TO_PEAK, s)
 
 
@@ -122,7 +122,7 @@ def end(p: Numbers, m: Numbers, at: int) -> Point:
 
 
 def started(m: Numbers, x: float, f: float) -> Numbers:
-    """Internal variables with the point where a line begins, mirrored."""
+    """Internal variables with the mirrored point at which a line begins."""
     return (*m[0:7], x, f, m[9], m[10], m[11])
 
 

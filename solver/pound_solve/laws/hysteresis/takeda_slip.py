@@ -84,7 +84,7 @@ def unloading(p: Numbers, s: float, x: float) -> float:
 
 
 def slip(p: Numbers, s: float, m: Numbers) -> float:
-    """Stiffness of a side that slips."""
+    """Stiffness of a side while it slips."""
     (x, f), (other, force) = peak(p, s, m), peak(p, -s, m)
     reach = x + other - force / unloading(p, -s, other)
     stiffness: float = f / reach * (x / reach) ** p[SLIP]
@@ -160,7 +160,7 @@ def crack(p: Numbers, m: Numbers, s: float) -> tuple[int, Numbers]:
 
 
 def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tuple[int, Numbers]:
-    """State where a side begins to be loaded: at zero force, or at its crack force after a line of slope
+    """State in which loading of a side begins: at zero force, or at its crack force after a line of slope
     `k`.
     """
     zero = x - f / k

@@ -93,7 +93,7 @@ def pinched(p: Numbers) -> Line:
 
 
 def unloading(p: Numbers) -> float:
-    """Stiffness of the lines between the paths of both sides."""
+    """Stiffness of the lines that lead from the path of one side to that of the other."""
     return p[13] * p[0]
 
 
