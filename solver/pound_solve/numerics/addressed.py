@@ -81,7 +81,7 @@ class Parts(AttributeTemplate):
 
 @lower_getattr_generic(Addressed)
 def part(context: Any, builder: Any, owner: Any, address: Any, name: str) -> Any:
-    """Code that reads the part of that name."""
+    """Code that reads the named part of an addressed tuple."""
     number = owner.parts.fields.index(name)
     before = sum(n_cells(other) for other in owner.parts.types[:number])
     place = builder.gep(builder.bitcast(address, CELL.as_pointer()), [CELL(before)])
@@ -129,7 +129,7 @@ def read_array(context: Any, builder: Any, kind: Any, place: Any) -> Any:
 
 
 def load(builder: Any, place: Any) -> Any:
-    """Code that reads a cell, which nothing changes."""
+    """Code that loads a cell, marked as constant for the compiler."""
     value = builder.load(place)
     value.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value

@@ -80,7 +80,7 @@ class Block:
 
 
 def with_numbers(value: tuple[Any, ...], numbers: Mapping[str, int]) -> tuple[Any, ...] | Index:
-    """The tuple, or, if it is one of functions, an array of their numbers in its stead."""
+    """The tuple itself or, for one of functions, an array of their numbers."""
     if not value or not callable(value[0]):
         return value
     return np.array([numbers[f.__qualname__] for f in value], np.int64)

@@ -52,7 +52,7 @@ def some_rows(values: Array) -> Iterator[slice]:
 
 
 class Doubts(NamedTuple):
-    """Cells in which quantities may exceed what is known of them, shape (n,) each.
+    """Cells in which quantities may exceed their known extremes, shape (n,) each.
 
     Attributes
     ----------
@@ -70,11 +70,11 @@ class Doubts(NamedTuple):
     most: Array
 
     def some(self, chosen: Index | Flags | slice) -> Doubts:
-        """Those of some numbers."""
+        """The entries with the given numbers."""
         return Doubts(self.sign[chosen], self.row[chosen], self.cell[chosen], self.most[chosen])
 
     def first(self) -> Index:
-        """Numbers of those that are the largest of their quantity and sign."""
+        """Numbers of the entries with the largest bound for their quantity and sign."""
         order = np.lexsort((-self.most, self.row, self.sign))
         new = np.ones(len(order), bool)
         for part in (self.sign[order], self.row[order]):
@@ -84,7 +84,7 @@ class Doubts(NamedTuple):
 
 
 def may_exceed(values: Array, low: Array, high: Array) -> Doubts:
-    """Which quantities may exceed what is known of them, and in which cells.
+    """Which quantities may exceed their known extremes, and in which cells.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def may_exceed(values: Array, low: Array, high: Array) -> Doubts:
 
 
 def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: Index) -> Iterator[Doubts]:
-    """What may exceed the `best` to either side, of quantities with some numbers."""
+    """Entries for quantities, with their `numbers`, that may exceed the `best` values on either side."""
     count = values.shape[1]
     starts = np.arange(0, count, GROUP)
     reach = MARGIN * _beside(np.maximum.reduceat(change, starts, axis=1))
@@ -123,7 +123,9 @@ def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: In
 
 
 def near(values: Array, best: Array) -> Flags:
-    """Which quantities may be above the `best` in a cell, by values at the `NODES`, shape (n, n_nodes)."""
+    """Which quantities may exceed `best` within a cell, by their values at the `NODES`, shape (n,
+    n_nodes).
+    """
     change = np.abs(np.diff(values, axis=1))
     number, at = np.arange(len(values)), np.argmax(values, axis=1)
     most = values[number, at]
@@ -148,7 +150,7 @@ def _bounds(values: Array) -> Array:
 
 
 def _beside(x: Array) -> Array:
-    """The largest of every column and of those next to it."""
+    """Largest value of every column and its two neighbours."""
     largest = x.copy()
     np.maximum(largest[:, 1:], x[:, :-1], out=largest[:, 1:])
     np.maximum(largest[:, :-1], x[:, 1:], out=largest[:, :-1])

@@ -16,7 +16,7 @@ from pound_solve.numerics.types import Index
 
 
 def components(n: int, matrices: Iterable[Matrix] = (), groups: Iterable[Index] = ()) -> Index:
-    """Component of every vertex, named by the lowest vertex in it, shape (n,).
+    """Connected component of every vertex, denoted by its lowest vertex, shape (n,).
 
     Parameters
     ----------

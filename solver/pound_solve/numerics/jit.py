@@ -78,7 +78,7 @@ def lighten(module: Any) -> None:
 
 
 def subscripts(function: Function) -> set[str]:
-    """Names of globals by which a function indexes."""
+    """Names of global variables that are indexed in a function."""
     code = itertools.pairwise(dis.get_instructions(function))
     return {
         load.argval
@@ -95,7 +95,7 @@ def loose(function: Function) -> Function:
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Settings of numba while a kernel is called that may have to be compiled."""
+    """Context with numba's settings for calls in which a kernel may be compiled."""
     module = numba()
     if module is None:
         yield
@@ -113,7 +113,7 @@ def compiling() -> Iterator[None]:
 
 
 def cold(function: Function) -> bool:
-    """Whether numba has still to compile a kernel, which is compiled in one version only."""
+    """Whether numba has yet to compile a kernel, each of which is compiled in one version only."""
     folder = kernel_cache.place().folder
     return folder is None or not any(folder.rglob(f"*.{function.__name__}-*.nbc"))
 
@@ -217,7 +217,7 @@ class Called:
         return self._entry(*self._taken)
 
     def _take(self, arguments: tuple[Any, ...]) -> None:
-        """Take other arguments."""
+        """Adopt new arguments."""
         with compiling():
             kinds = kinds_of(arguments)
             self._entry = self._dispatcher.compile(kinds)

@@ -85,7 +85,7 @@ def order(n: int, i: Index, j: Index) -> Index:
 
 
 def _order_of_few(n: int, i: Index, j: Index) -> Index:
-    """The same for few unknowns."""
+    """Order of elimination as by `order`, for few unknowns."""
     near: list[set[int]] = [set() for _ in range(n)]
     for a, b in zip(i.tolist(), j.tolist()):
         if a != b:
@@ -97,12 +97,12 @@ def _order_of_few(n: int, i: Index, j: Index) -> Index:
 
 
 def from_both_ends(line: Index) -> Index:
-    """A line's unknowns from its two ends in turn."""
+    """Take a sequence of unknowns alternately from its two ends."""
     return np.stack([line, line[::-1]], axis=1).ravel()[: len(line)]
 
 
 def _fill(near: Sequence[set[int]], order: Index) -> int:
-    """Entries of the factor in an order of elimination."""
+    """Number of entries of the factor in an order of elimination."""
     place = np.argsort(order).tolist()
     coupled = [{place[x] for x in near[k] if place[x] > column} for column, k in enumerate(order.tolist())]
     return sum(map(len, filled(coupled)))

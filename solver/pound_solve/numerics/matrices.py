@@ -45,7 +45,7 @@ def dense(a: Matrix) -> Array:
 
 
 def entries(a: Matrix) -> tuple[Index, Index, Array]:
-    """Rows, columns and values of what is not zero, row by row."""
+    """Rows, columns and values of the non-zero entries, row by row."""
     if isinstance(a, np.ndarray):
         i, j = np.nonzero(a)
         return i.astype(np.int64), j.astype(np.int64), np.asarray(a[i, j], float)
@@ -57,7 +57,7 @@ def entries(a: Matrix) -> tuple[Index, Index, Array]:
 
 
 def by_rows(a: Matrix) -> list[tuple[Index, Array]]:
-    """Columns and values of what is not zero in every row."""
+    """Columns and values of the non-zero entries of every row."""
     i, j, x = entries(a)
     ends = np.searchsorted(i, np.arange(a.shape[0] + 1))
     return [(j[p:q], x[p:q]) for p, q in zip(ends[:-1].tolist(), ends[1:].tolist())]
@@ -76,7 +76,7 @@ def layers(a: Matrix) -> list[tuple[Index, Array]]:
 
 
 def at(a: Matrix, rows: Index, columns: Index) -> Array:
-    """Values at some places, shape (n,)."""
+    """Values at the given rows and columns, shape (n,)."""
     if isinstance(a, np.ndarray):
         return a[rows, columns]
     i, j, x = entries(a)
@@ -86,7 +86,7 @@ def at(a: Matrix, rows: Index, columns: Index) -> Array:
 
 
 def used_rows(a: Matrix) -> Flags:
-    """Which rows hold anything, shape (n_rows,)."""
+    """Which rows have non-zero entries, shape (n_rows,)."""
     if isinstance(a, np.ndarray):
         used: Flags = np.any(a != 0.0, axis=1)
         return used
@@ -96,7 +96,7 @@ def used_rows(a: Matrix) -> Flags:
 
 
 def used_columns(a: Matrix) -> Flags:
-    """Which columns hold anything, shape (n_columns,)."""
+    """Which columns have non-zero entries, shape (n_columns,)."""
     return used_rows(a.T)
 
 
@@ -106,7 +106,7 @@ def diagonal(a: Matrix) -> Array:
 
 
 def is_diagonal(a: Matrix) -> bool:
-    """Whether nothing stands beside the diagonal."""
+    """Whether all entries off the diagonal are zero."""
     i, j, _ = entries(a)
     return bool((i == j).all())
 

@@ -18,7 +18,7 @@ R = TypeVar("R")
 
 
 def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Keep the results of a function for the last so many arguments, told apart by what they hold.
+    """Cache the results of a function for its last arguments, compared by content.
 
     The results are shared: whoever is given one must not change it.
 

@@ -224,7 +224,7 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
 
 
 def _signed(shapes: Array) -> Array:
-    """Shapes with signs free of rounding: the first component within a hair of the largest is positive."""
+    """Shapes with reproducible signs: the first component that is, to 1e-9, the largest is positive."""
     big = np.abs(shapes) > (1 - 1e-9) * np.abs(shapes).max(axis=0)
     return np.asarray(shapes * np.sign(shapes[np.argmax(big, axis=0), np.arange(shapes.shape[1])]))
 

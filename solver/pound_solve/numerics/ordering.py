@@ -17,7 +17,9 @@ Neighbours = Sequence[set[int]]
 
 
 def levels(near: Neighbours, start: int) -> list[list[int]]:
-    """Unknowns by their distance from one of them, those with few neighbours first."""
+    """Unknowns by their distance in the graph from `start`; within each level those with few neighbours
+    first.
+    """
     tiers, seen = [[start]], {start}
     while True:
         further = []
@@ -31,7 +33,7 @@ def levels(near: Neighbours, start: int) -> list[list[int]]:
 
 
 def along_a_line(near: Neighbours) -> list[int]:
-    """Reverse Cuthill-McKee: level by level from one end of every component."""
+    """Reverse Cuthill-McKee order: level by level, from one end of every component."""
     order: list[int] = []
     left = set(range(len(near)))
     while left:
@@ -49,7 +51,9 @@ def along_a_line(near: Neighbours) -> list[int]:
 
 
 def minimum_degree(near: Neighbours) -> list[int]:
-    """Always the unknown next that the fewest of those left are coupled to, which it couples."""
+    """Minimum-degree order: next is always the unknown coupled to the fewest remaining ones, which it
+    couples.
+    """
     graph = [set(own) for own in near]
     left, order = set(range(len(graph))), []
     while left:

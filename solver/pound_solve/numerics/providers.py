@@ -31,12 +31,12 @@ class Provider(Protocol):
 
     @property
     def fast(self) -> bool:
-        """Whether they run as compiled code."""
+        """Whether kernels run as compiled code."""
         ...
 
     @property
     def loading(self) -> float:
-        """Seconds that a process takes to load it, about."""
+        """Approximate time that a process takes to load the kernels [s]."""
         ...
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
@@ -86,7 +86,7 @@ def provider() -> Provider:
 
 @contextmanager
 def resident() -> Iterator[None]:
-    """Within this context a process carries out many runs: what it loads counts for none of them."""
+    """Context in which a process carries out many runs, so that the loading time is not charged to each."""
     token = _RESIDENT.set(True)
     try:
         yield
@@ -95,5 +95,5 @@ def resident() -> Iterator[None]:
 
 
 def loading() -> float:
-    """Seconds that the kernels of a run take to load, about: none where they are `resident`."""
+    """Approximate time that the kernels of a run take to load [s]; zero while they are `resident`."""
     return 0.0 if _RESIDENT.get() else provider().loading
