@@ -57,21 +57,21 @@ class Excitation:
         return np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.coefs) - 1)
 
     def pieces_after(self, t: Array) -> Index:
-        """Indices of the intervals just after some times, shape (n_times,): a time that rounding has put
-        before a break belongs to the interval that begins there.
+        """Indices of the intervals just after some times, shape (n_times,): a time that lies before a break
+        by rounding only belongs to the interval that begins there.
         """
         return self.pieces(t + INSTANT * np.maximum(1.0, t))
 
     def pieces_before(self, t: Array) -> Index:
-        """Indices of the intervals just before some times, shape (n_times,): a time that rounding has put
-        beyond a break belongs to the interval that ends there.
+        """Indices of the intervals just before some times, shape (n_times,): a time that lies beyond a
+        break by rounding only belongs to the interval that ends there.
         """
         i = np.searchsorted(self.breaks, t - INSTANT * np.maximum(1.0, t), side="left") - 1
         return np.clip(i, 0, len(self.coefs) - 1)
 
     def before_jumps(self, t: Array) -> Array:
-        """Times of motions that no jump of an input has changed yet, shape (n_times,): where one jumps, the
-        time is moved to just before it.
+        """Times, moved to just before any jump of an input that coincides with them, shape (n_times,): for
+        motions that the jump has not changed yet.
         """
         after = self.pieces_after(t)
         at = np.flatnonzero(after != self.pieces_before(t))

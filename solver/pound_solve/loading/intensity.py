@@ -99,7 +99,7 @@ def arias(acceleration: Piecewise, gravity: float) -> float:
 
 
 def share(acceleration: Piecewise, end: float) -> float:
-    """Share of the Arias intensity up to a time [T]; 1 without acceleration."""
+    """Share of the Arias intensity that is reached at a time [T]; 1 without acceleration."""
     whole = arias(acceleration, 1.0)
     if not whole or end >= acceleration.end:
         return 1.0

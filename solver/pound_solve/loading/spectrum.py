@@ -195,7 +195,8 @@ def _states(lines: Piecewise, rate: Complex) -> Complex:
 
 
 class _Swing(NamedTuple):
-    """Oscillators, each on a straight line of the acceleration: state at its start, the line, and the rate.
+    """Oscillators under linear accelerations: the state at the start, the coefficients of the line, the
+    eigenvalue.
 
     All have one shape, or shapes that broadcast; quantities are Im(factor z).
     """

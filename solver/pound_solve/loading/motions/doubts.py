@@ -19,7 +19,7 @@ FEWEST: Final = 100  #: samples of a record of which this is known
 
 
 def pace(acceleration: Piecewise) -> tuple[float, float]:
-    """Mean period by crossings of zero within the significant duration, and this duration [T].
+    """Mean period from zero crossings within the significant duration, and this duration [T].
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def pace(acceleration: Piecewise) -> tuple[float, float]:
 
 
 def mispaced(acceleration: Piecewise) -> str:
-    """What is wrong with the step of a record, in words; empty where nothing is."""
+    """Text on what is implausible in the step of a record; empty where nothing is."""
     period, duration = pace(acceleration)
     if 0.0 < period < FASTEST:
         return f"the record swings every {period:.2g} s for {duration:.2g} s: hard rock has 0.05 s"

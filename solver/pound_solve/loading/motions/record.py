@@ -136,7 +136,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 
 
 def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, str, str], ...]:
-    """Doubts whether the strong part of a record acts, and whether its step is right."""
+    """Warnings that the card cuts off the peak of the record, or that its step is implausible."""
     whole = Piecewise.from_samples(raw.t, raw.values)
     start, doubts = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
     at, _ = whole.peak()

@@ -62,7 +62,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 
 
 def _cuts(card_values: Mapping[str, Any]) -> tuple[tuple[str, str, str], ...]:
-    """Doubts whether the strong part has room."""
+    """Warning that the motion ends during the rise of its envelope, before its strong part."""
     rise, duration = float(card_values["RISE"]), float(card_values["DURATION"])
     told = f"the motion ends at DURATION={duration:g}, within its RISE={rise:g}"
     return () if rise < duration else ((told, "DURATION", "give DURATION room for RISE and STRONG"),)
@@ -92,7 +92,7 @@ def of_samples(
 
 
 def _in_g(pga: float | None, context: LoadingContext) -> tuple[str, ...]:
-    """Doubt whether a weak peak [L/T^2] is meant as a share of gravity."""
+    """Warning that a weak peak [L/T^2] may be meant in units of gravity."""
     round_number = pga is not None and float(f"{pga:.2g}") == pga
     if pga is None or not round_number or not LIKE_G[0] <= pga <= min(LIKE_G[1], WEAK * context.gravity):
         return ()

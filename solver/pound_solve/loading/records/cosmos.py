@@ -124,7 +124,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 
 
 def _known(word: str) -> bool:
-    """Whether a number of the header stands for itself."""
+    """Whether a number of the header is a value, not the mark for an unknown one."""
     plain = printed(word)
     return bool(plain) and float(plain) != _UNKNOWN
 

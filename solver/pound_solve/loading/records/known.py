@@ -201,7 +201,7 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
 
 
 def _cure(record: Known) -> str:
-    """How a known record is had with the package and without it, and what runs without it."""
+    """Text on how to get a known record, with the package and without it, and what runs without it."""
     by_hand = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
     return (
         f"{_EXTRA} brings it: {record.description}; or {by_hand}. SINE, TABLE and SYNTHETIC motions "

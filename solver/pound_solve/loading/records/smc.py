@@ -102,7 +102,7 @@ def _component(integers: list[str]) -> str:
 
 
 def _given(word: str) -> bool:
-    """Whether a real of the header is a number that means something."""
+    """Whether a real of the header is a value, not the mark for a missing one."""
     plain = printed(word)
     return bool(plain) and abs(float(plain)) < _NO_REAL
 

@@ -111,7 +111,7 @@ def fixed(lines: Sequence[str], width: int) -> list[str]:
 
 
 def _decimal_points(lines: Sequence[str], first: int) -> Sequence[str]:
-    """The same lines with points for decimal commas; R402 where it is open which commas are decimal."""
+    """The lines with points for decimal commas; R402 where it is ambiguous which commas are decimal."""
     if not any("," in line for line in lines) or any("." in line for line in lines):
         return lines
     words = [line.translate(_OTHER_SEPARATORS).split() for line in lines]
@@ -130,7 +130,9 @@ def _decimal_points(lines: Sequence[str], first: int) -> Sequence[str]:
 
 
 def _patient(row: list[str], number: int) -> list[str]:
-    """Words of one line as numbers that ``float`` takes, glued ones parted, or R402."""
+    """Words of one line as numbers that ``float`` takes, numbers written without a blank separated; or
+    R402.
+    """
     words = []
     for word in row:
         parts = _NUMBER.findall(word) if _GLUED.fullmatch(word) else [word]
