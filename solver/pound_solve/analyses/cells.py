@@ -40,7 +40,7 @@ _MOST = (_GRID_UP - 1.0) + _REST_UP + EXCESS * (2.0 * _GRID_UP - 1.0)
 
 
 def among_equals(t: Array, lengths: Array) -> Flags:
-    """Which cells have `BEFORE` others as long as they before and one more after them, without a gap,
+    """Which cells have `BEFORE` cells of equal length before them and one more after them, without a gap,
     shape (n,).
 
     Parameters
@@ -58,7 +58,7 @@ def among_equals(t: Array, lengths: Array) -> Flags:
 
 
 def may_exceed_alone(values: Array, cells: Index, low: Array, high: Array) -> Doubts:
-    """Which quantities may exceed what is known of them in some cells, by values in these alone.
+    """Which quantities may exceed their known extremes in some cells, by values within these cells alone.
 
     Parameters
     ----------

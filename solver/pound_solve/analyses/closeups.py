@@ -44,7 +44,7 @@ class Peaks:
     own: Flags
 
     def at(self, chosen: Index | Flags) -> Peaks:
-        """Some of them."""
+        """The chosen peaks."""
         return Peaks(
             _at(self.motion, chosen),
             self.contact[chosen],
@@ -54,14 +54,14 @@ class Peaks:
         )
 
     def largest(self) -> Peaks:
-        """The largest of each collision."""
+        """The largest peak of each collision."""
         order = np.lexsort((self.height, self.collision, self.contact))
         last = np.append(np.diff(self.contact[order]) | np.diff(self.collision[order]) != 0, True)
         return self.at(np.sort(order[last]))
 
 
 class Closeups:
-    """Instants of collisions, of which there is room for some.
+    """The motion at instants of collisions, within a limited room.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Closeups:
     Attributes
     ----------
     every : int
-        Of the instants of collisions one in so many was kept.
+        One in so many instants of collisions was kept.
     full : float
         Time from which on peaks found no room, either; infinite where all collisions have theirs [T].
     """
@@ -88,11 +88,11 @@ class Closeups:
         self._collisions = np.zeros(len(contacts), np.int64)
 
     def blank(self) -> Closeups:
-        """Return one that has seen nothing."""
+        """Return empty close-ups of the same contacts."""
         return Closeups(self.contacts, self.room)
 
     def widen(self, other: Closeups) -> None:
-        """Count in what another one has kept."""
+        """Include what another one has kept."""
         self._instants += other._instants
         self.every, self.full = max(self.every, other.every), min(self.full, other.full)
         for peaks in other._peaks:
@@ -101,7 +101,7 @@ class Closeups:
         self._thin()
 
     def take(self, course: Course) -> None:
-        """Keep what belongs to collisions."""
+        """Keep the instants and force peaks of collisions."""
         forces = course.motion.law_forces[self.contacts]
         pressed = forces != 0.0
         before = np.column_stack([self._pressed, pressed[:, :-1]])
@@ -121,7 +121,7 @@ class Closeups:
         self._thin()
 
     def _keep(self, peaks: Peaks) -> None:
-        """Keep peaks; where there are too many, the largest of each collision."""
+        """Keep peaks; if there are too many, only the largest of each collision."""
         if self.full < np.inf:
             return
         self._peaks.append(peaks)
@@ -132,7 +132,7 @@ class Closeups:
             self._peaks = [whole.at(np.arange(min(most, len(whole.height))))]
 
     def _thin(self) -> None:
-        """Leave out every second instant as long as there are too many."""
+        """Drop every second instant while there are too many."""
         most = max(int((1.0 - FOR_PEAKS) * self.room), 1)
         while sum(len(m.t) for m in self._instants) > most:
             whole = _joined(self._instants)
@@ -140,7 +140,9 @@ class Closeups:
             self.every *= 2
 
     def _peaks_of(self, course: Course, forces: Array, collisions: Index) -> Peaks:
-        """The motion at the peaks of the forces: at an instant, or between two, if it is known there."""
+        """The motion at the peaks of the contact forces: at an instant or, where the motion between is
+        known, also between two.
+        """
         wide = np.pad(forces, ((0, 0), (1, 1)), constant_values=-np.inf)
         row, top = np.nonzero((forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:]))
         at_instants = np.ones(len(row), bool)
@@ -186,16 +188,16 @@ class Closeups:
 
 
 def joined_peaks(parts: Sequence[Peaks]) -> Peaks:
-    """The peaks of all."""
+    """Concatenate several sets of peaks."""
     rest = zip(*((p.contact, p.collision, p.height, p.own) for p in parts))
     return Peaks(_joined([p.motion for p in parts]), *map(np.concatenate, rest))
 
 
 def _at(motion: Motion, chosen: Index | Flags) -> Motion:
-    """Some of the instants."""
+    """The motion at the chosen instants."""
     return Motion(*(x[..., chosen] for x in motion))
 
 
 def _joined(motions: Sequence[Motion]) -> Motion:
-    """The instants of all."""
+    """Concatenate several motions."""
     return Motion(*(np.concatenate(x, axis=-1) for x in zip(*motions)))

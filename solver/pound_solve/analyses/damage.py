@@ -77,8 +77,8 @@ def plastic(largest: Sides, yields: Sides | None) -> float:
 
 
 def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> tuple[float, float]:
-    """Plastic path [L] or [rad] on which yielding at the mean of the strengths loses `loss`,
-    and its ratio to the mean deformation at yield.
+    """Plastic path [L] or [rad] over which a force of the mean of the strengths dissipates `loss`, and its
+    ratio to the mean deformation at yield.
 
     Parameters
     ----------

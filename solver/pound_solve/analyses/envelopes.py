@@ -44,25 +44,27 @@ class Envelope:
                 value[higher], time[higher] = part[new, at], t[at]
 
     def part(self, which: slice) -> Envelope:
-        """The envelope of some of the quantities, which it shares with this one."""
+        """Envelope of some of the quantities, which shares its arrays with this one."""
         shared = copy.copy(self)
         for name, values in vars(self).items():
             setattr(shared, name, values[which])
         return shared
 
     def best(self, which: Index, sign: Array) -> Array:
-        """Largest and smallest values of some quantities by the sign of each, times that, shape (n,)."""
+        """Known extremes of some quantities, the largest or smallest value by the sign of each, times that
+        sign, shape (n,).
+        """
         return np.where(sign > 0.0, self.high[which], -self.low[which])
 
     def take_tops(self, which: Index, sign: Array, top: Array, t: Array) -> None:
-        """Count in extremes of some quantities, times the sign of each, and their times."""
+        """Include extremes of some quantities, given times the sign of each, and their times."""
         for side, best, time in ((1.0, self.high, self.t_high), (-1.0, self.low, self.t_low)):
             order = np.flatnonzero((sign == side) & (top > side * best[which]))
             order = order[np.argsort(top[order], kind="stable")]  # the largest of each comes last
             best[which[order]], time[which[order]] = side * top[order], t[order]
 
     def widen(self, other: Envelope) -> None:
-        """Count in what another one of the same quantities has seen."""
+        """Include the extremes of another one of the same quantities."""
         higher, lower = other.high > self.high, other.low < self.low
         self.high[higher], self.t_high[higher] = other.high[higher], other.t_high[higher]
         self.low[lower], self.t_low[lower] = other.low[lower], other.t_low[lower]
@@ -152,7 +154,7 @@ class Envelopes:
         self.seen, self.apart, self.searched = 0, 0.0, False
 
     def blank(self) -> Envelopes:
-        """Return one of the same quantities that has seen nothing."""
+        """Return empty envelopes of the same quantities."""
         other = copy.copy(self)
         other.closeups, other.extremes = self.closeups.blank(), self.extremes.blank()
         other._clear()
@@ -169,9 +171,9 @@ class Envelopes:
         return np.concatenate(values), kinds
 
     def imbalance(self, buildings: Sequence[Building]) -> float:
-        """Largest difference of both ways to the forces of a building on the ground, over the largest of
-        these forces, of its inertia and of what drives it; a moment counts beside the force at the far end
-        of the building too.
+        """Largest difference between the two ways to compute the forces of a building on the ground, over
+        the largest of these forces, of its inertia and of what drives it; a moment is also compared with
+        the force times the reach of the building.
         """
         off, base = (np.array([x for x, _ in self.total[name].largest()]) for name in ("imbalance", "base"))
         off, *others = off.reshape(3, -1, 3)
@@ -183,7 +185,7 @@ class Envelopes:
         return worst
 
     def widen(self, other: Envelopes) -> None:
-        """Count in what another one of the same quantities has seen."""
+        """Include the extremes of another one of the same quantities."""
         self._all.widen(other._all)
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
         self.searched |= other.searched
@@ -218,8 +220,8 @@ class Envelopes:
             self._search(course, doubts)
 
     def _doubts(self, course: Course, values: Array) -> Doubts:
-        """Which quantities may exceed what is known of them, and in which cells, by their values at the
-        starts of these and, where the cells around one tell nothing of it, within it.
+        """Which quantities may exceed their known extremes, and in which cells: by their values at the
+        starts of the cells or, where the neighbouring cells give no bound, within the cell.
         """
         quantities, lone = self.quantities, ~among_equals(course.motion.t, course.lengths)
         low, high = self._all.low[quantities.place], self._all.high[quantities.place]
@@ -234,7 +236,9 @@ class Envelopes:
         return Doubts(*map(np.concatenate, zip(*parts)))
 
     def _search(self, course: Course, doubts: Doubts) -> None:
-        """Count in the extremes of quantities where they still may exceed what is known."""
+        """Search the cells in which quantities may still exceed their known extremes, and include what is
+        found.
+        """
         place = self.quantities.place
         doubts = doubts.some(doubts.most > self._all.best(place[doubts.row], doubts.sign))
         part = np.cumsum(self.quantities.entries[doubts.row]) // ENTRIES
@@ -243,7 +247,7 @@ class Envelopes:
                 self._refine(course, doubts.some(some))
 
     def _refine(self, course: Course, doubts: Doubts) -> None:
-        """Count in the extremes of quantities within cells."""
+        """Find and include extremes of quantities within cells."""
         sign, row, cell, _ = doubts
         values = sign[:, None] * self.quantities.along(course, row, cell, NODES)
         place = self.quantities.place[row]
@@ -253,7 +257,9 @@ class Envelopes:
         self._count(place[close], sign[close], top, t)
 
     def _count(self, which: Index, sign: Array, top: Array, t: Array) -> None:
-        """Count in extremes of some quantities, times the sign of each, and their times; NaN for none."""
+        """Include extremes of some quantities, given times the sign of each, and their times; NaN for
+        none.
+        """
         new = ~np.isnan(t)
         for extremes in (self._all, self.extremes):
             extremes.take_tops(which[new], sign[new], top[new], t[new])
@@ -273,12 +279,12 @@ class Envelopes:
         return self.told(self._whole(motion, self.quantities.inputs(motion.t)))
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:
-        """Values of all quantities, with what never moves, shape (n, nt)."""
+        """Values of all quantities, the constant ones included, shape (n, nt)."""
         values = np.zeros((self.quantities.count, len(motion.t)))
         values[self.quantities.place] = self.quantities.values(motion, s)
         return values
 
     def told(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Values of nodes, members and sums, of those of all quantities."""
+        """Split the values of all quantities into those of nodes, members and sums."""
         parts = {name: whole[part] for name, part in self.quantities.parts.items()}
         return {q: parts.pop(q) for q in MOTION}, parts.pop("output"), parts

@@ -106,15 +106,15 @@ class SupportReactions:
         return float(max(off[:2].max() / (force or 1.0), off[2] / (moment or 1.0)))
 
     def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
-        """Force and moment of the elements that resist a motion of the whole, shape (3,) each:
-        of those of the building that end at the ground, and of those between nodes.
+        """Force and moment of the elements that resist a rigid motion of the structure, shape (3,) each: of
+        those of the building that end at the ground, and of those between nodes.
         """
         held = np.array([rows @ full + force @ laws for rows, laws in zip(self.linear, self.nonlinear)])
         return held[0], held[1]
 
     def _resistance(self) -> tuple[Array, Array]:
-        """Rows of those forces and moments, shape (2, 3, n), and what they take of each law's force,
-        shape (2, n_laws, 3).
+        """Rows of those forces and moments, shape (2, 3, n), and their factors of each law's force, shape
+        (2, n_laws, 3).
         """
         s = self.structure
         linear = np.zeros((2, *self.rigid.shape))

@@ -56,11 +56,11 @@ class Extremes:
         self.low, self.high = np.full(shape, np.inf), np.full(shape, -np.inf)
 
     def blank(self) -> Extremes:
-        """Return one that has seen nothing."""
+        """Return empty extremes of the same quantities and intervals."""
         return Extremes(self.bounds, len(self.low))
 
     def widen(self, other: Extremes) -> None:
-        """Count in what another one has seen."""
+        """Include the extremes of another one."""
         np.minimum(self.low, other.low, out=self.low)
         np.maximum(self.high, other.high, out=self.high)
 
@@ -84,7 +84,7 @@ class Extremes:
             best[rows, place[first]] = more(best[rows, place[first]], more.reduceat(values, first, axis=1))
 
     def take_tops(self, which: Index, sign: Array, top: Array, t: Array) -> None:
-        """Count in extremes between instants of some quantities, times the sign of each."""
+        """Include extremes between instants of some quantities, given times the sign of each."""
         if not self.low.size:
             return
         place = np.clip(np.searchsorted(self.bounds, t, side="right") - 1, 0, self.low.shape[1] - 1)

@@ -171,8 +171,8 @@ class HistoryResult:
         return {**self.returned.figures, **thinned}
 
     def _rounding(self) -> float:
-        """Energy of the largest force of a spring or contact on a way that is `STILL` of the structure's
-        size [F L]: less is no motion.
+        """Energy below which there is no motion but rounding [F L]: the largest force of a spring or
+        contact times a share `STILL` of the structure's size.
         """
         nodes = self.system.structure.model.nodes.values()
         size = float(np.ptp([(n.x, n.y) for n in nodes], axis=0).max())
@@ -181,7 +181,7 @@ class HistoryResult:
 
     @property
     def _allowed(self) -> float:
-        """Share of the largest that a residual may be: of rounding, or of the steps."""
+        """Allowed residual as a share of the largest value: for rounding, or for the errors of steps."""
         return 1e-9 if self.returned.exact else 1e-2
 
     def _energy(self) -> Check:
@@ -205,7 +205,7 @@ class HistoryResult:
             yield at_least(Subject.STORAGE, CLOSEUPS, full, end, "a larger OUTPUT CLOSEUPS keeps all", unit)
 
     def _balance(self) -> Iterator[Check]:
-        """Compare the base shear with inertia and loads, where there are buildings."""
+        """Compare the base shear with inertia and loads, if there are buildings."""
         if self.items.buildings:
             balance = self.recorder.envelopes.imbalance(self.items.buildings)
             yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, "forces are out of balance")

@@ -41,7 +41,7 @@ def begin(
     u_static: Array,
     times: Array,
 ) -> Start:
-    """State at t = 0: the static one, plus INITIAL, the laws led along from the one to the other."""
+    """State at t = 0: the static one plus INITIAL, with the laws driven from the one to the other."""
     keep = system.columns
     u0, v0 = u[keep], v[keep]
     _lead_massless(system, u0, u0 - u_static[keep])
@@ -58,7 +58,7 @@ def begin(
 
 
 def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
-    """State of a law that is led from the deformation `d0` to `d1`, where it has a rate."""
+    """State of a law that is driven from the deformation `d0` to `d1`, where it has a rate."""
     if law.rigid:  # it stays closed where it is not pulled open, and takes its force from the motion
         closed = law.branch(state).held and d1 - law.p[2] >= -ROUNDING * max(abs(d0), law.p[2])
         return law.transition(law.start(), 0, d1) if closed else law.start()
@@ -66,8 +66,8 @@ def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
 
 
 def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
-    """Let massless undamped unknowns that INITIAL leaves alone follow those that it pushes,
-    on the stiffness at rest: nothing could hold them back.
+    """Let massless undamped unknowns that INITIAL does not move follow those that it moves, by the
+    stiffness at rest: nothing else determines them.
     """
     laws = system.structure.laws
     idle = massless(system.mass) & (pushed == 0.0) & ~used_rows(system.damping)

@@ -61,17 +61,19 @@ class LoadPattern:
             self.forces = self._of(np.array(height))
 
     def _share(self, shape: Array) -> Array:
-        """Mass times a shape, of what is pushed; the mass is symmetric."""
+        """Forces in proportion to mass times a shape, on the DOFs that are pushed."""
         return np.asarray(self.pushed * (self.structure_mass @ (self.along * shape)))
 
     def _of(self, shape: Array) -> Array:
-        """Forces of sum one by mass and shape."""
+        """Forces in proportion to mass times a shape, with the sum one."""
         p = self._share(shape)
         total = float(p.sum())
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
 
     def follow(self, path: EquilibriumPath) -> Array:
-        """Forces at the present point."""
+        """Forces at the present point of a path; with a mode as PATTERN, those of its present tangent
+        stiffness.
+        """
         if self.by_mode:
             try:
                 tied = path.ties.among

@@ -64,7 +64,7 @@ class InstabilityError(Exception):
     Attributes
     ----------
     motion : ndarray, shape (n_free,), or None
-        How a mechanism moves under its load.
+        Motion of a mechanism under its load.
     """
 
     def __init__(self, why: str, code: str = "A501", motion: Array | None = None) -> None:
@@ -73,7 +73,7 @@ class InstabilityError(Exception):
 
 
 class Mark(NamedTuple):
-    """Stop where ``row . u + share * factor`` rises to `value`."""
+    """A point at which a path is stopped: where ``row . u + share * factor`` rises to `value`."""
 
     row: Array
     share: float
@@ -209,7 +209,7 @@ class EquilibriumPath:
         return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
 
     def unbalanced(self) -> float:
-        """Largest force out of balance, as a share of the largest applied so far."""
+        """Largest residual force, as a share of the largest force applied so far."""
         rest, size = self._rest(self.u, self.factor)
         return _share(rest, np.append(size, self._most))
 
@@ -331,7 +331,9 @@ class EquilibriumPath:
                     yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
 
     def _blocking(self, motion: Array) -> PathEvent | None:
-        """The first open contact that touches and that a motion of a mechanism closes; None for none."""
+        """Event of the first open contact that touches and that a motion of a mechanism closes; None for
+        none.
+        """
         rate, noise = self.rows @ motion, NOISE * (np.abs(self.rows) @ np.abs(motion))
         rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
         # the motion leaves those that press where they are, but for rounding
@@ -478,7 +480,7 @@ class EquilibriumPath:
         return None
 
     def _rest(self, u: Array, factor: float) -> tuple[Array, Array]:
-        """Forces out of balance, and the sum of the absolute terms of each equation."""
+        """Residual forces, and the sum of the absolute terms of each equation."""
         force = self.forces(self.deformations(u, factor))[0]
         applied = self.applied + (factor - self.factor) * self.load
         size = np.abs(self.k) @ np.abs(u) + np.abs(self.rows.T) @ np.abs(force) + np.abs(applied)
@@ -525,7 +527,7 @@ def _share(rest: Array, size: Array) -> float:
 
 
 def _crossed(before: Sequence[float], after: Sequence[float]) -> list[int]:
-    """Which values rose above zero."""
+    """Numbers of the values that rose above zero."""
     return [j for j, (a, b) in enumerate(zip(before, after)) if a <= 0.0 < b]
 
 
@@ -582,7 +584,7 @@ def _placed(x: Array, at: Index, n: int) -> Array:
 
 
 def _largest(motion: Array) -> int:
-    """First of the unknowns that move most, to a hair."""
+    """First of the unknowns that move most, to within 1e-9."""
     size = np.abs(motion)
     return int(np.argmax(size > (1.0 - 1e-9) * size.max()))
 
@@ -626,7 +628,7 @@ def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) 
 
 
 def _root(k: Matrix) -> Array:
-    """`scaling`, but what has next to no stiffness is left as it is."""
+    """Factors as by `scaling`, limited so that negligible stiffness is not scaled up to one."""
     root = scaling(k)
     limited: Array = np.minimum(root, 1e12 * root.min(initial=np.inf))
     return limited

@@ -76,7 +76,7 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
 
 
 def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Hinges beyond any ductility of members, where the deck does not say how far they go.
+    """Hinges beyond any usual ductility of members, where the deck gives no ultimate deformation.
 
     A stiffness KH of their own may be that of a hinge that is rigid until it yields, and a spring may slide
     or rock: their ductility has no such limit.

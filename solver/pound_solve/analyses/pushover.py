@@ -273,7 +273,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
 
 
 def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> float:
-    """Sign of the increments: of the displacement, or of the load factor that leads to the end."""
+    """Sign of the increments of the displacement, or of the load factor, with which the end is reached."""
     target, factor = card["TARGET"], card["FACTOR"]
     if card["CONTROL"] != "FORCE":
         return math.copysign(1.0, target - start)
@@ -284,7 +284,7 @@ def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> f
 
 
 def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
-    """What ends the pushover, and how the report calls that."""
+    """Marks at which the pushover ends, and their text in the report."""
     ends: list[tuple[Mark, str]] = []
     if (target := card["TARGET"]) is not None:
         sense = math.copysign(1.0, target - start)
@@ -296,7 +296,7 @@ def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
 
 
 def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoint, Change]]:
-    """The ladder without changes that repeat at one point."""
+    """The ladder of changes without repetitions at one point."""
     distinct: dict[tuple[float, float, Change], tuple[CapacityPoint, Change]] = {}
     for point, change in ladder:
         distinct.setdefault((point.displacement, point.factor, change), (point, change))
@@ -304,7 +304,7 @@ def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoin
 
 
 def _clean(displacement: float, curve: list[CapacityPoint]) -> float:
-    """Zero for what is rounding beside the largest displacement."""
+    """The displacement, or zero where it is rounding beside the largest one."""
     return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
 
 

@@ -80,8 +80,8 @@ class Quantities:
         self, name: str, motion: Mapping[int, Matrix], inputs: Mapping[int, Array], constant: Array,
         moves: Index | None = None, size: int = 0,
     ) -> None:  # fmt: skip
-        """Add a part: on u, v, a and forces of laws by their numbers, on the inputs and their rates;
-        with the numbers, of so many, of those that move, if others do not.
+        """Add a part given by matrices on u, v, a and forces of laws (by number), on the inputs and their
+        rates, and constants; where only some of its `size` quantities move, `moves` holds their numbers.
         """
         n, m, first = self.system.size, self.system.inputs.shape[1], len(self.place)
         moves, size = (np.arange(len(constant)), len(constant)) if moves is None else (moves, size)
@@ -134,7 +134,7 @@ class Quantities:
 
     @property
     def entries(self) -> Index:
-        """How many unknowns every row holds, shape (n_rows,)."""
+        """Number of entries of every row, shape (n_rows,)."""
         return np.diff(self._pointers)
 
     def inputs(self, t: Array) -> list[Array]:
@@ -165,8 +165,8 @@ class Quantities:
         return self.values(motion, self.inputs(motion.t)).reshape(-1, len(cells), len(shares))
 
     def extremes(self, course: Course, low: Array, high: Array) -> RowPeaks | None:
-        """What a course makes of the smallest and largest values of all rows, shape (n_rows,), with times
-        of those that are new, NaN for the others; None where it takes no rows.
+        """Extremes of all rows over a course, from the smallest and largest values so far, shape (n_rows,),
+        with times of new ones, NaN for the others; None where the course does not compute them.
         """
         if course.extremes is None or self.system.corotational:
             return None
@@ -176,7 +176,7 @@ class Quantities:
         return peaks
 
     def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
-        """Values of a row in a cell each, at shares of it, shape (n, n_shares)."""
+        """Values of rows, each within a cell of its own, at shares of that cell, shape (n, n_shares)."""
         cells, at = np.unique(cell, return_inverse=True)
         t = (course.motion.t[cells, None] + shares * course.lengths[cells, None]).ravel()
         s = self.inputs(t)
@@ -204,7 +204,7 @@ class Quantities:
         return np.concatenate([part[used] for part, used in zip(motion[1:], self._used)])
 
     def _some(self, row: Index) -> Rows:
-        """Some of the rows."""
+        """The entries of some of the rows."""
         counts = self.entries[row]
         number = np.repeat(np.arange(len(row)), counts)
         at = np.arange(len(number)) + np.repeat(self._pointers[row] - np.cumsum(counts) + counts, counts)

@@ -107,7 +107,7 @@ class RecordedItems:
         )
 
     def holds_for(self, system: ReducedSystem) -> bool:
-        """Whether these are what another history of the same model records: its unknowns are the same, and
+        """Whether another history of the same model records the same items: its unknowns are the same, and
         its inputs act alike.
         """
         recorded = self.system
@@ -116,7 +116,7 @@ class RecordedItems:
         )
 
     def again(self, system: ReducedSystem) -> RecordedItems:
-        """The same items of a history that they hold for."""
+        """The same items for another history, which they hold for."""
         return replace(self, system=system)
 
     @property
@@ -143,7 +143,7 @@ class RecordedItems:
 
     @property
     def widest(self) -> int:
-        """Number of values of the widest kind at one instant."""
+        """Largest number of values that one kind of quantity has at an instant."""
         structure = self.system.structure
         return max(structure.dofs.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
 
@@ -209,7 +209,7 @@ class EnergyBalance:
     largest, largest_residual : float
         Largest absolute energy and residual of all samples.
     samples : int
-        How many were counted in.
+        Number of samples counted in.
     """
 
     def __init__(self, first: Array | None = None) -> None:
@@ -315,7 +315,9 @@ class HistoryRecorder:
             self.flush()
 
     def _beyond(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> Stop:
-        """Take the samples before the first that is no number or beyond `LARGEST`; tell where that is."""
+        """Take the samples before the first that is not finite or beyond `LARGEST`; return the `Stop` that
+        says where that is.
+        """
         system = self.items.system
         names = [system.name(i) for i in range(len(u))]
         springs = [f"the spring of element {s.element}" for s in system.structure.laws]
@@ -344,7 +346,7 @@ class HistoryRecorder:
         return self.envelopes.acting
 
     def trial(self, t: float, doing: str = "") -> None:
-        """Tell the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
+        """Report the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
         self._progress(t, doing)
 
     @property

@@ -99,7 +99,7 @@ def join(parts: Sequence[Outcome]) -> Outcome:
 
 
 def _both(a: Peaks, b: Peaks) -> Peaks:
-    """Peaks of two parts; a collision that was going on between them is one."""
+    """Peaks of two consecutive parts; a collision that was going on between them counts as one."""
     running = {c.law: c for c in a.collisions if not np.isfinite(c.t_end)}
     later = []
     for c in b.collisions:

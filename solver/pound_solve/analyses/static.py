@@ -45,7 +45,7 @@ class StaticState:
     buckling : float
         Buckling load factor; infinite if nothing is pressed, NaN where there is none.
     rounds : int
-        How often the loads were put on until the axial forces were found.
+        Number of times that the loads were applied until the axial forces were found.
     """
 
     u: Array

@@ -19,7 +19,7 @@ DEPENDENT = 1e-12  #: share of a row that is left of one that depends on others
 
 
 class Ties:
-    """What closed rigid contacts do to the unknowns.
+    """Constraints that closed rigid contacts impose on the unknowns.
 
     Parameters
     ----------
@@ -60,11 +60,11 @@ class Ties:
         return len(self.laws)
 
     def among(self, matrix: Matrix) -> Matrix:
-        """A matrix of the unknowns, shape (n, n), along the motions that are left: Z^T A Z."""
+        """A matrix of the unknowns, shape (n, n), reduced to the motions that the ties allow: Z^T A Z."""
         return self.basis.T @ matrix @ self.basis if len(self) else matrix
 
     def along(self, force: Array) -> Array:
-        """Forces on the unknowns, shape (n,), along the motions that are left."""
+        """Forces on the unknowns, shape (n,), reduced to the motions that the ties allow."""
         return np.asarray(self.basis.T @ force) if len(self) else force
 
     def whole(self, u: Array) -> Array:
