@@ -114,7 +114,7 @@ def energies(
     t : ndarray, shape (n_times,)
     u, v : ndarray, shape (n_times, n)
     stored, lost : ndarray, shape (n_times, n_laws)
-        What the laws hold and have lost.
+        Energies that the laws store and have lost.
     works : ndarray, shape (n_times, 3)
 
     Returns

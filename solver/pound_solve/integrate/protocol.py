@@ -251,7 +251,7 @@ class Stop(Exception):
     t : float
         Time reached [T].
     outcome : Outcome
-        What was gathered up to then.
+        Results up to then.
     """
 
     def __init__(self, code: str, t: float, why: str, outcome: Outcome | None = None) -> None:

@@ -71,7 +71,7 @@ class Uniqueness:
     first : float
         The first instant at which it is open which of them goes on [T]; NaN where there is none.
     elements : list of int
-        Those of which any may go on there.
+        Elements of the laws among which it is open there.
     """
 
     def __init__(self, system: ReducedSystem) -> None:

@@ -173,7 +173,7 @@ class Rule:
         ``first_yield(p) -> (positive, negative)`` deformations at which a virgin spring yields.  None: its
         yield forces over its initial stiffness.
     parameters, variables : int
-        How many numbers ``p`` and ``m`` have.
+        Numbers of values in ``p`` and ``m``.
     """
 
     branches: tuple[BranchType, ...]

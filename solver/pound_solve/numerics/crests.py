@@ -57,11 +57,11 @@ class Doubts(NamedTuple):
     Attributes
     ----------
     sign : ndarray
-        Of what a quantity is times by: 1 for its largest value, -1 for its smallest.
+        Sign by which the quantity is multiplied: 1 for its largest value, -1 for its smallest.
     row, cell : ndarray of int
         Numbers of the quantity and of the cell.
     most : ndarray
-        What it may be there, times the sign.
+        Bound of the quantity there, times the sign.
     """
 
     sign: Array

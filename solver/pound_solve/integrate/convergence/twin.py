@@ -70,7 +70,7 @@ def checks(
     Parameters
     ----------
     watch : Watch
-        What has seen the run.
+        The recorder of the run.
     tol : float
         Change of the peaks that is allowed, over their scales (see `compared`).
 

@@ -10,11 +10,11 @@ from pound_solve.numerics.types import Array, Flags, Index
 
 
 class Lengths(Protocol):
-    """Lengths and sizes that the steps of a run learn from one another: a numpy record."""
+    """Lengths of steps and related sizes that later steps learn from earlier ones: a numpy record."""
 
     next: float  #: length to try next
-    kinetic: float  #: most of v M v so far
-    shortest: float  #: step
+    kinetic: float  #: largest value of v M v so far
+    shortest: float  #: length of the shortest step
     before: float  #: length that was next when a curved contact began to press; 0 if none did
     carried: int  #: terms of the present series that carry energy
     in_modes: int  #: intervals that were taken in modes
@@ -36,7 +36,7 @@ class Springs(NamedTuple):
     stiffness : ndarray, shape (n_entries,)
         K in these rows, zero where all have mass.
     pair_pointers, pair_places, pair_values : ndarray
-        Where the product ``b b^T`` of each law adds to it.
+        Positions in `rows` at which the product ``b b^T`` of each law is added, and its values.
     constant : ndarray, shape (n,)
         Constant loads less the constant forces of the laws.
     inputs : ndarray, shape (n_inputs, n)
@@ -67,28 +67,28 @@ class Massless(NamedTuple):
     unknown : ndarray, shape (n_massless,)
         Their places in the order of elimination.
     heavy : ndarray, shape (n - n_massless,)
-        Those of the unknowns with mass.
+        Places of the unknowns with mass.
     damping, heavy_damping : Rows
-        Rows of C over all unknowns, of the former and of the latter.
+        Rows of C over all unknowns, for the unknowns without mass and for those with mass.
     laws : ndarray, shape (n_holding,)
-        The laws that hold one of them, ascending.
+        Laws that hold an unknown without mass, ascending.
     law_number : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     rows : Rows
-        The deformations of these over the unknowns without mass.
+        Deformations of these laws over the unknowns without mass.
     pattern : Pattern
-        Of C and K among them, laws included.
+        Pattern of C and K over the unknowns without mass, laws included.
     column : ndarray, shape (n_entries,)
     on_pattern : ndarray, shape (2, n_entries)
-        C and K on the pattern, laws apart.
+        C and K on the pattern, without those of laws.
     pair_pointers, pair_places, pair_values : ndarray
-        Where each of the laws adds to it.
+        Positions on the pattern at which each of the laws is added, and the values of ``b b^T``.
     damped : ndarray, shape (n_massless,)
         Whether a dashpot resists an unknown on the present branches: its order is one, else zero.
     members : ndarray, shape (2, n_massless)
         Rows `DAMPING` and `STIFFNESS`: those of order one and of order zero, ascending.
     counts : ndarray, shape (2,)
-        How many these are.
+        Numbers of these.
     factors : ndarray, shape (2, n_entries of L)
         Rows `DAMPING` (of order one, ones for the others), `STIFFNESS` (of order zero, likewise).
     pivots : ndarray, shape (2, n_massless)
@@ -97,7 +97,7 @@ class Massless(NamedTuple):
         Scratch, as the others.
     row, right_side : ndarray, shape (n_massless,)
     elastic : ndarray, shape (n_massless,)
-        Diagonal of K, the laws elastic: it makes energies of displacements.
+        Diagonal of K with elastic laws, for energies from displacements.
     """
 
     unknown: Index
@@ -136,13 +136,13 @@ class Rigid(NamedTuple):
     velocity_change : ndarray, shape (n_rigid, n)
         Change of the velocities for unit impulses.
     held : ndarray, shape (n_rigid,)
-        Those that are closed, the first `n_held`.
+        The closed contacts, in the first `n_held` places.
     n_held : ndarray, shape (1,)
     is_held : ndarray, shape (n_rigid,)
     inverse : ndarray, shape (n_rigid, n_rigid)
-        Of G over `held`.
+        Inverse of G over the closed contacts `held`.
     violation : ndarray, shape (n_rigid,)
-        Scratch: what the coefficients at work violate, by place in `held`.
+        Scratch: violation of the constraints by the present coefficients, by place in `held`.
     force : ndarray, shape (n_rigid, TERMS + 1)
         Coefficients of the forces.
     largest : ndarray, shape (n_rigid,)
@@ -171,9 +171,9 @@ class Curved(NamedTuple):
     number : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     numbers : ndarray, shape (n_curved, 6)
-        What `Rule.powers` gives on the present branch.
+        Numbers that `Rule.powers` returns on the present branch.
     phase : ndarray, shape (n_curved,)
-        Whether a force acts.
+        APART, PRESSED or RELEASED, see `curved`: whether a force acts.
     power : ndarray, shape (n_curved, 2, TERMS + 1)
         Coefficients of the powers of the overlap, of spring and dashpot.
     force : ndarray, shape (n_curved, TERMS + 1)
@@ -208,7 +208,7 @@ class Friction(NamedTuple):
     push : ndarray, shape (n_friction, TERMS + 1)
         Coefficients of the normal forces.
     force : ndarray, shape (n_friction, TERMS + 1)
-        Coefficients of the forces of what slides.
+        Coefficients of the forces of friction that slides.
     largest : ndarray, shape (n_friction,)
         Largest normal force so far.
     """
@@ -234,13 +234,13 @@ class Smooth(NamedTuple):
     numbers : ndarray, shape (n_smooth, 7)
         w, y, n, a, b and q of `Rule.smooth`, and dw/dd, at the start of the step.
     bent : ndarray, shape (n_smooth,)
-        Whether the power is seen.
+        Whether the power is not negligible.
     low, high : ndarray, shape (n_smooth,)
-        Range of w/y in which the series holds.
+        Range of w/y in which the series is valid.
     share : ndarray, shape (n_smooth, 2 BITS, TERMS + 1)
         Coefficients of w/y, and of its powers on the way to n.
     power, part, rest, force : ndarray, shape (n_smooth, TERMS + 1)
-        Coefficients of p and w, of what the tangent leaves of w, and of the forces.
+        Coefficients of p and w, of the part of w beyond the tangent, and of the forces.
     """
 
     laws: Index
@@ -265,13 +265,13 @@ class Viscous(NamedTuple):
     number : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     numbers : ndarray, shape (n_viscous, 4)
-        c, with the sign of the rate, and n; the rate up to which the force is straight; the tangent's.
+        c, with the sign of the rate, and n; rate up to which the force is linear; rate of the tangent.
     light : ndarray
-        Those that hold unknowns without mass.
+        Dampers that hold unknowns without mass.
     fast : ndarray, shape (n_viscous,)
         Whether the force is a series.
     rate, rest, force : ndarray, shape (n_viscous, TERMS + 1)
-        Coefficients of the rate's magnitude, of what the tangent leaves of the force, and of the force.
+        Coefficients of the rate's magnitude, of the force beyond the tangent, and of the force.
     """
 
     laws: Index
@@ -319,7 +319,7 @@ class Damped(NamedTuple):
 
 
 class Modal(NamedTuple):
-    """Parts of the structure in modes, and tables of one length of interval (see `modal_tables`).
+    """Parts of the structure in modes, with tables for one length of interval (see `modal_tables`).
 
     Parts come one after the other along the first axis, padded to the size of the largest; x has
     `2 n_modes + 2 n_inputs` numbers.
@@ -327,13 +327,13 @@ class Modal(NamedTuple):
     Attributes
     ----------
     length : ndarray, shape (1,)
-        Of the interval; 0 where there are no tables.
+        Length of the interval; 0 where there are no tables.
     is_present : ndarray, shape (1,)
         Whether the present motion is in `modes`.
     serves : ndarray, shape (1,)
         Whether the laws are on branches as stiff as those of the tables.
     stiffness : ndarray, shape (n_laws,)
-        Of these.
+        Stiffness of the laws in the tables.
     counts : ndarray, shape (n_parts, 4)
         Unknowns, modes, followed quantities, unknowns that envelopes look at.
     unknowns : ndarray, shape (n_parts, n)
@@ -341,7 +341,7 @@ class Modal(NamedTuple):
     to_modes, from_modes : ndarray, shape (n_parts, 2, 2 n_modes, n) and (n_parts, 2, n, 2 n_modes)
         Real, then imaginary parts of the modes from displacements and velocities, and these from them.
     held : ndarray, shape (n_parts, 2 n_modes, n)
-        Where the modes come to rest under constant loads.
+        Static positions of the modes under unit constant loads.
     growth : ndarray, shape (n_parts, 2 n_cells + 1, 2, n_modes)
         Real and imaginary parts of the free modes' factors at the ends and the middles of the cells.
     steady : ndarray, shape (n_parts, 2 n_modes, 2 n_inputs)
@@ -351,13 +351,13 @@ class Modal(NamedTuple):
     followed : ndarray, shape (n_parts, n_followed)
         Numbers of what is followed: deformations of the laws, then monitored outputs.
     place : ndarray, shape (n_parts, n_all_followed)
-        Where a part has each of these, -1 where it has not.
+        Place in a part of each followed quantity, -1 where the part does not have it.
     turn : ndarray, shape (n_parts, 2, n_modes)
         Real and imaginary parts of the eigenvalues times the length of a cell.
     share : ndarray, shape (n_parts, n_followed, n_modes)
-        How much of it a mode makes at most.
+        Largest contribution of each mode of size one to each followed quantity.
     rows : ndarray, shape (n_parts, n_followed, n_x)
-        These on x.
+        Rows that give the followed quantities from x.
     damping_work, input_work, constant_work : ndarray
         Works over the interval on x, shape (n_parts, n_x, n_x), (n_parts, 2 n_inputs, n_x), (n_parts, n_x).
     shown : ndarray, shape (n_parts, n_shown)
@@ -365,9 +365,9 @@ class Modal(NamedTuple):
     motion : ndarray, shape (n_parts, 3, n_shown, n_x)
         Their displacements, velocities and accelerations on x.
     modes, rest : ndarray, shape (n_parts, 2 n_modes)
-        The modes, and where they come to rest under the constant loads.
+        Modal coordinates, and their static position under the present constant loads.
     offset : ndarray, shape (n_followed,)
-        Of the followed quantities at rest there.
+        Values of the followed quantities in that static position.
     x, departure, term, values, apart : ndarray
         Scratch: x of every part at the ends and middles of the cells; distance of its free modes from
         chords; what they add to a term; the followed quantities at the ends of the cells, shape
@@ -407,7 +407,7 @@ class Modal(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """What envelopes see of steps and intervals in modes (see `shown`).
+    """Motion of steps and of intervals in modes that is kept for the envelopes (see `shown`).
 
     Attributes
     ----------
@@ -418,7 +418,7 @@ class Shown(NamedTuple):
     kept : ndarray, shape (2,)
         Steps and intervals that were kept.
     coefs : ndarray, shape (n_steps, n_which + n_acting, TERMS + 1)
-        Of the unknowns, and of the forces of the laws, all dashpots included, as far as steps were taken.
+        Series of the unknowns and of the forces of the laws, all dashpots included, over the steps taken.
     terms : ndarray, shape (n_steps,)
         Their highest powers; all others are zero.
     begin, length : ndarray, shape (n_steps,)
@@ -491,9 +491,9 @@ class Series(NamedTuple):
         Of the laws.
     inputs : ndarray, shape (TERMS + 1, n_inputs)
     polynomial : ndarray, shape `polynomial_roots.room`
-        What `polynomial_roots` works on.
+        Work space of `polynomial_roots`.
     inverse : ndarray, shape (n,)
-        Of a diagonal mass.
+        Inverse of a diagonal mass.
     gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
         Weights and points on (0, 1), two more than half of the terms that carry energy.
     springs : Springs

@@ -223,7 +223,7 @@ def locate_event(
     length, h : float
         Its length as it was tried, and the nominal one.
     event : LocatedEvent
-        What `first_event` found.
+        Result of `first_event`.
 
     Returns
     -------
