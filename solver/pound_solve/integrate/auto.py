@@ -123,7 +123,7 @@ def by_series(
 def by_few_series(
     system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
 ) -> Outcome | None:
-    """Run TAYLOR; None where dampers that hardly move ask for too many steps."""
+    """Run TAYLOR; None where dampers that hardly move would require too many steps."""
     if not any(s.role is Role.DAMPER and s.law.curved for s in system.structure.laws):
         return by_series(system, start, monitored, recorder)
     replay, known = Replay(recorder), len(system.decisions)

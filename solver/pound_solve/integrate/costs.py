@@ -97,7 +97,7 @@ class CostlyError(Exception):
 
 
 class Budget:
-    """What a run of EXACT may cost.
+    """Limits of the cost of a run of EXACT.
 
     Parameters
     ----------

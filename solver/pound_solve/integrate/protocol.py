@@ -1,4 +1,4 @@
-"""What every integrator is given, tells and may raise."""
+"""Inputs, results and exceptions of every integrator."""
 
 from __future__ import annotations
 
@@ -184,12 +184,12 @@ class Recorder(Protocol):
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at, shape (n,): those of the laws in `acting` are among them."""
+        """Which unknowns `between` needs, shape (n,): those of the laws in `acting` are among them."""
         ...
 
     @property
     def acting(self) -> Index:
-        """Laws whose forces `between` looks at, ascending, shape (n_acting,)."""
+        """Laws whose forces `between` needs, ascending, shape (n_acting,)."""
         ...
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
@@ -320,7 +320,7 @@ def without_steps(system: ReducedSystem) -> list[str]:
 
 
 def remedy(system: ReducedSystem) -> str:
-    """What to try where there are too many changes at one instant."""
+    """Advice for a run with too many changes at one instant."""
     if rigid_contact(system) is not None:
         return "LAWs with a stiffness for the rigid contacts"
     return "NEWMARK EVENTS=STEPPED"  # which passes over the changes
@@ -328,7 +328,7 @@ def remedy(system: ReducedSystem) -> str:
 
 def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> list[Check]:
     """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
-    of which a share `still` of the largest cannot be told from none.
+    of which a share `still` of the largest is indistinguishable from zero.
     """
     worst, place = SHARP, None
     for s, d, f in zip(laws, peaks.deformation, peaks.force):

@@ -43,7 +43,9 @@ ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight betw
 
 
 def remembers_yield(spring: LawSpring) -> bool:
-    """Whether a spring behaves differently from then on if it comes to its first yield at all."""
+    """Whether a spring behaves differently afterwards, depending on whether it has just reached its first
+    yield or not.
+    """
     law = spring.law
     if law.curved or spring.yields is None or spring.strengths is None:
         return False

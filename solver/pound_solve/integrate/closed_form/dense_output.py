@@ -173,8 +173,8 @@ class DenseOutput:
 
     @cached_property
     def end(self) -> tuple[Array, Array]:
-        """Displacements and velocities at the end, shape (n,) each; to be asked for before the branches or
-        the subsystems change.
+        """Displacements and velocities at the end, shape (n,) each; valid only until the branches or the
+        subsystems change.
         """
         u, v, _ = self.motions_at_ends(np.array([self.intervals - 1]))
         return u[:, 0], v[:, 0]

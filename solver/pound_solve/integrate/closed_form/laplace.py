@@ -204,7 +204,7 @@ class Laplace(EventDrivenRun):
         self.recorder.between(Course(at(begin), lengths, within))
 
     def _with_forces(self, t: Array, u: Array, v: Array, a: Array) -> Motion:
-        """The motion at some times with the forces of the laws that the recorder looks at."""
+        """The motion at some times with the forces of the laws in `Recorder.acting`."""
         system, acting = self.system, self.recorder.acting
         s, ds = (system.excitation.values(t, order).T for order in (0, 1))
         d = system.law_rows[acting] @ u + system.law_inputs[acting] @ s

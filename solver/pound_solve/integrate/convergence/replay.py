@@ -1,4 +1,4 @@
-"""What takes the samples of a run on the way to the recorder of a history."""
+"""Recorders between a run and the recorder of a history."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Watch(Witness):
         self.recorder.sample(t, u, v, a, laws, works)
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples whose progress was told before (see `EnvelopeRecorder`)."""
+        """Take some samples whose progress has been reported before (see `EnvelopeRecorder`)."""
         self.see(u, laws)
         self.recorder.keep(t, u, v, a, laws, works)
 

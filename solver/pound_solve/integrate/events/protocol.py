@@ -1,4 +1,4 @@
-"""What every locator of events returns: a `LocatedEvent`.
+"""Result of every locator of events: a `LocatedEvent`.
 
 A law leaves its branch when one of its event functions ``a d + b v + c`` of deformation and rate rises
 through zero.  Three locators find the earliest such instant: on a grid of samples with bounds (`grid`, for

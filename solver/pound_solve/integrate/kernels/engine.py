@@ -121,7 +121,7 @@ class KernelEngine(ABC):
 
     @abstractmethod
     def integrate(self) -> None:
-        """Let the method's kernel advance to the end."""
+        """Run the method's kernel to the end."""
 
     @abstractmethod
     def figures(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What the kernels work on: named arrays in the order of elimination, and the records of a run.
+"""State of the kernels: named arrays in the order of elimination, and the records of a run.
 
 Every array has a name and one place where it is allocated (`allocation`).  An instant of the motion is a
 `MotionState`; a step has one at its start, ``now``, and one at its end, ``trial``, until it is accepted.
@@ -394,7 +394,7 @@ class Step(NamedTuple):
 
 
 class Buffers(NamedTuple):
-    """What is kept until Python fetches it.
+    """Samples, transitions and motions that are kept until Python fetches them.
 
     Attributes
     ----------

@@ -168,7 +168,7 @@ def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
 
 
 def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: int) -> None:
-    """Let contact `i` begin or cease to have a force."""
+    """Change the phase of contact `i` by an event: its force begins or ends."""
     r = curved.number[i]
     if event == TOUCHES:
         curved.phase[r] = PRESSED

@@ -37,7 +37,7 @@ class Laguerre(Taylor):
     asking = "TOL"
 
     def cure(self) -> str:
-        """What takes fewer steps."""
+        """Text on what requires fewer steps."""
         return ", a larger one for fewer"
 
     def figures(self) -> dict[str, Any]:

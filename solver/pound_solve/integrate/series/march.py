@@ -219,7 +219,7 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
 
 
 def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
-    """Let friction follow the contacts that have touched or parted."""
+    """Let friction laws engage or release with the contacts that have touched or parted."""
     for r in range(len(series.friction.laws)):
         event = touch_event(sim.laws, rules, series.friction, r)
         if event >= 0:
@@ -230,7 +230,7 @@ def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
 def change_branches(
     sim: Simulation, rules: Tables, series: Series, terms: int, h: float, end: float, event: LocatedEvent
 ) -> None:
-    """Let a law leave its branch, and others whose events are at the same instant."""
+    """Change the branch of a law, and of others whose events are at the same instant."""
     laws = sim.laws
     now, instant = sim.run.time, INSTANT * max(sim.run.time, h)
     first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
@@ -339,7 +339,9 @@ def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
 
 
 def step_length(lengths: Lengths, t: float, goal: float) -> float:
-    """Length of the next step: what is left in equal parts; 0 where the clock cannot tell it from none."""
+    """Length of the next step: what is left to the goal in equal parts; 0 where it vanishes in the rounding
+    of the time.
+    """
     left = goal - t
     h: float = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
     if h == left:
@@ -415,7 +417,7 @@ def answer_event(
 def step_to_goal(
     sim: Simulation, rules: Tables, series: Series, coefs: Array, begin: float, goal: float, pause: int
 ) -> int:
-    """Take steps on one piece of the excitation up to a goal, or until Python must look at it.
+    """Take steps on one piece of the excitation up to a goal, or until control must return to Python.
 
     Returns
     -------
@@ -548,7 +550,7 @@ def settle_after_jump(
 
 
 def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
-    """Integrate to the last goal, or until Python must look at something (see
+    """Integrate to the last goal, or until control must return to Python (see
     `stepping.kernel.advance`).
     """
     run = sim.run

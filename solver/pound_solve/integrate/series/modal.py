@@ -301,7 +301,7 @@ def add_interval_works(modal: Modal, n_inputs: int, works: Works) -> None:
 
 
 def advance_modes(modal: Modal, n_inputs: int) -> None:
-    """Take the modes to the end of the interval."""
+    """Advance the modes to the end of the interval."""
     for b in range(len(modal.counts)):
         twice, modes = 2 * modal.counts[b, MODES], modal.modes[b]
         x = modal.x[b, modal.growth.shape[1] - 1]

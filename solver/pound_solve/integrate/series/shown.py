@@ -17,8 +17,8 @@ STEPS, INTERVALS = range(2)  #: places in `Shown.kept`
 
 
 def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
-    """Room for steps, whose series have so many `terms`, and for intervals, of which the unknowns `which`
-    and the laws `acting` are seen.
+    """Allocate room for steps, whose series have so many `terms`, and for intervals in modes; the unknowns
+    `which` and the forces of the laws `acting` are kept.
     """
     b, _, size = modal.x.shape
     steps = MOST_HELD // max(terms * (len(which) + len(acting)), 1)

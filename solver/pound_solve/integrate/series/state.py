@@ -1,4 +1,4 @@
-"""What the kernels of TAYLOR work on beside the arrays that all kernels share."""
+"""State of the kernels of TAYLOR, beside the arrays that all kernels share."""
 
 from __future__ import annotations
 

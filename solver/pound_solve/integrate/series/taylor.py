@@ -281,7 +281,7 @@ class Taylor(KernelEngine):
         store.kept[:] = 0
 
     def fetch(self) -> None:
-        """Take in what was kept; stop where steps are too short for the length of the run."""
+        """Fetch what was kept; stop where steps are too short for the length of the run."""
         super().fetch()
         done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:

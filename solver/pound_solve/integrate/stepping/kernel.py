@@ -193,9 +193,8 @@ def plain_steps(
 
 
 def begin_goal(sim: Simulation, scheme: Scheme, coefs: Array, s: float, h: float) -> None:
-    """Take over the excitation at the local time `s`, before the first step towards a goal; make the state
-    consistent where a load jumps, and
-    with it the acceleration.
+    """Copy the excitation at the local time `s` before the first step towards a goal; make the state
+    consistent where a load jumps, and with it the acceleration.
     """
     run = sim.run
     if run.step > 0:
@@ -253,7 +252,7 @@ def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
 def advance(
     sim: Simulation, rules: Tables, scheme: Scheme, goals: Goals, steps: Index, lengths: Array
 ) -> int:
-    """Integrate to the last goal, or until Python must look at something.
+    """Integrate to the last goal, or until control must return to Python.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ PATIENCE = 12  #: trials by interpolation; bisection follows
 
 
 def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: int, event: int) -> None:
-    """Let law `i` leave its branch; `h` is the nominal step, whose factor follows."""
+    """Change the branch of law `i`, and update the factor for the nominal step `h`."""
     linear, laws, run = sim.linear, sim.laws, sim.run
     before, k, c = laws.branch[i], laws.stiffness[i], laws.damping[i]
     if laws.normal[i] >= 0:

@@ -306,7 +306,7 @@ def accept_laws(laws: Laws, rules: Tables, h: float, works: Works) -> None:
 
 
 def accept_members(laws: Laws) -> None:
-    """Take over the members at the end of the step."""
+    """Make the members' state at the end of the step the present one."""
     members = laws.members
     for c in range(len(members.parameters)):
         size = force_size(members.trial, c, members.parameters[c, LENGTH])

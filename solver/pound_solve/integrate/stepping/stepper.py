@@ -109,7 +109,7 @@ class Stepper(KernelEngine):
         self.advance(kernel.advance, self.scheme, ahead, steps, h)
 
     def resume(self, why: int) -> None:
-        """Let joints without mass move where a force falls that held them; stop where nothing else can."""
+        """Let joints without mass move where a force falls that held them; for any other reason, stop."""
         if why != FALL:
             raise self.trouble(why)
         present = KernelPresent(self)
