@@ -191,7 +191,7 @@ class Levels:
 
 
 def building(structure: Structure, name: str) -> Building:
-    """The building of a name.
+    """The building with a name.
 
     Raises
     ------

@@ -35,7 +35,7 @@ from pound_solve.structure.structure import Structure
 
 @dataclass(frozen=True)
 class Decision:
-    """One line of the report's table `scene`: what was left out, and why."""
+    """One line of the report's table `scene`: what was left out or chosen, and why."""
 
     subject: str
     decision: str

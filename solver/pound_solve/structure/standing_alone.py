@@ -1,4 +1,4 @@
-"""One building of several without the others."""
+"""One building of several, cut out of the structure."""
 
 from __future__ import annotations
 

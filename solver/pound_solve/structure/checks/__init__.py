@@ -1,4 +1,4 @@
-"""What a structure cannot be meant to be: one module for each kind of thing that is looked at.
+"""Plausibility checks of a structure: one module for each kind of mistake.
 
 A check takes a `Structure` and gives warnings; `driver.preflight` lists them all.
 """

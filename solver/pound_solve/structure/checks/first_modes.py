@@ -1,4 +1,4 @@
-"""What the first mode of a building tells: its damping, and contacts that are softer than it."""
+"""Checks by the first mode of a building: its damping, frequencies of DAMPING, stiffness of contacts."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def _flat_strength(spring: LawSpring, side: int) -> float:
 
 
 def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:
-    """The warning of two hinges.
+    """The warning for two hinges.
 
     The cure names a rule with R, since ELASTO_PLASTIC has none.  A member without hinges may have no rule.
     """

@@ -13,7 +13,8 @@ from pound_solve.structure.structure import Structure
 
 
 def massless(structure: Structure) -> list[Diagnostic]:
-    """Structures and buildings without mass, though modes or the motion under an earthquake are asked for.
+    """Structures and buildings without mass, though the deck requires modes or the motion under an
+    earthquake.
 
     A part without height, such as the spring of a bumper, may have none.
     """

@@ -123,7 +123,7 @@ def _area_in_smaller_units(
     m^4.
 
     A large area alone may be that of a member without axial deformation; only one that becomes usual by
-    that factor is told.
+    that factor is reported.
     """
     middle = median(length(model, e) for e in members)
     if model.units.length.lower() != "m" or card["A"] < face:
@@ -185,10 +185,11 @@ def doubled(structure: Structure) -> list[Diagnostic]:
 
 
 def misjudged(structure: Structure) -> list[Diagnostic]:
-    """Hinges of members whose section yields at a strain that no material has, or has no end of ductility,
-    and hinges and springs of a stiffness of their own that yield too far: once for each property set.
+    """Hinges of members with an implausible yield strain of the section or ductility, and hinges and
+    springs with a stiffness of their own that yield at an implausible rotation: one for each property set.
 
-    Such ones may be rigid until they yield, so that neither a small strain nor a large ductility is told.
+    The latter may be rigid until they yield, so that neither a small strain nor a large ductility is
+    reported.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
     for label, members in kinds(model).items():

@@ -33,8 +33,8 @@ LOWEST, HIGHEST = 0.1, 1000.0  #: height of a building or a model of one [m]
 
 
 def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings lower than a model on a shaking table, or higher than any; those in a centrifuge
-    have another gravity.
+    """Names of buildings, with the warning, that are lower than a model on a shaking table or higher than
+    any building; those in a centrifuge have another gravity.
     """
     model = structure.model
     metre = METRE.get(model.units.length.lower())
@@ -48,7 +48,9 @@ def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
 
 
 def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings of members that weigh hardly more than these, or more than their columns bear."""
+    """Names of buildings, with the warning, that weigh hardly more than their beams and columns, or more
+    than their columns can bear.
+    """
     model = structure.model
     force, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
     beams = {e.i for members in kinds(model).values() for e in members if lies(model, e)}
