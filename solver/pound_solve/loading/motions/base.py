@@ -150,7 +150,7 @@ class Motion:
         return (self.about[1] - y, x - self.about[0], 1.0)[d]
 
     def delayed(self, by: float) -> Motion:
-        """The same motion `by` [T] later; until then the ground goes on with its velocity at t = 0."""
+        """The same motion, later by `by` [T]; before it the ground moves with its velocity at t = 0."""
         lead = self.displacement0 - by * self.velocity0
         closed = self.closed
         if closed:

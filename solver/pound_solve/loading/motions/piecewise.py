@@ -45,7 +45,7 @@ class Piecewise:
 
     @classmethod
     def zero(cls, start: float, end: float) -> Piecewise:
-        """Nothing, from `start` to `end`."""
+        """Zero from `start` to `end`."""
         return cls(np.array([start, end], dtype=np.float64), np.zeros((1, 1)))
 
     @property

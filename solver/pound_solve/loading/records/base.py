@@ -156,7 +156,7 @@ class RawRecord:
 
 
 def _last_place(printed: str) -> float:
-    """What one more in the last place of a printed number adds to it."""
+    """Value of one unit in the last place of a printed number."""
     mantissa, _, exponent = printed.upper().replace("D", "E").partition("E")
     return float(10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2])))
 

@@ -1,4 +1,4 @@
-"""What agencies' files have in common: numbers and units in their headers, the choice of a component."""
+"""Common parts of agencies' files: numbers and units in their headers, the choice of a component."""
 
 from __future__ import annotations
 
