@@ -31,7 +31,7 @@ SPARE = 0.05  #: entries that the factor may gain, an unknown, for the sake of d
 
 
 class Pattern(NamedTuple):
-    """Where A and L have entries.
+    """Positions of the entries of A and L.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ def filled(columns: Sequence[set[int]]) -> list[list[int]]:
 
 
 def pointers(lists: Sequence[Sized]) -> Place:
-    """Where each of some lists begins where they stand one after the other, and where the last ends."""
+    """Where each of some lists begins when they are concatenated, and where the last ends."""
     return np.concatenate([[0], np.cumsum([len(x) for x in lists])]).astype(np.uint32)
 
 

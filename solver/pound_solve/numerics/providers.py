@@ -22,7 +22,7 @@ _RESIDENT: Final = ContextVar("resident", default=False)
 
 
 class Provider(Protocol):
-    """What makes kernels ready."""
+    """A way to make kernels ready to be called."""
 
     @property
     def name(self) -> str:
@@ -74,7 +74,7 @@ class Interpreter:
 
 @cache
 def provider() -> Provider:
-    """What makes the kernels of this process ready."""
+    """The way in which this process makes kernels ready."""
     if os.environ.get("POUND_COMPILE") == "0":
         return Interpreter("")
     loaded = library.load(library.FOLDER)
