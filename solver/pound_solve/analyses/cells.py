@@ -1,4 +1,4 @@
-r"""Cells of a course that their neighbours tell nothing of: where a quantity may exceed what is known.
+r"""Cells of a course whose neighbours give no bound: where a quantity may exceed its known extremes.
 
 The samples around a cell tell how far a quantity may exceed it (`numerics.crests`) where the cells next to
 it are as long as it and follow each other.  Around an event they are not: a step ends at it, and the next

@@ -174,7 +174,7 @@ class Closeups:
         return joined_peaks([peaks.at(~inner), between])
 
     def blocks(self) -> Iterator[Motion]:
-        """What was kept, in the order of time."""
+        """The kept instants and peaks, in the order of time."""
         kept = list(self._instants)
         if self._peaks:
             peaks = joined_peaks(self._peaks)

@@ -1,4 +1,4 @@
-r"""What a motion has done to springs and hinges: ductility, plastic path, what is left, damage.
+r"""Damage of springs and hinges by a motion: ductility, plastic path, residual deformation, indices.
 
 With the deformation :math:`d_y` and the force :math:`F_y` at first yield of a side, ultimate deformation
 :math:`d_u = \mu_u d_y` under monotonic loading, largest deformation :math:`d_m` and dissipated energy

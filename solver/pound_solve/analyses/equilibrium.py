@@ -1,4 +1,4 @@
-"""What the ground does to a structure: reactions, base shear, and whether all forces balance."""
+"""Forces of the ground on a structure: reactions, base shear, and the balance of all forces."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ class Loading(NamedTuple):
 
 
 class HistoryOutput(Protocol):
-    """Where the samples of a history go while it runs."""
+    """Receiver of the samples of a history while it runs."""
 
     def start(self, items: RecordedItems) -> None:
         """Prepare for what is recorded."""
@@ -101,25 +101,27 @@ class HistoryOutput(Protocol):
         ...
 
     def closeups(self, blocks: Iterable[SampleBlock]) -> None:
-        """Take the close-ups of collisions, when the history is over."""
+        """Receive the close-ups of collisions, when the history is over."""
         ...
 
     def extremes(self, bounds: Array, blocks: Sequence[SampleBlock]) -> None:
-        """Take the extremes between bounds, smallest and largest values, when the history is over."""
+        """Receive the smallest and largest values between the `bounds`, when the history is over."""
         ...
 
     def save(self, state: Mapping[str, Array]) -> None:
-        """Take the state that a later run can be taken up from."""
+        """Receive the state from which a later run can continue."""
         ...
 
     def progress(self, t: float, end: float, doing: str) -> None:
-        """Take the time reached, the time to reach, and what keeps the run waiting there, if anything."""
+        """Receive the time reached, the time to reach, and what keeps the run waiting there, if
+        anything.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class HistoryResult:
-    """What a history found.
+    """Results of a history.
 
     Attributes
     ----------
@@ -250,7 +252,7 @@ class HistoryResult:
 
     @property
     def items(self) -> RecordedItems:
-        """What was recorded."""
+        """The recorded quantities."""
         return self.recorder.items
 
     @property

@@ -96,7 +96,7 @@ class Share(NamedTuple):
 
 @dataclass(frozen=True)
 class ModalResult:
-    """What a modal analysis found.
+    """Results of a modal analysis.
 
     Attributes
     ----------

@@ -341,7 +341,7 @@ class EquilibriumPath:
         return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
 
     def _arguments(self, u: Array, factor: float) -> tuple[Array, Array]:
-        """What the event functions of each law depend on, shape (n_laws,), and the sums of its absolute
+        """Arguments of the event functions of each law, shape (n_laws,), and the sums of their absolute
         terms: its deformation or, of a closed rigid contact, its force.
         """
         now, size = self.deformations(u, factor), self._terms(u)

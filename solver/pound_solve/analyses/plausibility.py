@@ -219,5 +219,5 @@ RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Che
 
 
 def of_history(structure: Structure, history: HistoryResult) -> list[Check]:
-    """All that is to be looked at in a history."""
+    """All plausibility checks of a history."""
     return [check for rule in RULES for check in rule(structure, history, history.returned)]

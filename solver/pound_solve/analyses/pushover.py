@@ -64,7 +64,7 @@ class CapacityPoint:
 
 @dataclass
 class PushoverResult:
-    """What a pushover found.
+    """Results of a pushover.
 
     Attributes
     ----------

@@ -200,7 +200,7 @@ class Quantities:
         return slice(*np.searchsorted(self.place, [part.start, part.stop]).tolist())
 
     def _stacked(self, motion: Motion) -> Array:
-        """What the rows hold of a motion, shape (n_used, n_times)."""
+        """The values of a motion that the rows depend on, shape (n_used, n_times)."""
         return np.concatenate([part[used] for part, used in zip(motion[1:], self._used)])
 
     def _some(self, row: Index) -> Rows:

@@ -301,7 +301,9 @@ class HistoryRecorder:
         self._progress(self.reached, "")
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples whose progress was told before (see `integrate.protocol.EnvelopeRecorder`)."""
+        """Take some samples whose progress has been reported before (see
+        `integrate.protocol.EnvelopeRecorder`).
+        """
         new = t > self.reached  # but not the start of a part, where another ended
         if not new.any():
             return
@@ -337,12 +339,12 @@ class HistoryRecorder:
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at (see `integrate.protocol.Recorder`)."""
+        """Which unknowns `between` needs (see `integrate.protocol.Recorder`)."""
         return self.envelopes.shown
 
     @property
     def acting(self) -> Index:
-        """Laws whose forces `between` looks at (see `integrate.protocol.Recorder`)."""
+        """Laws whose forces `between` needs (see `integrate.protocol.Recorder`)."""
         return self.envelopes.acting
 
     def trial(self, t: float, doing: str = "") -> None:
@@ -388,7 +390,7 @@ class HistoryRecorder:
             yield SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))
 
     def extremes(self) -> tuple[Array, list[SampleBlock]]:
-        """Bounds of the intervals that were seen whole or in part, shape (n + 1,), and the smallest and the
+        """Bounds of the intervals reached in whole or in part, shape (n + 1,), and the smallest and the
         largest values within them: of nodes, members and sums only.
         """
         extremes, none = self.envelopes.extremes, np.zeros((0, 0))

@@ -1,4 +1,4 @@
-"""What a history has done to every spring and hinge: its peaks, plastic deformation and damage."""
+"""Response of every spring and hinge in a history: peaks, plastic deformation and damage."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class SpringResponse:
 def spring_responses(
     structure: Structure, recorder: HistoryRecorder, outcome: Outcome, ended: bool
 ) -> list[SpringResponse]:
-    """Response of all springs and hinges; `ended` tells that the history came to its end."""
+    """Response of all springs and hinges; `ended`: the history came to its end."""
     return [_response(structure, recorder, outcome, ended, i) for i in recorder.items.springs]
 
 

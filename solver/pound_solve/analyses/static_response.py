@@ -1,4 +1,4 @@
-"""What a static state does to nodes, elements and supports."""
+"""Displacements, forces and reactions of a static state."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ElementForce(NamedTuple):
 
 @dataclass(frozen=True)
 class StaticResponse:
-    """A static state, as tables show it.
+    """A static state in the form that tables show.
 
     Attributes
     ----------
