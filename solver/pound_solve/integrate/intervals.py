@@ -7,7 +7,7 @@ import numpy as np
 from pound_solve.numerics.types import Array
 
 SAME = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
-FEW = 50  #: intervals of one length for which tables do not pay
+FEW = 50  #: number of intervals of one length up to which tables do not pay
 MOST_UNKNOWNS = 200  #: of a part
 WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
 

@@ -20,7 +20,7 @@ from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
-MOST_BETWEEN = 0.1  #: of such a share; a sine has that with seven steps in its period
+MOST_BETWEEN = 0.1  #: limit of such a share; a sine with seven steps in its period reaches it
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law

@@ -27,7 +27,7 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-ALONG = 1e-9  #: share of the largest change of a deformation below which a law does not move
+ALONG = 1e-9  #: share of the largest change of a deformation below which a law counts as at rest
 LOST = 1e-9  #: share of a force's terms above which a change of branch has made it jump
 ARRIVED = 1e-13  #: share of the largest deformation that is no way any more
 BALANCED = 1e-14  #: share of the forces at a joint that their sum may be by rounding

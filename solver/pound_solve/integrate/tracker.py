@@ -15,7 +15,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-SMALL = 1e-3  #: share of the largest peak of its unit below which it is not asked where a peak lies
+SMALL = 1e-3  #: share of the largest peak of its unit below which a peak is not examined
 
 
 @dataclass

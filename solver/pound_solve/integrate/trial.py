@@ -17,7 +17,7 @@ from pound_solve.integrate.protocol import EnvelopeRecorder, MonitoredOutputs, O
 from pound_solve.numerics.providers import loading
 from pound_solve.structure.reduction import ReducedSystem
 
-SHARE = 0.5  #: of what the other methods cost, that all trials may cost
+SHARE = 0.5  #: limit of the cost of all trials, as a share of the cost of the other methods
 REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
 CHECK = 0.2  #: share of a trial's budget after which its progress is checked
 EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need

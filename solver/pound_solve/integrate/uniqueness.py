@@ -33,12 +33,12 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-SOFT = 1e-9  #: share of the elastic stiffness below which a tangent holds nothing
+SOFT = 1e-9  #: share of the elastic stiffness below which a tangent counts as none
 TAKES_PART = 1e-6  #: share of the largest deformation of the motion that is not held
 SHOWN = 4  #: elements that are named
-HAIR = 1e-6  #: share of its yield deformation by which a spring yields, or does not
-CYCLES = 12  #: that follow, in which the forces are compared
-DIFFERS = 1e-3  #: share of its elastic force at yield by which these differ where it remembers
+HAIR = 1e-6  #: share of its yield deformation by which a spring goes beyond yield, or stays below
+CYCLES = 12  #: cycles after that, in which the forces are compared
+DIFFERS = 1e-3  #: share of the elastic force at yield above which the forces differ
 ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight between"
 
 

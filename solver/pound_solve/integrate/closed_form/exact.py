@@ -61,7 +61,7 @@ from pound_solve.structure.reduction import Decision, ReducedSystem
 
 MAX_PIECES = 2000  #: windows within one interval of the excitation
 MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, which take many minutes
-FORESEEN = 16  #: of them without an event between, after which it is foreseen how many there will be
+FORESEEN = 16  #: such windows without an event between, after which the total number is predicted
 MAX_DEFERRED = 256  #: entries of work that wait
 SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
 LOST = "modes are nearly parallel: digits are lost"

@@ -26,9 +26,9 @@ from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
 FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
-BRIEF = 0.05  #: share of a collision below which it is not asked how fast its force rises
-RESPONSE, ALL = "RESPONSE", "ALL"  #: what TOL is for
-RESPONSES, ACCELERATIONS, FORCES = range(3)  #: what tolerances are for
+BRIEF = 0.05  #: smallest time for twice the rise of a force, as a share of the duration of its collision
+RESPONSE, ALL = "RESPONSE", "ALL"  #: values of PEAKS: what TOL applies to
+RESPONSES, ACCELERATIONS, FORCES = range(3)  #: kinds of peaks with tolerances of their own
 NAMES = ("drifts, contact forces and hinges", "accelerations", "member forces")
 
 

@@ -33,8 +33,8 @@ SLOWEST, ORDER = (
     0.5,
     1.75,
 )  #: powers of the step that an error is assumed to fall with, at least and at most
-FASTEST = 2.5  #: power of the step above which a fall of the differences is chance
-SAFETY = 1.5  #: estimate over the error that the differences tell
+FASTEST = 2.5  #: power of the step above which a faster fall of the differences counts as chance
+SAFETY = 1.5  #: factor of the estimate over the error that the differences indicate
 COMPARED = 3  #: runs that the last one is compared with
 BISECTIONS = 30  #: to the observed power
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-LOOKS = 9  #: places up to the event of another law at which that of a contact is looked at
+LOOKS = 9  #: points before another law's event at which the event function of a contact is evaluated
 
 
 class LocatedEvent(NamedTuple):

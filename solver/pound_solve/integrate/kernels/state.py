@@ -30,7 +30,7 @@ class Run(Protocol):
 
     started: int  #: whether the first sample is taken
     goal: int  #: the time that is integrated to, by its number
-    step: int  #: steps taken towards it
+    step: int  #: steps taken towards the goal
     kept: int  #: samples in the buffers
     logged: int  #: transitions in the buffers
     shown: int  #: motions between samples in the buffers
@@ -40,7 +40,7 @@ class Run(Protocol):
     fell: int  #: law whose force has fallen and holds a joint without mass, -1 for none
     driven: int  #: branches left in a step that is not cut at events
     updates: int  #: of rank one since the factor was made
-    stale: int  #: whether what follows from the branches of the laws, as a factor, must be made anew
+    stale: int  #: whether quantities that depend on the branches, such as factors, must be recomputed
     falling: int  #: steps that are too long for a falling branch
     tied: int  #: instants at which laws give way together in the buffers
     rests: int  #: laws that rest where a branch begins in the buffers

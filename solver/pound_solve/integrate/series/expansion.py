@@ -31,7 +31,7 @@ from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
 TERMS = 32  #: of a series, at most
-CHECK = 4  #: terms after which it is seen whether they suffice
+CHECK = 4  #: terms after which it is checked whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 QUIET = 1e-13  #: share of its energy that a term may carry that works need not see
 GROW = 2.0  #: how much longer than the last a step may be

@@ -60,10 +60,10 @@ from pound_solve.integrate.series.viscous import linearise_dampers, tangents_set
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 
-SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
-SHORTER = 0.9  #: of it, at most
-AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
-CUT = 0.5  #: part of a step, as it was tried, that is taken at least
+SHRINK = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
+SHORTER = 0.9  #: this factor, at most
+AHEAD = 1e-3  #: part of a step in which laws are searched for events at the instant of another one's
+CUT = 0.5  #: smallest part of a step, as it was tried, that is taken
 FROM_REST = 1e-4  #: share of the time to the goal: longest implicit step in which a contact leaves its rest
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 

@@ -48,7 +48,7 @@ from pound_solve.numerics.matrices import (
 from pound_solve.numerics.modes import scaling, softest
 from pound_solve.numerics.types import Array, Index
 
-JUMP = 1e-9  #: share of the largest deformation above which one has jumped
+JUMP = 1e-9  #: share of the largest deformation above which a change at one instant is a jump
 DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
 TAKES_PART = 1e-6  #: share of the largest component of a motion above which an unknown takes part
 

@@ -46,7 +46,7 @@ from pound_solve.integrate.series.state import Series, SinglePole
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
-LAST = 6  #: term with which a series ends
+LAST = 6  #: number of the last term of a series
 ROOT = (
     2  #: number of the root of that polynomial, from the least, that 1/gamma is: so the method is A-stable
 )

@@ -38,10 +38,10 @@ from pound_solve.laws.functions import Tables, smooth_of
 from pound_solve.numerics.types import Array, Flags
 
 UNSEEN = 1e-14  #: share of the force at w = y that a power left out may make
-ZERO = 0.1 * PAST  #: share of y below which w is none
-LACKING = 1e-13  #: share of w that terms of the power which are cut off may make
+ZERO = 0.1 * PAST  #: share of y below which w counts as zero
+LACKING = 1e-13  #: error of w by truncating the series of the power, as a share of w, at most
 CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
-BITS = 7  #: of the largest whole power that is multiplied: beyond, w is near y before it is seen
+BITS = 7  #: bits of the largest whole power computed by multiplication; larger ones matter near w = y only
 W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.numbers`
 
 

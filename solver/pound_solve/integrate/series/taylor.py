@@ -101,7 +101,7 @@ class Taylor(KernelEngine):
     exact = True
     shows_steps = False
     words = "TAYLOR, power series"
-    asking = "the fastest mode"  #: what makes steps short
+    asking = "the fastest mode"  #: cause of short steps, for messages
 
     def __init__(
         self,

@@ -49,7 +49,7 @@ from pound_solve.numerics.types import Array
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 MOST_HALVINGS = 25
-SHORTEST = 3e-8  #: part of a step that what follows is shortened to where laws turn to and fro
+SHORTEST = 3e-8  #: shortest part of a step, used where laws change to and fro
 GO_ON, MET, NONE = range(3)
 PATIENCE = 12  #: trials by interpolation; bisection follows
 

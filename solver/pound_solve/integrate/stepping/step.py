@@ -64,7 +64,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import KIND, LENGTH, STRING
 
 REFRESH = 200  #: updates of rank one before a factor is made anew
-CONVERGED = 1e-12  #: share of a curved law's force that its tangent may miss it by
+CONVERGED = 1e-12  #: largest deviation of a curved law's force from its tangent, as a share of the force
 SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
 MOST_ITERATIONS = 50
 
