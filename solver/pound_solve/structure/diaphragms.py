@@ -19,7 +19,7 @@ from pound_solve.structure.elements.base import LawSpring, axes
 from pound_solve.structure.mass import mass_along
 from pound_solve.structure.structure import Structure
 
-GOOD_ENOUGH = 0.05  #: error of the changes of velocity up to which lumped mass will do
+GOOD_ENOUGH = 0.05  #: error of the changes of velocity up to which lumped mass is accepted
 STRAIGHT = 1e-6  #: sine of the angle by which a member may miss the contact's direction
 
 

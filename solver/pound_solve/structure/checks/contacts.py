@@ -23,7 +23,7 @@ SAME: Final = 1e-9  #: share of the distance of nodes that is none
 #: stay as they are while a gap is varied
 WIDEST: Final = 3.0
 LEAST_ANGLE: Final = 1e-6  #: degrees by which a contact may slope
-LEVEL: Final = 0.1  #: share of a difference that is none beside it
+LEVEL: Final = 0.1  #: share of a difference in height that counts as none
 ALONG: Final = 0.99  #: cosine of the angle between a member and a contact that lies along it
 
 

@@ -13,8 +13,8 @@ from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.structure import Structure
 
-EQUAL: Final = 1e-6  #: share by which two strengths may differ that are meant to be the same
-BEYOND: Final = 1.01  #: deformation over that at yield, where a rule is asked whether it hardens
+EQUAL: Final = 1e-6  #: relative difference up to which two strengths count as equal
+BEYOND: Final = 1.01  #: deformation over that at yield at which the hardening of a rule is examined
 FLAT: Final = 1e-9  #: share of the initial stiffness that is no hardening
 
 

@@ -20,7 +20,7 @@ from pound_solve.structure.checks.supports import ROUNDING, resisted, shaken, so
 from pound_solve.structure.dofs import DIRECTIONS
 from pound_solve.structure.structure import Structure
 
-MOVES: Final = 0.1  #: share of the largest displacement of a motion that a node has which it moves
+MOVES: Final = 0.1  #: share of a motion's largest displacement above which a node counts as moving
 FEWEST: Final = 10  #: steps in a first period
 SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 #: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid

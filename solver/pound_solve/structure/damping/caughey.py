@@ -39,7 +39,7 @@ from pound_solve.structure.damping.base import (
     values,
 )
 
-BETWEEN = 64  #: places between two neighbouring points where the sign of the ratio is looked at
+BETWEEN = 64  #: places between two neighbouring points at which the sign of the ratio is checked
 
 
 def rates(omega: Array, at: Array, xi: Array) -> Array:

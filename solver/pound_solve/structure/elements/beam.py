@@ -52,7 +52,7 @@ from pound_solve.structure.elements.beam_matrices import (
 
 ROUNDING = 1e-9  #: of coordinates, share of a length
 
-MOST_TAKEN = 0.9  #: share of what would leave no beam that hinges take off it at most
+MOST_TAKEN = 0.9  #: largest flexibility taken off a beam by its hinges, as a share of all that it has
 INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
 
 

@@ -42,7 +42,7 @@ from pound_solve.structure.elements.base import (
     signed,
 )
 
-FAR = 1e3  #: widths by which nothing ever opens
+FAR = 1e3  #: deformation, in widths, that no spring reaches
 
 
 def lobatto(count: int) -> tuple[Array, Array]:
