@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 EVENTS = 3  #: most event functions of a branch
 GAP = 2  #: place of the gap among the parameters of a contact
-PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule has come to zero
+PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule counts as zero
 AT_END = 1e-9  #: share of a deformation by which a law must pass the end of a line to have gone on
 PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
 

@@ -34,7 +34,7 @@ from pound_solve.numerics.types import Array
 
 RowPart = Callable[[Array, int, int], Numbers]  #: numbers in a row of an array, from a place on
 
-ROOM = 8  #: rules that the tables have room for, or a multiple of it
+ROOM = 8  #: number of rules that the tables have room for, or a multiple of it
 #: lengths of the parameters and of the internal variables in the kernels: those of the longest rule of the
 #: catalog, to which a test holds them, so that no run has to import every rule
 PARAMETERS, VARIABLES = 20, 16
