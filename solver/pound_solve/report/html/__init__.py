@@ -126,24 +126,24 @@ def _table(results: Results, table: Table[Any], number: str, limit: int | None) 
     yield from (f'<p class="note">{escape(text)}</p>\n' for text in notes if text)
 
 
-def _part(results: Results, own: Shown) -> Iterator[str]:
+def _part(results: Results, part: Shown) -> Iterator[str]:
     """A part of a table."""
-    columns, heads, cells, blocks = formatted(results.units, own.table, own.rows)
+    columns, heads, cells, blocks = formatted(results.units, part.table, part.rows)
     if not columns:
         return
-    if own.title:
-        yield f"<p>{escape(own.title)}</p>\n"
-    yield f'<div class="wide"><table class="{own.table.name}">\n<thead><tr>'
+    if part.title:
+        yield f"<p>{escape(part.title)}</p>\n"
+    yield f'<div class="wide"><table class="{part.table.name}">\n<thead><tr>'
     kinds = ["text" if c.is_text else "number" for c in columns]
     for column, kind in zip(columns, kinds):
         head = escape(heads[column.name]).replace("\n", "<br>")
         yield f'<th class="{kind}" aria-sort="none"><button type="button">{head}</button></th>'
     yield "</tr></thead>\n<tbody>\n"
-    starts = set(accumulate(blocks[:-1])) if len(blocks) < len(own.rows) else set()
+    starts = set(accumulate(blocks[:-1])) if len(blocks) < len(part.rows) else set()
     for place, row in enumerate(zip(*(cells[c.name] for c in columns))):
         yield '<tr class="block">' if place in starts else "<tr>"
         yield from (f'<td class="{kind}">{escape(cell)}</td>' for kind, cell in zip(kinds, row))
         yield "</tr>\n"
     yield "</tbody></table></div>\n"
-    if own.more:
-        yield f'<p class="note">{escape(own.more)}</p>\n'
+    if part.more:
+        yield f'<p class="note">{escape(part.more)}</p>\n'

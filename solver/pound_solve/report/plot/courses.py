@@ -88,9 +88,9 @@ def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any
     return collisions[(collisions["t_start"] <= choice.between[1]) & (end >= choice.between[0])]
 
 
-def with_peaks(t: Array, force: Array, own: NDArray[Any]) -> tuple[Array, Array]:
+def with_peaks(t: Array, force: Array, collisions: NDArray[Any]) -> tuple[Array, Array]:
     """Times and forces of a contact: the stored ones, and start, true peak and end of every collision."""
-    hard = own[np.isfinite(own["peak_force"])]
+    hard = collisions[np.isfinite(collisions["peak_force"])]
     ended, none = hard["t_end"][np.isfinite(hard["t_end"])], np.zeros(len(hard))
     at = np.concatenate([hard["t_start"], t, hard["t_peak"], ended])
     forces = np.concatenate([none, force, hard["peak_force"], none[: len(ended)]])

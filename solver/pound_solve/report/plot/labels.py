@@ -136,11 +136,11 @@ def _overlap(box: Array, others: Array) -> Flags:
     return overlaps
 
 
-def _nearer(box: Array, own: Array, anchors: Array) -> bool:
+def _nearer(box: Array, anchor: Array, anchors: Array) -> bool:
     """Whether the middle of a box is nearer to another point than to its own."""
     middle = 0.5 * (box[:2] + box[2:])
     away = np.hypot(*(anchors - middle).T)
-    return bool((away < np.hypot(*(own - middle)) - SAME).any())
+    return bool((away < np.hypot(*(anchor - middle)) - SAME).any())
 
 
 def _crossed(box: Array, lines: Array) -> Flags:

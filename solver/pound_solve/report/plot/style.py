@@ -27,8 +27,8 @@ LONGEST = 26  #: characters of a name in a legend
 
 
 @contextmanager
-def sheet(own: Path | None = None) -> Iterator[None]:
-    """Draw within in the style of the program, below one's own.
+def sheet(path: Path | None = None) -> Iterator[None]:
+    """Apply the program's style within the block, with the user's style sheet `path` laid over it.
 
     Raises
     ------
@@ -45,10 +45,10 @@ def sheet(own: Path | None = None) -> Iterator[None]:
     ):
         # a character that the font lacks is drawn as a box; SVG files hold the text
         warnings.filterwarnings("ignore", r"Glyph \d+ |Matplotlib currently does not support", UserWarning)
-        if own is None:
+        if path is None:
             yield
             return
-        with rc_context(_settings(own)):
+        with rc_context(_settings(path)):
             yield
 
 

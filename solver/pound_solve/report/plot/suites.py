@@ -109,11 +109,11 @@ def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) ->
 
 
 @style.sheet()
-def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
+def fragilities(fits: Sequence[Fragilities], level: str, path: Path) -> None:
     """Draw the curves with what was observed, and the median with its interval; see `incremental`."""
     figure = style.figure(6.4, 4.2)
     axes = style.grid(figure.add_subplot(), level, "probability [-]")
-    for k, fragility in enumerate(found):
+    for k, fragility in enumerate(fits):
         look = style.stroke(k)
         axes.plot(fragility.levels, fragility.probability, **look, label=fragility.title)
         axes.plot(*fragility.observed, "o", color=look["color"], markersize=3)
@@ -125,10 +125,10 @@ def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
 
 
 @style.sheet()
-def separations(found: Sequence[Contacts], gap: str, path: Path) -> None:
+def separations(cases: Sequence[Contacts], gap: str, path: Path) -> None:
     """Draw the probability of contact against the gap, with the gaps of the rules; see `incremental`."""
-    figure, all_axes = style.panels(len(found), "", (4.2, 3.4))
-    for n, (axes, case) in enumerate(zip(all_axes, found)):
+    figure, all_axes = style.panels(len(cases), "", (4.2, 3.4))
+    for n, (axes, case) in enumerate(zip(all_axes, cases)):
         style.grid(axes, gap, "" if n else "probability of contact [-]")
         share, low, high = case.seen.T
         axes.fill_between(case.gaps, low, high, color="0.88", step="post", label="interval")

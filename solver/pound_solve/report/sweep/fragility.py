@@ -19,9 +19,9 @@ POINTS: Final = 200  #: of a curve that is drawn
 DIGITS: Final = 4  #: of probabilities that are printed
 
 
-def rows(found: Sequence[Fitted]) -> Iterator[Row]:
+def rows(fits: Sequence[Fitted]) -> Iterator[Row]:
     """One row for each fragility."""
-    for f in found:
+    for f in fits:
         fit = f.fragility
         if fit is None:
             yield f.case, f.limit, f.method, 0, *([math.nan] * 6), f.remark
@@ -34,22 +34,22 @@ def _finite(x: float) -> float:
     return x if math.isfinite(x) else math.nan
 
 
-def report(sweep: Sweep, asked: Asked, found: Sequence[Fitted], at: Sequence[float]) -> Iterator[str]:
+def report(sweep: Sweep, asked: Asked, fits: Sequence[Fitted], at: Sequence[float]) -> Iterator[str]:
     """The table of fragilities, and their probabilities at some levels, as the report prints tables."""
     units, unit = units_of(sweep), unit_of(sweep, asked)
-    sure = next((f.fragility.level for f in found if f.fragility is not None), math.nan)
+    sure = next((f.fragility.level for f in fits if f.fragility is not None), math.nan)
     yield f"Demand: {asked.quantity} {asked.label}".rstrip()
-    yield _base(sweep, found)
+    yield _base(sweep, fits)
     yield ""
-    yield from printed(units, fragility_table(unit, sure), rows(found))
+    yield from printed(units, fragility_table(unit, sure), rows(fits))
     if at:
         yield ""
-        yield from printed(units, probability_table(unit, at), _probable(found, at))
+        yield from printed(units, probability_table(unit, at), _probable(fits, at))
 
 
-def _base(sweep: Sweep, found: Sequence[Fitted]) -> str:
+def _base(sweep: Sweep, fits: Sequence[Fitted]) -> str:
     """The runs that the fragilities rest on, in words."""
-    seen = {f.case: f.observed for f in found}
+    seen = {f.case: f.observed for f in fits}
     levels = sorted({x for observed in seen.values() for x, _, _ in observed})
     runs = sum(count for observed in seen.values() for _, _, count in observed)
     which = (
@@ -58,19 +58,19 @@ def _base(sweep: Sweep, found: Sequence[Fitted]) -> str:
     return f"Runs: {runs} of the {len(sweep)} in the sweep; {which}"
 
 
-def _probable(found: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:
+def _probable(fits: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:
     """Probabilities at some levels."""
-    for f in found:
+    for f in fits:
         values = f.fragility.probability(at) if f.fragility else np.full(len(at), math.nan)
         yield f.case, f.limit, *np.round(values, DIGITS).tolist()
 
 
-def drawn(found: Sequence[Fitted]) -> list[suites.Fragilities]:
+def drawn(fits: Sequence[Fitted]) -> list[suites.Fragilities]:
     """What a picture shows of the fragilities that could be fitted."""
     curves = []
-    most = max((x for f in found for x, _, _ in f.observed), default=0.0)
+    most = max((x for f in fits for x, _, _ in f.observed), default=0.0)
     at = np.linspace(0.0, most, POINTS)[1:]
-    for f in found:
+    for f in fits:
         if f.fragility is not None:
             limit = "" if math.isnan(f.limit) else f"limit {f.limit:g}"
             level, exceeded, runs = np.array(f.observed, np.float64).T
@@ -122,6 +122,6 @@ def probability_table(unit: str, at: Sequence[float]) -> Table[Sequence[Fitted]]
             Column("limit", "limit", unit, "given", doc="of the demand"),
             *(Column(f"p{n}", f"at\n{x:g}", "-", "short", doc="probability") for n, x in enumerate(at)),
         ),
-        rows=lambda found: _probable(found, at),
+        rows=lambda fits: _probable(fits, at),
         sample=(("gap=0.02", 0.01, *(0.5 for _ in at)),),
     )

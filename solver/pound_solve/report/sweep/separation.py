@@ -21,9 +21,9 @@ STEPS: Final = 8  #: gaps of the table where none are given
 POINTS: Final = 400  #: of a drawn curve
 
 
-def needs(found: Sequence[Group]) -> Iterator[Row]:
+def needs(groups: Sequence[Group]) -> Iterator[Row]:
     """One row for each group: what the runs needed."""
-    for g in found:
+    for g in groups:
         row: list[float] = [math.nan] * 3
         if len(g.needed) and not len(g.met):
             row = fractiles_of(g.needed).tolist()
@@ -48,9 +48,9 @@ def _remark(g: Group) -> str:
     return "; ".join(remarks)
 
 
-def probabilities(found: Sequence[Group], options: Options) -> Iterator[Row]:
+def probabilities(groups: Sequence[Group], options: Options) -> Iterator[Row]:
     """Rows of every group: its rules, then the gaps that are asked for."""
-    for g in found:
+    for g in groups:
         asked = [("", "", gap) for gap in options.gaps or _steps(g)]
         for name, source, gap in (*((r.name, r.source, x) for r, x in zip(RULES, g.rules)), *asked):
             count, total = g.contacts(gap)
@@ -65,35 +65,35 @@ def _steps(g: Group) -> list[float]:
     return np.linspace(0.0, most, STEPS + 1)[1:].tolist() if most > 0.0 else []
 
 
-def report(sweep: Sweep, found: Sequence[Group], options: Options) -> Iterator[str]:
+def report(sweep: Sweep, groups: Sequence[Group], options: Options) -> Iterator[str]:
     """Both tables, as the report prints tables; that of probabilities for all contacts together."""
     units, level = units_of(sweep), measure(sweep)
-    yield from printed(units, needed_table(level, options.level), needs(found))
+    yield from printed(units, needed_table(level, options.level), needs(groups))
     yield ""
-    rows = probabilities(_together(found), options)
+    rows = probabilities(_together(groups), options)
     yield from printed(units, probability_table(level, options.level), rows)
 
 
-def _together(found: Sequence[Group]) -> list[Group]:
+def _together(groups: Sequence[Group]) -> list[Group]:
     """Every case and level once, with all its contacts."""
-    several = {(g.case, g.level) for g in found if g.contact == ANY}
-    return [g for g in found if g.contact == ANY or (g.case, g.level) not in several]
+    several = {(g.case, g.level) for g in groups if g.contact == ANY}
+    return [g for g in groups if g.contact == ANY or (g.case, g.level) not in several]
 
 
-def variables(sweep: Sweep, found: Sequence[Group], options: Options) -> dict[str, Variable]:
+def variables(sweep: Sweep, groups: Sequence[Group], options: Options) -> dict[str, Variable]:
     """The table of probabilities as columns of a file."""
     table, units = probability_table(measure(sweep), options.level), units_of(sweep)
-    columns = zip(*probabilities(found, options))
+    columns = zip(*probabilities(groups, options))
     return {
         c.name: Variable(np.array(values, object if c.is_text else None), "", units.text(c.unit), c.doc)
         for c, values in zip(table.columns, columns)
     }
 
 
-def drawn(sweep: Sweep, found: Sequence[Group], options: Options) -> list[suites.Contacts]:
+def drawn(sweep: Sweep, groups: Sequence[Group], options: Options) -> list[suites.Contacts]:
     """What a picture shows: every case and level with all its contacts together."""
     panels = []
-    for g in _together(found):
+    for g in _together(groups):
         rules: dict[float, list[str]] = {}
         for rule, gap in zip(RULES, g.rules):
             if math.isfinite(gap):
@@ -166,7 +166,7 @@ def probability_table(measure: str, level: float) -> Table[Sequence[Group]]:
             Column("high", "to", "-", "short", doc="exact interval of the probability"),
             Column("lognormal", "lognormal", "-", "short", doc="probability by the fitted distribution"),
         ),
-        rows=lambda found: probabilities(found, Options()),
+        rows=lambda groups: probabilities(groups, Options()),
         note="Rules take the mean peaks of the runs of a case and level in which nothing met. The interval "
         "is that of Clopper and Pearson.",
         sample=(

@@ -8,16 +8,16 @@ Cell = str | int | float
 CLOSE = 1e-9  #: share of the larger of two numbers by which steps of one range may differ
 
 
-def numbers(given: Sequence[int]) -> str:
+def numbers(values: Sequence[int]) -> str:
     """Whole numbers in their order, three or more of equal distance, or two neighbours, as a range."""
     ranges, i = list[str](), 0
-    while i < len(given):
-        end = _run(given, i)
-        if end - i > 2 or (end - i == 2 and given[i + 1] - given[i] == 1):
-            ranges.append(between(given[i], given[end - 1], given[i + 1] - given[i]))
+    while i < len(values):
+        end = _run(values, i)
+        if end - i > 2 or (end - i == 2 and values[i + 1] - values[i] == 1):
+            ranges.append(between(values[i], values[end - 1], values[i + 1] - values[i]))
         else:
             end = i + 1
-            ranges.append(str(given[i]))
+            ranges.append(str(values[i]))
         i = end
     return ", ".join(ranges)
 
@@ -27,10 +27,10 @@ def between(first: int, last: int, step: int) -> str:
     return f"{first} to {last}" + (f" by {step}" if abs(step) != 1 else "")
 
 
-def _run(given: Sequence[int], start: int) -> int:
+def _run(values: Sequence[int], start: int) -> int:
     """Where numbers of equal distance from one on end."""
-    end = min(start + 2, len(given))
-    while end < len(given) and given[end] - given[end - 1] == given[start + 1] - given[start] != 0:
+    end = min(start + 2, len(values))
+    while end < len(values) and values[end] - values[end - 1] == values[start + 1] - values[start] != 0:
         end += 1
     return end
 

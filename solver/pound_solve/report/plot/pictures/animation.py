@@ -95,13 +95,13 @@ class Stage:
 
     Parameters
     ----------
-    own : Film
+    scene : Film
     """
 
-    def __init__(self, own: Film) -> None:
-        s = self.structure = own.structure
-        self.film = own
-        self.figure = style.figure(*s.shape(), title=own.title)
+    def __init__(self, scene: Film) -> None:
+        s = self.structure = scene.structure
+        self.film = scene
+        self.figure = style.figure(*s.shape(), title=scene.title)
         self.axes = self.figure.add_subplot()
         s.frame(self.axes, 0.06 + SHARE)
         s.draw(self.axes, color="0.85", linewidth=0.8)
@@ -131,12 +131,10 @@ class Stage:
         self.axes.set_title(caption(film, k))
 
 
-def caption(own: Film, k: int) -> str:
+def caption(scene: Film, k: int) -> str:
     """Time, magnification, and the contacts that are closed."""
-    names = [name for name, closed in zip(own.contacts, own.closed[k]) if closed]
-    when = (
-        f"{own.time[k]:.2f} {own.structure.units.time}, displacements drawn {own.factor:.3g} times as large"
-    )
+    names = [name for name, closed in zip(scene.contacts, scene.closed[k]) if closed]
+    when = f"{scene.time[k]:.2f} {scene.structure.units.time}, displacements drawn {scene.factor:.3g} times as large"
     return f"{when}; closed: {', '.join(names)}" if names else when
 
 
@@ -159,12 +157,12 @@ def write(results: Results, choice: Choice, path: Path) -> None:
     style.film(stage.figure, stage.show, len(animation.time), path, RATE)
 
 
-def page(own: Film) -> str:
+def page(scene: Film) -> str:
     """A page that needs nothing else: the drawing, its numbers and what plays it."""
-    s = own.structure
-    places = {n: k for k, n in enumerate(own.nodes)}
+    s = scene.structure
+    places = {n: k for k, n in enumerate(scene.nodes)}
     still = [n for n in s.place if n not in places]
-    order = [*own.nodes, *still]
+    order = [*scene.nodes, *still]
     at = {n: k for k, n in enumerate(order)}
     digits = max(0, 5 - int(np.floor(np.log10(s.size))))
     data = {
@@ -177,12 +175,12 @@ def page(own: Film) -> str:
         "supports": [at[n] for n in s.place if {"X", "Y"} <= set(s.fixed[n])],
         "box": [*(s.low - 0.15 * s.size).tolist(), *(s.high + 0.15 * s.size).tolist()],
         "rate": RATE,
-        "captions": [caption(own, k) for k in range(len(own.time))],
-        "moved": np.round(own.moved, digits).reshape(len(own.time), -1).tolist(),
-        "closed": own.closed.astype(int).tolist(),
+        "captions": [caption(scene, k) for k in range(len(scene.time))],
+        "moved": np.round(scene.moved, digits).reshape(len(scene.time), -1).tolist(),
+        "closed": scene.closed.astype(int).tolist(),
     }  # fmt: skip
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
-    head = PAGE.read_text(encoding="utf-8").replace("{{title}}", escape(own.title))
+    head = PAGE.read_text(encoding="utf-8").replace("{{title}}", escape(scene.title))
     return head.replace("{{data}}", text)
 
 

@@ -51,24 +51,24 @@ def _title(results: Results, choice: Choice) -> str:
     return "Envelopes of the member forces"
 
 
-def panel(axes: Any, s: geometry.DrawnStructure, found: list[Line], quantity: str) -> None:
+def panel(axes: Any, s: geometry.DrawnStructure, members: list[Line], quantity: str) -> None:
     """Draw one force along all members; the largest and the smallest of each bear their values."""
     s.frame(axes, 0.06 + SHARE)
     s.draw(axes, color="0.6", linewidth=0.8)
-    low = min(float(line.low[quantity].min()) for line in found)
-    high = max(float(line.high[quantity].max()) for line in found)
+    low = min(float(line.low[quantity].min()) for line in members)
+    high = max(float(line.high[quantity].max()) for line in members)
     top = max(abs(low), abs(high)) or 1.0
-    lengths = [float(np.hypot(*(line.j - line.i))) for line in found]
+    lengths = [float(np.hypot(*(line.j - line.i))) for line in members]
     factor = min(SHARE * s.size, WIDEST * float(np.median(lengths))) / top
-    one = all(np.array_equal(line.low[quantity], line.high[quantity]) for line in found)
-    for line in found:
+    one = all(np.array_equal(line.low[quantity], line.high[quantity]) for line in members)
+    for line in members:
         both = ((line.high[quantity], style.BLUE), (line.low[quantity], style.RED))
         for values, colour in both[: 1 if one else 2]:
             base, edge = _outline(line, values, quantity, factor)
             axes.fill(*np.hstack([edge, base[:, ::-1]]), color=colour, alpha=0.18, linewidth=0)
             axes.plot(*np.hstack([base[:, :1], edge, base[:, -1:]]), color=colour, linestyle="-",
                       linewidth=0.8)  # fmt: skip
-    order = sorted(found, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max()))
+    order = sorted(members, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max()))
     for line in order[:MOST]:
         _values(axes, line, quantity, factor, 0.02 * top)
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
@@ -78,26 +78,26 @@ def panel(axes: Any, s: geometry.DrawnStructure, found: list[Line], quantity: st
     axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(told)}")
 
 
-def _outline(own: Line, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
+def _outline(line: Line, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
     """Points of a member's axis, and beside them those of its values, shape (2, n) each."""
-    along = (own.j - own.i) / max(float(np.hypot(*(own.j - own.i))), 1e-300)
+    along = (line.j - line.i) / max(float(np.hypot(*(line.j - line.i))), 1e-300)
     left = np.array([-along[1], along[0]]) * (-1.0 if quantity == "M" else 1.0)
-    base = own.i[:, None] + (own.j - own.i)[:, None] * own.x
+    base = line.i[:, None] + (line.j - line.i)[:, None] * line.x
     return base, base + factor * left[:, None] * values
 
 
-def _values(axes: Any, own: Line, quantity: str, factor: float, least: float) -> None:
+def _values(axes: Any, line: Line, quantity: str, factor: float, least: float) -> None:
     """Name the largest and the smallest value of a member, if they differ and are not small."""
     told: list[float] = []
     for values, at in (
-        (own.high[quantity], int(np.argmax(own.high[quantity]))),
-        (own.low[quantity], int(np.argmin(own.low[quantity]))),
+        (line.high[quantity], int(np.argmax(line.high[quantity]))),
+        (line.low[quantity], int(np.argmin(line.low[quantity]))),
     ):
         value = float(values[at])
         if abs(value) < least or any(abs(value - other) < least for other in told):
             continue
         told.append(value)
-        _, edge = _outline(own, values, quantity, factor)
+        _, edge = _outline(line, values, quantity, factor)
         labels.label(axes, edge[:, at], _text(value), fontsize=6)
 
 

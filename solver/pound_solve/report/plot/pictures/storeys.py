@@ -65,8 +65,8 @@ def panel(axes: Any, results: Results, names: list[str], quantity: str) -> None:
     axes.locator_params(axis="x", nbins=6)
 
 
-def _base(own: NDArray[Any]) -> float:
-    return float(own["level"][0] - own["height"][0])
+def _base(rows: NDArray[Any]) -> float:
+    return float(rows["level"][0] - rows["height"][0])
 
 
 def extremes(results: Results, name: str, quantity: str) -> tuple[Array, Array]:
