@@ -57,13 +57,13 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
     return results
 
 
-def _lay(own: Path, report: str) -> None:
+def _lay(path: Path, report: str) -> None:
     """Write a report under its name `partial`; nothing stays of one that finds no room."""
     try:
-        own.write_text(report, encoding="ascii", newline="\n")
-        hold(own)
+        path.write_text(report, encoding="ascii", newline="\n")
+        hold(path)
     except OSError:
-        own.unlink(missing_ok=True)
+        path.unlink(missing_ok=True)
         raise
 
 

@@ -257,12 +257,12 @@ def _write(file: h5py.File, sweep: Sweep) -> None:
                 dataset.dims[at].attach_scale(scales[axis])
 
 
-def _dataset(file: h5py.Group, name: str, own: Variable) -> h5py.Dataset:
+def _dataset(file: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
     """One dataset with its unit and its meaning."""
-    texts = own.values.dtype.kind == "O"
-    data = np.array([storable(v) for v in own.values.tolist()], object) if texts else own.values
+    texts = variable.values.dtype.kind == "O"
+    data = np.array([storable(v) for v in variable.values.tolist()], object) if texts else variable.values
     dataset = file.create_dataset(name, data=data, dtype=_TEXT if texts else None)
-    for key, value in (("units", own.unit), ("long_name", own.doc)):
+    for key, value in (("units", variable.unit), ("long_name", variable.doc)):
         if value:
             dataset.attrs[key] = value
     return dataset

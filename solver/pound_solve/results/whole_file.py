@@ -24,8 +24,8 @@ def partial(path: Path) -> Path:
     return path.with_name(f"{path.stem}.partial{path.suffix}")
 
 
-def make_way(path: Path, own: Path) -> None:
-    """See that an output file may take its name, and that its own in the meantime is free, see `free`.
+def make_way(path: Path, temporary: Path) -> None:
+    """Check that an output file may take its name, and free its temporary name, see `free`.
 
     Raises
     ------
@@ -34,11 +34,11 @@ def make_way(path: Path, own: Path) -> None:
     """
     if path.exists() and not path.is_file():
         raise OSError(errno.EEXIST, "a folder, a pipe or a device, not a file", str(path))
-    free(own)
+    free(temporary)
 
 
-def free(own: Path) -> None:
-    """Free the name of a file that is to be written of a link, which would lead elsewhere, and of a pipe,
+def free(path: Path) -> None:
+    """Remove what blocks the name of a file to be written: a link, which would lead elsewhere, or a pipe,
     which would wait for a reader.
 
     Raises
@@ -46,49 +46,50 @@ def free(own: Path) -> None:
     OSError
         A folder has the name.
     """
-    if own.is_symlink() or (own.exists() and not own.is_file()):
-        own.unlink()
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        path.unlink()
 
 
 @contextmanager
-def whole(path: Path, own: Path | None = None) -> Iterator[Path]:
-    """The name under which to write a file within the block; it takes its own where the block ends and the
-    disk holds all of it.
+def whole(path: Path, temporary: Path | None = None) -> Iterator[Path]:
+    """Yield the temporary name under which to write a file; at the end of the block, when the disk holds
+    all of it, the file is renamed to `path`.
 
     Parameters
     ----------
     path : Path
-    own : Path, optional
-        Another name than `partial` for the meantime, where several processes may write the same file.
+    temporary : Path, optional
+        Name while it is written, `partial` by default: another where several processes may write the same
+        file.
 
     Raises
     ------
     OSError
         It cannot be written; what stood at its name stands as before.
     """
-    own = own or partial(path)
-    make_way(path, own)
+    temporary = temporary or partial(path)
+    make_way(path, temporary)
     try:
-        yield own
-        hold(own)
-        os.replace(own, path)
+        yield temporary
+        hold(temporary)
+        os.replace(temporary, path)
     except BaseException as err:
-        own.unlink(missing_ok=True)
-        if isinstance(err, OSError) and err.filename in (None, str(own), own):
+        temporary.unlink(missing_ok=True)
+        if isinstance(err, OSError) and err.filename in (None, str(temporary), temporary):
             err.filename = str(path)
             err.filename2 = None
         raise
 
 
-def hold(own: Path) -> None:
-    """Have the disk hold a file; some tell only now that they have no room for it."""
-    with own.open("r+b") as file:
+def hold(path: Path) -> None:
+    """Flush a file to the disk; some file systems report only now that there is no room for it."""
+    with path.open("r+b") as file:
         os.fsync(file.fileno())
 
 
-def write(path: Path, data: bytes | memoryview, own: Path | None = None) -> None:
+def write(path: Path, data: bytes | memoryview, temporary: Path | None = None) -> None:
     """Write a file, see `whole`."""
-    with whole(path, own) as place:
+    with whole(path, temporary) as place:
         place.write_bytes(data)
 
 

@@ -350,11 +350,11 @@ class Writer:
                 self._aside("extremes", name, layout[name], rows)
             self._commit()
 
-    def _aside(self, group: str, name: str, own: HistoryLayout, rows: NDArray[Any]) -> None:
+    def _aside(self, group: str, name: str, layout: HistoryLayout, rows: NDArray[Any]) -> None:
         """Store rows of a history that are no samples in a group of their own."""
-        if 0 in own.shape:
+        if 0 in layout.shape:
             return
-        attributes = _complete(name, own)
+        attributes = _complete(name, layout)
         attributes["unit"] = [self._units.text(u) for u in attributes["unit"]]
         texts = {key: [storable(v) for v in attributes[key]] for key in ("labels", "unit")}
         self._put(group, name, np.asarray(rows, float), {**attributes, **texts})

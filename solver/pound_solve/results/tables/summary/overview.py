@@ -68,8 +68,8 @@ def contact_law(run: RunRecord) -> str:
     return _few(list(kinds), "kinds")
 
 
-def _few(found: list[str], what: str) -> str:
-    return "; ".join(found) if len(found) <= FEW else f"{len(found)} {what}, see the input"
+def _few(texts: list[str], what: str) -> str:
+    return "; ".join(texts) if len(texts) <= FEW else f"{len(texts)} {what}, see the input"
 
 
 def ground_motion(run: RunRecord, motion: Motion) -> str:
@@ -95,7 +95,7 @@ def response(run: RunRecord) -> Iterator[Row]:
     yield "error of the method", error_of(history.returned)
     yield "end of the history", f"{history.recorder.reached:.6g} {units.time}"
     if drifts := history.storey_drift_ratios():
-        name, ratio = max(drifts, key=lambda own: own[1])
+        name, ratio = max(drifts, key=lambda drift: drift[1])
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"
     elif history.items.buildings:
         seen = [ratio for ratio, _ in history.recorder.envelopes.total["drift"].largest()]
