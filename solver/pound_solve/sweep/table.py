@@ -110,18 +110,18 @@ def _inputs(study: Study) -> dict[str, Variable]:
 _ENDS = ("status", "message", "doubt", "reached", "cpu_seconds", "solve_seconds")
 
 
-def _ends(found: Sequence[Entry], units: Units) -> dict[str, Variable]:
+def _ends(entries: Sequence[Entry], units: Units) -> dict[str, Variable]:
     """How every run has ended."""
     return dict(
         zip(
             _ENDS,
             (
-                Variable(_texts(e.status for e in found), doc="done, stopped, failed or missing"),
-                Variable(_texts(e.message for e in found), doc="why it stopped or failed"),
-                Variable(_texts(e.doubt for e in found), doc="checks that call for a look"),
-                Variable(np.array([e.reached for e in found]), "", units.text("T"), "end of the history"),
-                Variable(np.array([e.cpu for e in found]), "", "s", "CPU time of the run"),
-                Variable(np.array([e.solve for e in found]), "", "s", "CPU time of its method"),
+                Variable(_texts(e.status for e in entries), doc="done, stopped, failed or missing"),
+                Variable(_texts(e.message for e in entries), doc="why it stopped or failed"),
+                Variable(_texts(e.doubt for e in entries), doc="checks that call for a look"),
+                Variable(np.array([e.reached for e in entries]), "", units.text("T"), "end of the history"),
+                Variable(np.array([e.cpu for e in entries]), "", "s", "CPU time of the run"),
+                Variable(np.array([e.solve for e in entries]), "", "s", "CPU time of its method"),
             ),
         )
     )

@@ -88,10 +88,10 @@ def _each(
     table: str,
     axis: str,
     label: Callable[[Fields], str | None],
-    own: Sequence[tuple[str, str, str, Callable[[Fields], float]]],
+    entries: Sequence[tuple[str, str, str, Callable[[Fields], float]]],
 ) -> Iterator[Quantity]:
     """Quantities of one table with the same labels."""
-    return (Quantity(name, axis, unit, doc, table, label, value) for name, unit, doc, value in own)
+    return (Quantity(name, axis, unit, doc, table, label, value) for name, unit, doc, value in entries)
 
 
 QUANTITIES: Final = (

@@ -166,21 +166,21 @@ class Suite:
                 elif measured > 0.0:
                     yield Shaking(record_file, level * context.gravity / measured, level)
 
-    def _measured(self, own: RecordFile, context: LoadingContext) -> float | None:
+    def _measured(self, source: RecordFile, context: LoadingContext) -> float | None:
         """Intensity of the record as it is [L/T^2]; None where its levels are factors."""
         if self.measure == "scale":
             return None
         try:
-            acceleration = unscaled(own, context).acceleration
+            acceleration = unscaled(source, context).acceleration
             if self.measure == "pga":
                 intensity = abs(acceleration.peak()[1])
             else:
                 intensity = float(pseudo_acceleration(acceleration, self.period, self.damping)[0, 0])
         except (RecordError, ValueError) as err:
-            self.document.mistake("S606", f"{own.name}: {err}", (*self.path, self.measure))
+            self.document.mistake("S606", f"{source.name}: {err}", (*self.path, self.measure))
             return 0.0
         if not intensity > 0.0:
-            message = f"{own.name} has no acceleration that could be scaled"
+            message = f"{source.name} has no acceleration that could be scaled"
             self.document.mistake("S606", message, (*self.path, FILES))
         return intensity
 
@@ -194,18 +194,18 @@ class UnreadableError(Exception):
 
 
 @lru_cache(maxsize=256)
-def card_of(own: RecordFile) -> Card:
+def card_of(source: RecordFile) -> Card:
     """RECORD card of a record, unscaled; its place is the study's.
 
     Raises
     ------
     UnreadableError
     """
-    model, diagnostics, _ = record_card.read(own.file, own.items, own.name)
+    model, diagnostics, _ = record_card.read(source.file, source.items, source.name)
     if model is None or has_errors(diagnostics):
         raise UnreadableError(diagnostics)
     (card,) = model.equake
-    return replace(card, span=own.place, spans={}) if own.place else replace(card, spans={})
+    return replace(card, span=source.place, spans={}) if source.place else replace(card, spans={})
 
 
 def scaled(shaking: Shaking) -> Card:
@@ -214,8 +214,8 @@ def scaled(shaking: Shaking) -> Card:
     return replace(card, values={**card.values, "SCALE": shaking.scale})
 
 
-def unscaled(own: RecordFile, context: LoadingContext) -> Motion:
+def unscaled(source: RecordFile, context: LoadingContext) -> Motion:
     """The motion of a record as it is."""
-    card = card_of(own)
+    card = card_of(source)
     motion: Motion = card.spec.impl(card.values, context)
     return motion

@@ -186,9 +186,9 @@ class _Reader:
         """A path of the study, which counts from its folder."""
         return (self.document.folder / os.path.expanduser(name)).absolute()
 
-    def _out(self, given: str) -> Path:
+    def _out(self, folder: str) -> Path:
         """Folder of the results."""
-        return self._beside(given or Path(self.document.name).stem + ".sweep")
+        return self._beside(folder or Path(self.document.name).stem + ".sweep")
 
     def _decks(self) -> Iterator[str]:
         """Paths of all decks; a pattern stands for the files that it fits."""
@@ -296,9 +296,9 @@ class _Reader:
             if read.model is not None:
                 self.models[deck] = read.model
 
-    def _told(self, found: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
+    def _told(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         """Note mistakes of a deck; those of a value at the study's item."""
-        for d in map(self._here, found):
+        for d in map(self._here, diagnostics):
             if d.severity == "error" and d not in self.document.found:
                 self.document.found.append(d)
         options = self._options()
@@ -309,10 +309,10 @@ class _Reader:
         values = {f"--set {name}": path for name, path in self._sources()}
         return {option(name).file: (name,) for name in ("method", "dt", "tol")} | values
 
-    def _here(self, found: Diagnostic) -> Diagnostic:
+    def _here(self, diagnostic: Diagnostic) -> Diagnostic:
         """What is found in a deck, at the item of the study whose value it is about."""
-        path = self._options().get(found.span.file) if found.span else None
-        return replace(found, span=self.document.place(path)) if path else found
+        path = self._options().get(diagnostic.span.file) if diagnostic.span else None
+        return replace(diagnostic, span=self.document.place(path)) if path else diagnostic
 
     def _tried(self, case: Case, combinations: Sequence[Params]) -> None:
         """Prepare the first run of a deck, and look whether every PARAM has an effect."""
