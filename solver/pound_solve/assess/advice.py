@@ -113,16 +113,16 @@ class Advice:
         return f"{target}: {name} ({self.trial.time:.3g} s)"
 
 
-def errors(found: Peaks, reference: Peaks) -> Errors:
+def errors(peaks: Peaks, reference: Peaks) -> Errors:
     """Largest difference of an extreme over the largest extreme of its kind and unit, by kind.
 
     NaN for a kind that nothing belongs to, or all of whose extremes are zero.
     """
     largest = dict.fromkeys(KINDS, math.nan)
     for (kind, unit), true in reference.items():
-        if (kind, unit) not in found:
+        if (kind, unit) not in peaks:
             continue
-        scale, off = float(np.abs(true).max()), float(np.abs(found[kind, unit] - true).max())
+        scale, off = float(np.abs(true).max()), float(np.abs(peaks[kind, unit] - true).max())
         if scale or off:
             ratio = off / scale if scale else math.inf
             largest[kind] = ratio if math.isnan(largest[kind]) else max(largest[kind], ratio)

@@ -259,24 +259,24 @@ def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
     no more.
     """
 
-    def holds(found: Found) -> bool:
-        return not any(check.subject is Subject.ENERGY for check in found.looks)
+    def holds(result: Found) -> bool:
+        return not any(check.subject is Subject.ENERGY for check in result.looks)
 
     deck = case.like[0] or case.deck
-    found = run(case, deck, method := "EXACT REFINE=3")
-    if not (found.stop or found.wrong) and holds(found):
-        return found, method, 0.0
+    result = run(case, deck, method := "EXACT REFINE=3")
+    if not (result.stop or result.wrong) and holds(result):
+        return result, method, 0.0
     step, before = min(case.step, STEP) / 16.0, NOTHING
-    while not len(found.t) or found.t[-1] / step < MOST_STEPS:
-        found = run(case, deck, method := f"NEWMARK DT={step!r}")
-        if found.stop or found.wrong:
+    while not len(result.t) or result.t[-1] / step < MOST_STEPS:
+        result = run(case, deck, method := f"NEWMARK DT={step!r}")
+        if result.stop or result.wrong:
             return None
-        if len(before.t) and not found.looks:  # steps that do not resolve a collision may agree by chance
-            changes = [shares(found.u, before.u), shares(found.f, before.f)]
-            changes += [off for off, _ in promised(found, before, SETTLED).values()]
+        if len(before.t) and not result.looks:  # steps that do not resolve a collision may agree by chance
+            changes = [shares(result.u, before.u), shares(result.f, before.f)]
+            changes += [off for off, _ in promised(result, before, SETTLED).values()]
             if max(x.max(initial=0.0) for x in changes) <= SETTLED:
-                return found, method, SETTLED
-        step, before = step / 4.0, found
+                return result, method, SETTLED
+        step, before = step / 4.0, result
     return None
 
 
@@ -326,7 +326,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
 
 
 def compared(
-    run: Runner, case: Case, method: str, found: Found, right: tuple[Found, str, float]
+    run: Runner, case: Case, method: str, result: Found, right: tuple[Found, str, float]
 ) -> tuple[Offs, str]:
     """Errors against a reference, as far as that is known (see `known`); and in words how far."""
     best, by, doubt = right
@@ -341,7 +341,7 @@ def compared(
             by_quantity |= promised(other, best, AUTO_WITHIN + doubt)
         return by_quantity
 
-    offs = errors(found, 1.0)
+    offs = errors(result, 1.0)
     if not beyond(offs):
         return offs, ""
     share = max(NUDGE * within, BLIND if doubt else 0.0)
@@ -365,29 +365,29 @@ def allowed(case: Case, method: str) -> float:
     return AUTO_WITHIN if method == "AUTO" and not whole(case) else case.within
 
 
-def forces(found: Found, right: Found, within: float) -> Offs:
+def forces(result: Found, right: Found, within: float) -> Offs:
     """Errors of forces, where both runs have the same springs and contacts."""
     offs = {}
-    if found.f.shape == right.f.shape:
-        offs[SPRINGS] = shares(found.f, right.f), FASTER * within
-    if found.blows.shape == right.blows.shape:
-        offs[f"{PEAKS}contact forces"] = blows(found, right), FASTER * within
+    if result.f.shape == right.f.shape:
+        offs[SPRINGS] = shares(result.f, right.f), FASTER * within
+    if result.blows.shape == right.blows.shape:
+        offs[f"{PEAKS}contact forces"] = blows(result, right), FASTER * within
     return offs
 
 
-def blows(found: Found, right: Found) -> Array:
+def blows(result: Found, right: Found) -> Array:
     """Errors of the largest contact forces, of which those that are rounding have none."""
     storey = STOREY * float(np.abs(right.u).max(initial=0.0))
     size = np.maximum(np.abs(right.blows), ROUNDING * storey)
-    return parts(found.blows, right.blows, 0.05, size)
+    return parts(result.blows, right.blows, 0.05, size)
 
 
-def promised(found: Found, right: Found, within: float) -> Offs:
+def promised(result: Found, right: Found, within: float) -> Offs:
     """Errors of the figures that AUTO brings to its tolerance (see `auto`)."""
     swings = np.abs(right.swings).max(axis=1, keepdims=True, initial=0.0)
     return {
-        f"{PEAKS}deformations": (parts(found.swings, right.swings, 1e-6, swings), within),
-        f"{PEAKS}contact forces": (blows(found, right), within),
+        f"{PEAKS}deformations": (parts(result.swings, right.swings, 1e-6, swings), within),
+        f"{PEAKS}contact forces": (blows(result, right), within),
     }
 
 
@@ -400,9 +400,9 @@ def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Ar
     return np.asarray(np.abs(x - right) / np.where(size > 0.0, size, 1.0))
 
 
-def turns(found: Found) -> Flags:
+def turns(result: Found) -> Flags:
     """Times at which a body all but stands still, shape (n_times,): steps may not see that a law turns."""
-    speed = np.abs(found.v)
+    speed = np.abs(result.v)
     return np.asarray((speed < BACK * speed.max(axis=0, initial=0.0)).any(axis=1))
 
 
