@@ -69,11 +69,11 @@ class Curve:
         case: str,
         record: str,
         levels: Iterable[float],
-        found: Iterable[float],
+        values: Iterable[float],
         from_rest: bool = False,
     ) -> Self:
         """The curve of some runs by their levels and demands."""
-        pairs = sorted(zip(levels, found))
+        pairs = sorted(zip(levels, values))
         points = tuple(Point(float(x), float(d)) for x, d in pairs if not math.isnan(d))
         return cls(case, record, points, len(pairs) - len(points), from_rest)
 

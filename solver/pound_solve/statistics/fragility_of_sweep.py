@@ -56,25 +56,25 @@ class Fitted(NamedTuple):
     observed: tuple[tuple[float, int, int], ...]
 
 
-def by_capacities(own: Sequence[Curve], limit: float, level: float) -> Fragility:
+def by_capacities(records: Sequence[Curve], limit: float, level: float) -> Fragility:
     """Of the levels at which the records reach the limit."""
-    demands = [p.demand for c in own for p in c.points if math.isfinite(p.demand)]
+    demands = [p.demand for c in records for p in c.points if math.isfinite(p.demand)]
     in_steps = all(d == round(d) for d in demands)  # as counts and indicators are
-    pairs = [capacity(c.points, STOPS, limit, in_steps, c.from_rest) for c in own if c.points]
+    pairs = [capacity(c.points, STOPS, limit, in_steps, c.from_rest) for c in records if c.points]
     known = [low for low, high in pairs if low == high]
     never = [low for low, high in pairs if 0.0 < low < high == math.inf]
     return from_capacities(known, never, [pair for pair in pairs if pair[0] < pair[1] < math.inf], level)
 
 
-def by_stripes(own: Sequence[Curve], limit: float, level: float) -> Fragility:
+def by_stripes(records: Sequence[Curve], limit: float, level: float) -> Fragility:
     """Of the runs at every level that exceed the limit."""
-    levels, exceeded, runs = zip(*counts(own, limit))
+    levels, exceeded, runs = zip(*counts(records, limit))
     return from_stripes(levels, exceeded, runs, level)
 
 
-def by_cloud(own: Sequence[Curve], limit: float, level: float) -> Fragility:
+def by_cloud(records: Sequence[Curve], limit: float, level: float) -> Fragility:
     """Of the demands of all runs that stand."""
-    points = [p for c in own for p in c.points if 0.0 < p.demand < math.inf]
+    points = [p for c in records for p in c.points if 0.0 < p.demand < math.inf]
     if not math.isfinite(limit):
         raise FragilityError("a cloud has no collapse: take stripes or capacities")
     return from_cloud([p.level for p in points], [p.demand for p in points], limit, level)
@@ -85,20 +85,20 @@ METHODS: Final[Mapping[str, Callable[[Sequence[Curve], float, float], Fragility]
 )
 
 
-def counts(own: Sequence[Curve], limit: float) -> tuple[tuple[float, int, int], ...]:
+def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, int], ...]:
     """Every level, the runs there that reach the limit, and all."""
-    points = [p for c in own for p in c.points]
+    points = [p for c in records for p in c.points]
     return tuple(
         (x, sum(p.demand >= limit for p in points if p.level == x), sum(p.level == x for p in points))
         for x in sorted({p.level for p in points})
     )
 
 
-def suited(own: Sequence[Curve]) -> str:
+def suited(records: Sequence[Curve]) -> str:
     """Method for some curves: capacities where each record has several levels, stripes where all have the
     same two, else a cloud.
     """
-    levels = [tuple(p.level for p in c.points) for c in own if c.points]
+    levels = [tuple(p.level for p in c.points) for c in records if c.points]
     if levels and min(map(len, levels)) >= FEWEST:
         return "capacities"
     return "stripes" if len(set(levels)) == 1 and len(levels[0]) > 1 else "cloud"
@@ -145,26 +145,26 @@ def fit(
 
 
 def _fitted(
-    case: str, own: Sequence[Curve], limit: float, method: str, level: float, known: float
+    case: str, records: Sequence[Curve], limit: float, method: str, level: float, known: float
 ) -> Fitted:
     """One fragility, of limits up to the largest of which the runs tell."""
     remarks, fragility = [], None
     try:
         if known < limit:
             raise FragilityError(f"met at a gap of {known:.6g}: wider gaps are not known")
-        fragility = METHODS[method](own, limit, level)
+        fragility = METHODS[method](records, limit, level)
     except FragilityError as err:
         remarks.append(str(err))
     if fragility is not None and fragility.count < FEW:
         remarks.append(f"fewer than {FEW} data")
-    below = sum(c.from_rest and limit <= c.points[0].demand < math.inf for c in own if c.points)
+    below = sum(c.from_rest and limit <= c.points[0].demand < math.inf for c in records if c.points)
     if fragility is not None and method == "capacities" and below:
         remarks.append(f"below the lowest level, in proportion to it: {below}")
-    endless = sum(math.isinf(p.demand) for c in own for p in c.points)
+    endless = sum(math.isinf(p.demand) for c in records for p in c.points)
     if method == "cloud" and endless:
         what = "stopped runs" if known == math.inf else "runs that met"
         remarks.append(f"{what}, which are not in the cloud: {endless}")
-    if missing := sum(c.left_out for c in own):
+    if missing := sum(c.left_out for c in records):
         remarks.append(f"runs that failed or are missing: {missing}")
     shown = limit if math.isfinite(limit) else math.nan
-    return Fitted(case, shown, method, fragility, "; ".join(remarks), counts(own, limit))
+    return Fitted(case, shown, method, fragility, "; ".join(remarks), counts(records, limit))

@@ -112,13 +112,13 @@ def groups(sweep: Sweep, options: Options) -> list[Group]:
 
 
 def _contacts(
-    sweep: Sweep, case: str, level: float, own: Array, asked: int, options: Options
+    sweep: Sweep, case: str, level: float, runs: Array, asked: int, options: Options
 ) -> Iterator[Group]:
     """The contacts of one case and level, which has runs of some numbers."""
-    needed, given_gap, u1, u2, rho = (sweep[name][own] for name in NEEDS)
+    needed, given_gap, u1, u2, rho = (sweep[name][runs] for name in NEEDS)
     there = ~np.isnan(given_gap).all(axis=0)  # contacts of this deck
     names = [n for n, is_there in zip(sweep.labels["contact"], there) if is_there]
-    if not names or not len(own):
+    if not names or not len(runs):
         return
     needed, given_gap, u1, u2, rho = (x[:, there] for x in (needed, given_gap, u1, u2, rho))
     free = ~np.isnan(needed).any(axis=1)
@@ -131,7 +131,7 @@ def _contacts(
 
     def group(contact: str, of: Array, rules: Array) -> Group:
         fitted = _fit(of, met, options.level)
-        return Group(case, level, contact, of, met, asked - len(own), tuple(rules.tolist()), fitted)
+        return Group(case, level, contact, of, met, asked - len(runs), tuple(rules.tolist()), fitted)
 
     if len(names) > 1:
         yield group(ANY, needed[free].max(axis=1), gaps.max(axis=0))
