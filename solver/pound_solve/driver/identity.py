@@ -49,10 +49,10 @@ def _text(value: object) -> str:
     return ",".join(map(_text, value)) if isinstance(value, tuple) else str(value).replace(" ", "_")
 
 
-def differences(own: Mapping[str, str], saved: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def differences(present: Mapping[str, str], saved: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     """Parts that differ, each with what is here and what was saved."""
-    for name in dict.fromkeys((*own, *saved)):
-        here, there = own.get(name, ""), saved.get(name, "")
+    for name in dict.fromkeys((*present, *saved)):
+        here, there = present.get(name, ""), saved.get(name, "")
         if here != there:
             a, b = here.split(), there.split()
             news, olds = [x for x in a if x not in b], [x for x in b if x not in a]

@@ -38,7 +38,7 @@ def context(model: Model, request: Request) -> LoadingContext:
     )
 
 
-def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Motion]:
+def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Motion]:
     """Ground motions of all EQUAKE cards, a wave as one for each place."""
     motions: list[Motion] = []
     place = {node.id: node.x for node in model.nodes.values()}
@@ -46,21 +46,21 @@ def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic])
     whole = [card for card in model.equake if card["SUPPORTS"] is None]
     if apart and whole:
         message = "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none"
-        found.append(Diagnostic("R405", message, whole[0].span))
+        diagnostics.append(Diagnostic("R405", message, whole[0].span))
     for card in model.equake:
-        motion: Motion | None = _built(card, surroundings, found)
+        motion: Motion | None = _built(card, surroundings, diagnostics)
         if motion is None:
             continue
-        found += [
+        diagnostics += [
             Diagnostic("R404", w, card.span, severity="warning") for w in motion.info.get("warnings", ())
         ]
-        _tell(card, motion.info, found)
+        _tell(card, motion.info, diagnostics)
         ways = {"XYR"[d] for d in motion.directions}
         for node in motion.supports or ():
             if not ways & set(model.nodes[node].fixed):
                 message = f"node {node} is not fixed along {motion.direction}: a support that moves must be"
-                found.append(Diagnostic("R405", message, card.place("SUPPORTS")))
-        found += _cut_short(model, card, motion)
+                diagnostics.append(Diagnostic("R405", message, card.place("SUPPORTS")))
+        diagnostics += _cut_short(model, card, motion)
         motions += fronts(motion, place)
     return motions
 
@@ -80,31 +80,33 @@ def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]
             yield Diagnostic("R412", message, history.span, hint, "warning")
 
 
-def forces(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Force]:
+def forces(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Force]:
     """Forces in time of all FORCES cards."""
     forces: list[Force] = []
     for card in model.forces:
-        force: Force | None = _built(card, surroundings, found)
+        force: Force | None = _built(card, surroundings, diagnostics)
         if force is not None:
-            _tell(card, force.info, found)
+            _tell(card, force.info, diagnostics)
             forces.append(force)
     return forces
 
 
-def _tell(card: Card, info: Mapping[str, Any], found: list[Diagnostic]) -> None:
+def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) -> None:
     """Warn where the record of a card contradicts its header."""
     notes = info.get("notes", ())
     cuts = info.get("cuts", ())
-    found += [Diagnostic("R412", what, card.place(item), cure, "warning") for what, item, cure in cuts]
-    found += [Diagnostic("R409", n, card.place("FILE"), severity="warning") for n in notes]
+    diagnostics += [
+        Diagnostic("R412", what, card.place(item), cure, "warning") for what, item, cure in cuts
+    ]
+    diagnostics += [Diagnostic("R409", n, card.place("FILE"), severity="warning") for n in notes]
 
 
-def _built(card: Card, surroundings: LoadingContext, found: list[Diagnostic]) -> Any:
+def _built(card: Card, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> Any:
     """What a card of EQUAKE or FORCES makes; None where it has a mistake."""
     try:
         return card.spec.impl(card.values, surroundings)
     except RecordError as err:
-        found.append(Diagnostic(err.code, err.message, card.place(err.item), hint=err.hint))
+        diagnostics.append(Diagnostic(err.code, err.message, card.place(err.item), hint=err.hint))
         return None
 
 
@@ -113,7 +115,7 @@ def saved_state(
     request: Request,
     motions: Sequence[Motion],
     forces: Sequence[Force],
-    found: list[Diagnostic],
+    diagnostics: list[Diagnostic],
 ) -> dict[str, Array]:
     """State of the results file that a history goes on from.
 
@@ -121,42 +123,44 @@ def saved_state(
     ----------
     motions, forces : sequence
         Those of this deck.
-    found : list of Diagnostic
+    diagnostics : list of Diagnostic
         Gets what keeps the state from being used.
     """
     for card in model.analyses:
         if card.spec.name == "HISTORY" and card["RESTART"]:
             signature = identity(model, motions, forces)
-            return _taken_up(card, Path(request.deck).parent / card["RESTART"], signature, found)
+            return _taken_up(card, Path(request.deck).parent / card["RESTART"], signature, diagnostics)
         if card.spec.name == "HISTORY" and card["NEW"] != "NOTHING":
-            found.append(Diagnostic("R406", "NEW stands beside RESTART only", card.place("NEW")))
+            diagnostics.append(Diagnostic("R406", "NEW stands beside RESTART only", card.place("NEW")))
     return {}
 
 
-def _taken_up(card: Card, path: Path, own: Mapping[str, str], found: list[Diagnostic]) -> dict[str, Array]:
+def _taken_up(
+    card: Card, path: Path, signature: Mapping[str, str], diagnostics: list[Diagnostic]
+) -> dict[str, Array]:
     """State of a results file; its time is zero where another motion begins."""
     place, message, hint = card.place("RESTART"), "", ""
     try:
         with Results.open(path) as results:
             state, saved, version = results.restart(), results.identity(), results.program_version
     except ResultsError as err:
-        found.append(Diagnostic("R406", str(err), place))
+        diagnostics.append(Diagnostic("R406", str(err), place))
         return {}
     if not state:
         message = f"{path} holds no state to go on from"
     elif version.split(".")[:2] != __version__.split(".")[:2]:  # the variables of laws may differ
         message = f"{path} was written by version {version}, this is {__version__}: run its deck again"
     if message:
-        found.append(Diagnostic("R406", message, place))
+        diagnostics.append(Diagnostic("R406", message, place))
         return {}
-    differ = dict(differences(own, saved))
+    differ = dict(differences(signature, saved))
     if card["NEW"] == "MOTION":
         state["time"] = np.zeros(1)
         differ = {name: what for name, what in differ.items() if not name.startswith(MOTION)}
     elif differ and all(name.startswith(MOTION) for name in differ):
         hint = "write NEW=MOTION beside RESTART if another earthquake follows the first"
     for name, what in list(differ.items())[:MOST]:
-        found.append(Diagnostic("R408", f"{name} is not that of {path}: {what}", place, hint))
+        diagnostics.append(Diagnostic("R408", f"{name} is not that of {path}: {what}", place, hint))
     if len(differ) > MOST:
-        found.append(Diagnostic("R408", f"and {len(differ) - MOST} other parts", place, hint))
+        diagnostics.append(Diagnostic("R408", f"and {len(differ) - MOST} other parts", place, hint))
     return state

@@ -19,12 +19,12 @@ from pound_solve.driver.request import Request
 MEETING: Final = ("DIRECTION", "SUPPORTS", "WAVE", "ABOUT")
 
 
-def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model:
+def overridden(model: Model, request: Request, diagnostics: list[Diagnostic]) -> Model:
     """The model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards and with the motion of the
-    request; mistakes go into `found`.
+    request; mistakes go into `diagnostics`.
     """
     if request.motion is not None:
-        model = with_motion(model, request.motion, found)
+        model = with_motion(model, request.motion, diagnostics)
     numbers = {"DT": request.dt, "TOL": request.tol}
     asked = {item: value for item, value in numbers.items() if value is not None}
     if request.method is None and not asked:
@@ -32,19 +32,19 @@ def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model
     cards = []
     for card in model.analyses:
         if card.spec.name == "HISTORY":
-            changed = _changed(card, request.method, asked, found)
+            changed = _changed(card, request.method, asked, diagnostics)
             if changed is None:
                 return model
             card = changed
         cards.append(card)
     if all(card.spec.name != "HISTORY" for card in cards):
         if request.method is not None:
-            _method(request.method, found)
-        found += _told(asked, None)
+            _method(request.method, diagnostics)
+        diagnostics += _told(asked, None)
     return replace(model, analyses=tuple(cards))
 
 
-def with_motion(model: Model, motion: Card, found: list[Diagnostic]) -> Model:
+def with_motion(model: Model, motion: Card, diagnostics: list[Diagnostic]) -> Model:
     """The model with a motion in place of the one under EQUAKE.
 
     The record is the other motion's, with all that tells how it is read and scaled.  How it meets the
@@ -55,7 +55,7 @@ def with_motion(model: Model, motion: Card, found: list[Diagnostic]) -> Model:
             f"a motion takes the place of the one line under EQUAKE, and there are {len(model.equake)}"
         )
         place = model.equake[1].span if model.equake else None
-        found.append(Diagnostic("R410", message, place, "name the record by a PARAM"))
+        diagnostics.append(Diagnostic("R410", message, place, "name the record by a PARAM"))
         return model
     (old,) = model.equake
     values = {**motion.values, **{item: old.values[item] for item in MEETING}}
@@ -63,32 +63,32 @@ def with_motion(model: Model, motion: Card, found: list[Diagnostic]) -> Model:
 
 
 def _changed(
-    card: Card, name: str | None, asked: Mapping[str, float], found: list[Diagnostic]
+    card: Card, name: str | None, asked: Mapping[str, float], diagnostics: list[Diagnostic]
 ) -> Card | None:
     """HISTORY card with the method and the items that are asked for; None where it has a mistake."""
-    method = _method(name or card["METHOD"], found)
+    method = _method(name or card["METHOD"], diagnostics)
     if method is None:
         return None
     told = list(_told(asked, method))
-    found += told
+    diagnostics += told
     if has_errors(told):
         return None
     card = with_method(card, method, asked)
     missing = [f.name for f in method.fields if card.values[f.name] is REQUIRED]
     if missing:
         message = f"{method.name} needs {', '.join(missing)}"
-        found.append(Diagnostic("P213", message, option("METHOD"), "give --dt; in a study dt"))
+        diagnostics.append(Diagnostic("P213", message, option("METHOD"), "give --dt; in a study dt"))
         return None
     return card
 
 
-def _method(name: str, found: list[Diagnostic]) -> Spec | None:
+def _method(name: str, diagnostics: list[Diagnostic]) -> Spec | None:
     """Method of a name; None, with a mistake, where there is none."""
     methods = catalog().family("method")
     method = methods.get(name.upper())
     if method is None:
         message = f"{name[:60]} is no method: known methods are {', '.join(methods)}"
-        found.append(Diagnostic("P210", message, option("METHOD")))
+        diagnostics.append(Diagnostic("P210", message, option("METHOD")))
     return method
 
 
@@ -113,12 +113,12 @@ def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnosti
             yield Diagnostic("P211", message, option(item), severity="warning")
 
 
-def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
-    """HISTORY card with another method: what is given, else what the card's line says where the method has
-    such an item, else the method's defaults, which for the same item are other ones for each method.
+def with_method(card: Card, method: Spec, settings: Mapping[str, Any]) -> Card:
+    """HISTORY card with another method.  Its items are those of `settings`, else those that the card's line
+    gives, else the method's defaults, which may differ between methods for the same item.
     """
     items = {f.name: card.values[f.name] if f.name in card.spans else f.default for f in method.fields}
-    items |= {item: value for item, value in given.items() if item in items}
-    spans = dict(card.spans) | {item: option(item) for item in ("METHOD", *given)}
+    items |= {item: value for item, value in settings.items() if item in items}
+    spans = dict(card.spans) | {item: option(item) for item in ("METHOD", *settings)}
     values = {**card.values, **items, "METHOD": method.name}
     return replace(card, values=values, laws={"METHOD": (method,)}, spans=spans)

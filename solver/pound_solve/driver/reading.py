@@ -40,9 +40,11 @@ class Deck(NamedTuple):
     files: dict[str, str]
     translation: Translation | None = None
 
-    def moved(self, found: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
+    def moved(self, diagnostics: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
         """Diagnostics that name lines of the file `name` that the user has."""
-        return self.translation.moved(found, name + AS_READ) if self.translation else list(found)
+        return (
+            self.translation.moved(diagnostics, name + AS_READ) if self.translation else list(diagnostics)
+        )
 
 
 def is_deck(name: str) -> bool:
