@@ -87,9 +87,9 @@ def _kind(words: Words, section: str, catalog: Catalog, params: Params) -> tuple
     return member(word, family, catalog, params), family, at
 
 
-def _chosen(given: Words, known: dict[str, Field], catalog: Catalog, params: Params) -> dict[str, Spec]:
+def _chosen(words: Words, known: dict[str, Field], catalog: Catalog, params: Params) -> dict[str, Spec]:
     """Members of families that a line chooses; their fields, and those of defaults, join `known`."""
-    texts = {f.name: f.default for f in known.values() if isinstance(f.default, str)} | dict(given)
+    texts = {f.name: f.default for f in known.values() if isinstance(f.default, str)} | dict(words)
     chosen = {}
     for f in [f for f in known.values() if f.kind is Kind.FAMILY]:
         for word in texts.get(f.name, "").split(","):

@@ -75,15 +75,15 @@ def mentions(reading: Reading) -> list[Mention]:
     return [m for section, row in reading.rows for m in _of_row(row, section, reading, values)]
 
 
-def at(found: Sequence[Mention], place: Span) -> Mention | None:
+def at(all_mentions: Sequence[Mention], place: Span) -> Mention | None:
     """The shortest mention at a place; of a PARAM that stands for another name, that of the PARAM."""
-    here = [m for m in found if m.holds(place)]
+    here = [m for m in all_mentions if m.holds(place)]
     return min(here, key=lambda m: (m.span.end - m.span.column, not m.plain), default=None)
 
 
-def definitions(found: Sequence[Mention], of: Mention) -> list[Mention]:
+def definitions(all_mentions: Sequence[Mention], of: Mention) -> list[Mention]:
     """Where that name is defined."""
-    return [m for m in found if m.defines and m.sort == of.sort and of.key in m.keys]
+    return [m for m in all_mentions if m.defines and m.sort == of.sort and of.key in m.keys]
 
 
 def words_of(row: Row) -> list[tuple[str, str]]:

@@ -59,17 +59,17 @@ def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
     return edits
 
 
-def _same(reading: Reading, found: Sequence[Mention], place: Span) -> list[Mention]:
+def _same(reading: Reading, all_mentions: Sequence[Mention], place: Span) -> list[Mention]:
     """All mentions of what stands at a place, each replaceable."""
     unread = next((row for _, row in reading.rows if row.items is None), None)
     if unread:
         raise RenameError(f"line {unread.span.line} of {unread.span.file} has a mistake of syntax")
-    here = at(found, place)
+    here = at(all_mentions, place)
     if here is None or not here.plain:
         raise RenameError("no name of a node, element, property set or PARAM stands here")
-    if not definitions(found, here):
+    if not definitions(all_mentions, here):
         raise RenameError(f"{here.sort} {here.key} is not defined")
-    same = [m for m in found if m.sort == here.sort and here.key in m.keys]
+    same = [m for m in all_mentions if m.sort == here.sort and here.key in m.keys]
     for m in same:
         if not m.plain:
             raise RenameError(f"an expression or a range names it, too: {m.span}")

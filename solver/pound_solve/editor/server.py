@@ -54,9 +54,9 @@ class DeckServer(LanguageServer):
         self.edits[path] = self.edits.get(path, 0) + 1
         return path
 
-    def tell(self, found: Found) -> None:
+    def tell(self, mistakes: Found) -> None:
         """Send the mistakes of files."""
-        for path, diagnostics in found.items():
+        for path, diagnostics in mistakes.items():
             lines = self.lines(path)
             items = [self.diagnostic(d, lines) for d in diagnostics]
             uri = self.uri(path)
