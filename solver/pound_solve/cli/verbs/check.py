@@ -62,7 +62,7 @@ def _counted(n: int, what: str) -> str:
     return f"{n} {what}{'s' * (n != 1)}"
 
 
-def _print_json(deck: str, found: Iterable[Diagnostic], size: Mapping[str, int] | None) -> None:
+def _print_json(deck: str, diagnostics: Iterable[Diagnostic], size: Mapping[str, int] | None) -> None:
     from pound_solve.report.machine_readable import mistakes
 
-    print(json.dumps(mistakes(deck, found, size), indent=1))
+    print(json.dumps(mistakes(deck, diagnostics, size), indent=1))
