@@ -213,10 +213,10 @@ class Binder:
         hint = hints(belongs or suggest(name, takes), "it takes " + ", ".join(takes))
         return Diagnostic("P211", f"{owner} has no item {name}", item.name_span, hint)
 
-    def _count(self, spec: Spec, given: Mapping[str, Item]) -> Sequence[int] | None:
+    def _count(self, spec: Spec, items: Mapping[str, Item]) -> Sequence[int] | None:
         """Numbers that the first item's range generates; None where it is no range."""
         first = spec.fields[0]
-        item = given.get(first.name)
+        item = items.get(first.name)
         part = item.parts[0] if item and len(item.parts) == 1 else None
         if not isinstance(part, Range):
             return None

@@ -295,10 +295,10 @@ def _weights_of_supports(model: Model) -> Found:
             yield Diagnostic("P343", message, card.place("NODES"), hint, "warning")
 
 
-def _numbers(found: Sequence[int]) -> str:
+def _numbers(numbers: Sequence[int]) -> str:
     """The first of several numbers, and how many more there are."""
-    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
-    return ", ".join(map(str, found[:_MOST_NAMED])) + more
+    more = f" and {len(numbers) - _MOST_NAMED} more" if len(numbers) > _MOST_NAMED else ""
+    return ", ".join(map(str, numbers[:_MOST_NAMED])) + more
 
 
 _NODES: Final = frozenset({"NODES"})

@@ -120,9 +120,9 @@ def _params(
 
 
 def _override(
-    source: str, text: str, own: Mapping[str, Value | None], outline: Outline, report: list[Diagnostic]
+    source: str, text: str, params: Mapping[str, Value | None], outline: Outline, report: list[Diagnostic]
 ) -> None:
-    """Replace the definition of a PARAM by the text of an override; `own` are the deck's values."""
+    """Replace the definition of a PARAM by the text of an override; `params` are the deck's values."""
     name = source.removeprefix("--set ").strip()
     line = Line(source, 1, text)
     place = Span(source, 1, 1, max(2, len(text) + 1))
@@ -130,12 +130,12 @@ def _override(
     if key not in outline.definitions:
         if key not in outline.lost:
             hint = hints(
-                suggest(key, own), f"its PARAMs are {', '.join(own)}" if own else "it has no PARAM"
+                suggest(key, params), f"its PARAMs are {', '.join(params)}" if params else "it has no PARAM"
             )
             report.append(Diagnostic("P232", f"the deck has no PARAM {name[:60]}", place, hint))
         return
     # a text stays a text: paths hold slashes, dashes and blanks
-    value = _text(text, place) if isinstance(own[key], str) else _number(line)
+    value = _text(text, place) if isinstance(params[key], str) else _number(line)
     if value is None:
         message = f"PARAM {name} holds a number, and {text[:60]!r} is none"
         hint = f"write --set {name}=5, or an expression without blanks"

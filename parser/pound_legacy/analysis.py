@@ -123,7 +123,7 @@ def motions(
 
 
 def _motion(
-    found: Row,
+    row: Row,
     control: Control,
     appended: equake.Appended,
     separate: list[equake.File],
@@ -131,10 +131,10 @@ def _motion(
     notes: list[str],
     draft: Draft,
 ) -> None:
-    file = equake.record(found, appended, separate[0] if separate else None, draft, notes)
-    factor = equake.scale(found, control["FACTOR"], draft)
+    file = equake.record(row, appended, separate[0] if separate else None, draft, notes)
+    factor = equake.scale(row, control["FACTOR"], draft)
     scale = f" SCALE={number(factor)}" if factor != 1.0 else ""
-    draft.add("EQUAKE", f"RECORD {file} UNIT=G{scale}{direction}", found.span, notes)
+    draft.add("EQUAKE", f"RECORD {file} UNIT=G{scale}{direction}", row.span, notes)
 
 
 def forces(

@@ -49,19 +49,19 @@ def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft
     return members
 
 
-def _member(found: Row, last: int, kinds: int, before: Member | None, nodes: dict[int, Node]) -> Member:
-    id_, kind, i, j = found.wholes(NAMES[:4], 4)
+def _member(row: Row, last: int, kinds: int, before: Member | None, nodes: dict[int, Node]) -> Member:
+    id_, kind, i, j = row.wholes(NAMES[:4], 4)
     first = before.id if before else 0
     if not first < id_ <= last or (not first and id_ > 1):
         text = f"member {id_} does not follow {first} on the way to NMEM, {last}"
-        raise mistake("L608", text, found.items[0].span, "members ascend from 1 to NMEM")
+        raise mistake("L608", text, row.items[0].span, "members ascend from 1 to NMEM")
     if not 1 <= kind <= kinds:
         text = f"property set {kind} does not lie between 1 and NTYPE, {kinds}"
-        raise mistake("L608", text, found.items[1].span, "correct the number or NTYPE")
+        raise mistake("L608", text, row.items[1].span, "correct the number or NTYPE")
     for k, node in ((2, i), (3, j)):
         if node not in nodes:
-            raise mistake("L608", f"there is no node {node}", found.items[k].span, "correct the number")
-    return Member(id_, kind, i, j, found)
+            raise mistake("L608", f"there is no node {node}", row.items[k].span, "correct the number")
+    return Member(id_, kind, i, j, row)
 
 
 def _between(before: Member, after: Member, nodes: dict[int, Node], draft: Draft) -> list[Member]:

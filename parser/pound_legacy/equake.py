@@ -61,7 +61,7 @@ class _Data:
         return lines[self.first - 1 : self.last] if self.first else lines
 
 
-def record(found: Row, appended: Appended, separate: File | None, draft: Draft, notes: list[str]) -> str:
+def record(options: Row, appended: Appended, separate: File | None, draft: Draft, notes: list[str]) -> str:
     """Items of the file, its format and the part of it that acts.
 
     Raises
@@ -69,30 +69,30 @@ def record(found: Row, appended: Appended, separate: File | None, draft: Draft, 
     Mistake
         The line is cut, the format is not known, or there is no record.
     """
-    v = dict(zip(NAMES, found.reals(NAMES, 4)))
-    code, place = found.item(0).whole("IBERG"), found.items[0].span
+    v = dict(zip(NAMES, options.reals(NAMES, 4)))
+    code, place = options.item(0).whole("IBERG"), options.items[0].span
     if code not in _FORMATS:
         have = ", ".join(map(str, _FORMATS))
         raise mistake("L604", f"IBERG {code}: a format that is not known", place, f"known are {have}")
-    data = _data(appended, separate, found)
+    data = _data(appended, separate, options)
     items = [data.items, _FORMATS[code]]
     if code == _COUNTED:
-        begin = _time_of_counter(found.item(1).whole("ISTART"), data, found)
+        begin = _time_of_counter(options.item(1).whole("ISTART"), data, options)
     else:
-        begin = _plain(v, code, found, draft, notes, items)
+        begin = _plain(v, code, options, draft, notes, items)
     if begin:
         items.append(f"START={number(begin)}")
     if v["END"] > 0.0:
         notes.append(
-            draft.doubt(found.item(4).span, f"END {number(v['END'])}: the record is cut at this time")
+            draft.doubt(options.item(4).span, f"END {number(v['END'])}: the record is cut at this time")
         )
         if v["END"] <= begin:
             raise mistake(
-                "L604", "END comes before the start", found.item(4).span, "-1 takes the whole record"
+                "L604", "END comes before the start", options.item(4).span, "-1 takes the whole record"
             )
         items.append(f"DURATION={number(v['END'] - begin)}")
     if v["TSCALE"] not in (0.0, 1.0):
-        notes.append(draft.doubt(found.item(7).span, "TSCALE multiplies the times of the record"))
+        notes.append(draft.doubt(options.item(7).span, "TSCALE multiplies the times of the record"))
         items.append(f"TSCALE={number(v['TSCALE'])}")
     if v["VEL"] or v["DIS"]:
         notes.append("VEL and DIS of the ground have no effect on the motion relative to it")
@@ -100,7 +100,7 @@ def record(found: Row, appended: Appended, separate: File | None, draft: Draft, 
 
 
 def _plain(
-    v: dict[str, float], code: int, found: Row, draft: Draft, notes: list[str], items: list[str]
+    v: dict[str, float], code: int, options: Row, draft: Draft, notes: list[str], items: list[str]
 ) -> float:
     """Time at which a record without counters begins to act; adds the step."""
     reading = {0: "one step DELTAT from number to number", 1: "pairs of time and acceleration", 6: "as 0"}[
@@ -109,32 +109,34 @@ def _plain(
     if code == 6:
         draft.rest("IBERG 6: accelerations at the step DELTAT in a file of their own")
     else:
-        notes.append(draft.doubt(found.items[0].span, f"IBERG {code}: {reading}"))
-    start = found.item(1).whole("ISTART")
+        notes.append(draft.doubt(options.items[0].span, f"IBERG {code}: {reading}"))
+    start = options.item(1).whole("ISTART")
     if start not in (0, 1):
         raise mistake(
-            "L604", f"ISTART {start}", found.items[1].span, "take the first lines out, and write 1"
+            "L604", f"ISTART {start}", options.items[1].span, "take the first lines out, and write 1"
         )
     if code != 1:
         if v["DELTAT"] <= 0.0:
-            raise mistake("L603", "DELTAT is not above zero", found.items[2].span, "the step of the record")
+            raise mistake(
+                "L603", "DELTAT is not above zero", options.items[2].span, "the step of the record"
+            )
         items.append(f"DT={number(v['DELTAT'])}")
     return 0.0
 
 
-def scale(found: Row, factor: float, draft: Draft) -> float:
+def scale(options: Row, factor: float, draft: Draft) -> float:
     """Factor on the numbers of the record that makes shares of gravity of them."""
-    divisor = found.item(3).real("ASCALE")
+    divisor = options.item(3).real("ASCALE")
     if divisor == 0.0:
         raise mistake(
-            "L603", "ASCALE is zero", found.items[3].span, "1 for shares of gravity, 9810 for mm/s2"
+            "L603", "ASCALE is zero", options.items[3].span, "1 for shares of gravity, 9810 for mm/s2"
         )
     if divisor != 1.0:
         draft.rest("ASCALE divides the record into shares of gravity")
     return factor / divisor
 
 
-def _data(appended: Appended, separate: File | None, found: Row) -> _Data:
+def _data(appended: Appended, separate: File | None, options: Row) -> _Data:
     """Where the record stands: behind the line of EQUAKE, or in the file that the user names."""
     lines = appended.file.text.splitlines()
     first = last = 0
@@ -149,20 +151,20 @@ def _data(appended: Appended, separate: File | None, found: Row) -> _Data:
         return _Data(appended.file, first, last)
     if separate is None:
         text = "no record follows, so it stands in a file of its own"
-        raise mistake("L611", text, found.span, "pound-solve import DECK --record FILE names it")
+        raise mistake("L611", text, options.span, "pound-solve import DECK --record FILE names it")
     return _Data(separate)
 
 
-def _time_of_counter(counter: int, data: _Data, found: Row) -> float:
+def _time_of_counter(counter: int, data: _Data, options: Row) -> float:
     """Time of the line with a counter."""
-    name = found.span.file if data.first else data.file.name
+    name = options.span.file if data.first else data.file.name
     for k, raw in enumerate(data.rows(), data.first or 1):
         line = row(name, k, raw)
         if line and not line.word and len(line.items) > 2 and _is(line.items[0], counter):
             return line.items[1].real("time")
     text = f"no line of the record has the counter {counter} (ISTART)"
     raise mistake(
-        "L608", text, found.item(1).span, "format 3 is a line START, then counter, time, acceleration"
+        "L608", text, options.item(1).span, "format 3 is a line START, then counter, time, acceleration"
     )
 
 

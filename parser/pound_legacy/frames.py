@@ -24,7 +24,7 @@ _PINS: Final = ("NONE", "I", "J", "BOTH")
 _BEAM, _CONCRETE = 1, 2
 
 
-def read(given: PropertySet, label: str) -> None:
+def read(props: PropertySet, label: str) -> None:
     """Add the property set.
 
     Raises
@@ -33,7 +33,7 @@ def read(given: PropertySet, label: str) -> None:
         A line is missing, an item is no number, or its type or rule cannot be carried over.
     """
     notes = [label] if label else []
-    options = given.rows.next("the options of a FRAME: " + " ".join(OPTIONS))
+    options = props.rows.next("the options of a FRAME: " + " ".join(OPTIONS))
     kind, pin, initial, code, losing, damaged, *rest = options.wholes(OPTIONS, 4)
     if kind not in (_BEAM, _CONCRETE):
         text = f"ITYPE {kind}: a kind of FRAME that is not carried over"
@@ -43,24 +43,24 @@ def read(given: PropertySet, label: str) -> None:
     if damaged or any(rest[:2]):
         text = "IDAMG, ICOL and IGA: what they add to the lines is not known"
         raise mistake("L604", text, options.span, "write 0")
-    section = given.rows.next("the section of a FRAME: " + " ".join(SECTION))
-    notes.append(given.draft.doubt(section.span, f"the order of a FRAME's section is {' '.join(SECTION)}"))
+    section = props.rows.next("the section of a FRAME: " + " ".join(SECTION))
+    notes.append(props.draft.doubt(section.span, f"the order of a FRAME's section is {' '.join(SECTION)}"))
     items = _section(section, pin)
     if initial:
-        items.append(_initial(given, initial, notes))
+        items.append(_initial(props, initial, notes))
     word = "FRAME"
-    if code and not given.elastic:
-        word, more = _hinges(given, (kind, code, losing), section, options, notes)
+    if code and not props.elastic:
+        word, more = _hinges(props, (kind, code, losing), section, options, notes)
         items.append(more)
     elif code:
-        _hinges(given, (kind, code, losing), section, options, notes)
+        _hinges(props, (kind, code, losing), section, options, notes)
         notes.append("elastic run: IPLAS 0")
-    given.draft.add("PROPS", " ".join([f"P{given.number}", word, *items]), options.span, notes)
+    props.draft.add("PROPS", " ".join([f"P{props.number}", word, *items]), options.span, notes)
 
 
-def _section(found: Row, pin: int) -> list[str]:
+def _section(row: Row, pin: int) -> list[str]:
     """Items of the section and of the ends."""
-    v = dict(zip(SECTION, found.reals(SECTION, 5)))
+    v = dict(zip(SECTION, row.reals(SECTION, 5)))
     items = [f"{name}={number(v[name])}" for name in ("E", "A", "I")]
     if v["AS"]:
         items += [f"G={number(v['G'])}", f"AS={number(v['AS'])}"]
@@ -70,15 +70,15 @@ def _section(found: Row, pin: int) -> list[str]:
     return [*items, f"PIN={_PINS[pin]}"] if pin else items
 
 
-def _initial(given: PropertySet, code: int, notes: list[str]) -> str:
+def _initial(props: PropertySet, code: int, notes: list[str]) -> str:
     """Initial forces: the axial force (ICOND 1), the end moments (2), or both (3)."""
     names = {1: INITIAL[:1], 2: INITIAL[1:], 3: INITIAL}.get(code)
     if names is None:
-        raise mistake("L604", f"ICOND {code} is not known", given.rows.here, "0 to 3")
-    row = given.rows.next("the initial forces: " + " ".join(names))
+        raise mistake("L604", f"ICOND {code} is not known", props.rows.here, "0 to 3")
+    row = props.rows.next("the initial forces: " + " ".join(names))
     v = dict(zip(names, row.reals(names, len(names))))
     notes.append(
-        given.draft.doubt(
+        props.draft.doubt(
             row.span, f"ICOND {code}: initial {' '.join(names)}, tension and sagging positive"
         )
     )
@@ -88,41 +88,41 @@ def _initial(given: PropertySet, code: int, notes: list[str]) -> str:
 
 
 def _hinges(
-    given: PropertySet, codes: tuple[int, int, int], section: Row, options: Row, notes: list[str]
+    props: PropertySet, codes: tuple[int, int, int], section: Row, options: Row, notes: list[str]
 ) -> tuple[str, str]:
     """Kind of element in the new deck, and the items of its hinges."""
     kind, code, losing = codes
-    rule = rules.known(code, options.items[3].span, given.catalog)
-    hinges = given.rows.next("the hinges: " + " ".join(HINGES))
+    rule = rules.known(code, options.items[3].span, props.catalog)
+    hinges = props.rows.next("the hinges: " + " ".join(HINGES))
     _, ratio, *lengths = hinges.reals(HINGES, 2)
     if 0.0 in lengths:
-        notes.append(given.draft.doubt(hinges.span, "a hinge length of 0 is 1.0"))
+        notes.append(props.draft.doubt(hinges.span, "a hinge length of 0 is 1.0"))
     lp = numbers(x or 1.0 for x in lengths)
-    strengths = given.rows.next("the strengths of a FRAME: " + " ".join(BEAM if kind == _BEAM else COLUMN))
-    word, items = (_beam if kind == _BEAM else _column)(given, strengths, notes)
+    strengths = props.rows.next("the strengths of a FRAME: " + " ".join(BEAM if kind == _BEAM else COLUMN))
+    word, items = (_beam if kind == _BEAM else _column)(props, strengths, notes)
     lost = ""
     if losing:
-        lost = loss.read(losing, rule, given.rows, options.items[4].span, given.draft, notes)
-    parameters = rules.read(code, given.rows, ratio, given.draft, notes)
+        lost = loss.read(losing, rule, props.rows, options.items[4].span, props.draft, notes)
+    parameters = rules.read(code, props.rows, ratio, props.draft, notes)
     return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={rule.name}", parameters, lost) if x)
 
 
-def _beam(given: PropertySet, found: Row, notes: list[str]) -> tuple[str, str]:
+def _beam(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
     """Yield moments of the one-component beam."""
-    tension, compression, *moments = found.reals(BEAM, 4)
-    notes.append(given.draft.doubt(found.span, f"the order of a beam's strengths is {' '.join(BEAM)}"))
+    tension, compression, *moments = row.reals(BEAM, 4)
+    notes.append(props.draft.doubt(row.span, f"the order of a beam's strengths is {' '.join(BEAM)}"))
     if tension or compression:
-        notes.append(given.draft.lose(found.span, "axial yield PYT and PYC", "BEAM_COLUMN has interaction"))
+        notes.append(props.draft.lose(row.span, "axial yield PYT and PYC", "BEAM_COLUMN has interaction"))
     if not any(moments):
-        raise mistake("L604", "a hinge without a yield moment", found.span, f"the line is {' '.join(BEAM)}")
+        raise mistake("L604", "a hinge without a yield moment", row.span, f"the line is {' '.join(BEAM)}")
     second = moments[2:] if any(moments[2:]) else moments[:2]
     return "FRAME", f"MI={numbers(moments[:2])} MJ={numbers(second)}"
 
 
-def _column(given: PropertySet, found: Row, notes: list[str]) -> tuple[str, str]:
+def _column(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
     """Diagram of a concrete column, moments alike on both sides."""
-    crush, balance, mb, m1b, m2b, m0, tension = found.reals(COLUMN, 7)
-    notes.append(given.draft.doubt(found.span, f"the order of a column's strengths is {' '.join(COLUMN)}"))
+    crush, balance, mb, m1b, m2b, m0, tension = row.reals(COLUMN, 7)
+    notes.append(props.draft.doubt(row.span, f"the order of a column's strengths is {' '.join(COLUMN)}"))
     axial = (-abs(crush), -abs(balance), -abs(balance) * 2 / 3, -abs(balance) / 3, 0.0, abs(tension))
     corners = [x for pair in zip(axial, (0.0, mb, m1b, m2b, m0, 0.0)) for x in pair]
     return "BEAM_COLUMN", f"NM={numbers(corners)}"

@@ -43,10 +43,11 @@ class Translation:
     origins: tuple[Span | None, ...]
     report: tuple[Diagnostic, ...]
 
-    def moved(self, found: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
+    def moved(self, diagnostics: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
         """Diagnostics of the new deck, called `name`, at the lines of the old one."""
         return [
-            replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d for d in found
+            replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d
+            for d in diagnostics
         ]
 
     def _origin(self, span: Span) -> Span:

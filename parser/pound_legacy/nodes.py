@@ -66,22 +66,22 @@ def _rest(rows: Rows, draft: Draft) -> None:
         draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NNP, or take them out"))
 
 
-def _node(found: Row, last: int, before: Node | None) -> Node:
-    id_, *codes = (found.item(k).whole(NAMES[k]) for k in (0, *range(3, 9)))
-    found.need(NAMES, 3)
-    x, y = found.item(1).real("X"), found.item(2).real("Y")
+def _node(row: Row, last: int, before: Node | None) -> Node:
+    id_, *codes = (row.item(k).whole(NAMES[k]) for k in (0, *range(3, 9)))
+    row.need(NAMES, 3)
+    x, y = row.item(1).real("X"), row.item(2).real("Y")
     first = 0 if before is None else before.id
     if not first < id_ <= last or (not first and id_ > 1):
         text = f"node {id_} does not follow {first} on the way to NNP, {last}"
-        raise mistake("L608", text, found.items[0].span, "nodes ascend from 1 to NNP")
+        raise mistake("L608", text, row.items[0].span, "nodes ascend from 1 to NNP")
     for k, code in enumerate(codes[:3]):
         if code not in (_FREE, _FIXED, _SLAVED):
             text = f"NF{k + 1} is {code}"
-            raise mistake("L604", text, found.item(3 + k).span, "0 free, 1 fixed, 2 slaved to KUP")
+            raise mistake("L604", text, row.item(3 + k).span, "0 free, 1 fixed, 2 slaved to KUP")
         if code == _SLAVED and not 0 < codes[3 + k] <= last:
             text = f"NF{k + 1} is 2 and KUP{k + 1} is {codes[3 + k]}, no node"
-            raise mistake("L608", text, found.item(6 + k).span, "KUP is the node that it follows")
-    return Node(id_, x, y, tuple(codes[:3]), tuple(codes[3:6]), found)
+            raise mistake("L608", text, row.item(6 + k).span, "KUP is the node that it follows")
+    return Node(id_, x, y, tuple(codes[:3]), tuple(codes[3:6]), row)
 
 
 def _between(before: Node, after: Node, draft: Draft) -> list[Node]:

@@ -75,8 +75,8 @@ def _skip(rows: Rows) -> None:
         rows.next("a line")
 
 
-def _begins(found: Row) -> bool:
-    return len(found.items) > 1 and found.items[0].numeric and not found.items[1].numeric
+def _begins(row: Row) -> bool:
+    return len(row.items) > 1 and row.items[0].numeric and not row.items[1].numeric
 
 
 def _keep(error: Mistake, draft: Draft) -> None:

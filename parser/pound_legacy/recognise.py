@@ -41,5 +41,5 @@ def in_space(rows: list[Row]) -> bool:
     return len(rows) > _CONTROL_2D and len(rows[0].items) < 11
 
 
-def _mostly_numbers(found: Row) -> bool:
-    return 2 * sum(item.numeric for item in found.items) > len(found.items)
+def _mostly_numbers(line: Row) -> bool:
+    return 2 * sum(item.numeric for item in line.items) > len(line.items)

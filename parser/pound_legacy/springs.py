@@ -21,7 +21,7 @@ _STIFF: Final = ("KX", "KY", "KR")
 _STRONG: Final = ("FX", "FY", "MR")
 
 
-def read(given: PropertySet, label: str) -> None:
+def read(props: PropertySet, label: str) -> None:
     """Add the property set.
 
     Raises
@@ -30,7 +30,7 @@ def read(given: PropertySet, label: str) -> None:
         A line is missing, an item is no number, or its type or rule cannot be carried over.
     """
     notes = [label] if label else []
-    row = given.rows.next("the line of a SPRING: " + " ".join(NAMES))
+    row = props.rows.next("the line of a SPRING: " + " ".join(NAMES))
     kind, code, losing, damaged = (row.item(k).whole(NAMES[k]) for k in range(4))
     stiff = [row.item(k).real(NAMES[k]) for k in (4, 5, 6)]
     weight, rf, rt = (row.item(k).real(NAMES[k]) for k in (7, 8, 9))
@@ -43,53 +43,53 @@ def read(given: PropertySet, label: str) -> None:
             "L604", f"IDAMG {damaged}: the line of the index is not known", row.items[3].span, "0"
         )
     if len(row.items) > len(NAMES) and any(i.text != "0" for i in row.items[len(NAMES) :]):
-        notes.append(given.draft.lose(row.items[len(NAMES)].span, "items behind RT"))
+        notes.append(props.draft.lose(row.items[len(NAMES)].span, "items behind RT"))
     if weight:
         notes.append(
-            given.draft.lose(row.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS")
+            props.draft.lose(row.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS")
         )
-    _axes(given, stiff, row, notes)
+    _axes(props, stiff, row, notes)
     items = [f"{name}={number(k)}" for name, k in zip(_STIFF, stiff) if k]
     if code:
-        items.append(_yielding(given, code, losing, stiff, (rf, rf, rt), row, notes))
-    text = " ".join([f"P{given.number}", "SPRING", *items, "ANGLE=MEMBER" if any(given.lengths) else ""])
-    given.draft.add("PROPS", text.rstrip(), row.span, notes)
+        items.append(_yielding(props, code, losing, stiff, (rf, rf, rt), row, notes))
+    text = " ".join([f"P{props.number}", "SPRING", *items, "ANGLE=MEMBER" if any(props.lengths) else ""])
+    props.draft.add("PROPS", text.rstrip(), row.span, notes)
 
 
-def _axes(given: PropertySet, stiff: list[float], found: Row, notes: list[str]) -> None:
+def _axes(props: PropertySet, stiff: list[float], row: Row, notes: list[str]) -> None:
     """Tell how the axes of the components lie, and what a length does."""
-    if any(length == 0.0 for length in given.lengths) and stiff[0] != stiff[1]:
-        notes.append(given.draft.doubt(found.span, "a spring without length has x along global x"))
-        if any(given.lengths):
-            text = f"some springs of set {given.number} have a length and some have none"
-            raise mistake("L604", text, found.span, "give them two property sets")
-    if any(given.lengths) and stiff[1]:
+    if any(length == 0.0 for length in props.lengths) and stiff[0] != stiff[1]:
+        notes.append(props.draft.doubt(row.span, "a spring without length has x along global x"))
+        if any(props.lengths):
+            text = f"some springs of set {props.number} have a length and some have none"
+            raise mistake("L604", text, row.span, "give them two property sets")
+    if any(props.lengths) and stiff[1]:
         reading = "a transverse force of a spring with a length makes no moment; ARM= gives it one"
-        notes.append(given.draft.doubt(found.items[5].span, reading))
+        notes.append(props.draft.doubt(row.items[5].span, reading))
 
 
 def _yielding(
-    given: PropertySet,
+    props: PropertySet,
     code: int,
     losing: int,
     stiff: list[float],
     ratios: tuple[float, float, float],
-    found: Row,
+    row: Row,
     notes: list[str],
 ) -> str:
     """Items of the components that yield."""
-    rule = rules.known(code, found.items[1].span, given.catalog)
-    strong = given.rows.next("the yield forces: " + " ".join(FORCES))
+    rule = rules.known(code, row.items[1].span, props.catalog)
+    strong = props.rows.next("the yield forces: " + " ".join(FORCES))
     forces = strong.reals(FORCES)
     lost = ""
     if losing:
-        lost = loss.read(losing, rule, given.rows, found.items[2].span, given.draft, notes)
-    sets = [rules.read(code, given.rows, r, given.draft, notes) for r in ratios]
+        lost = loss.read(losing, rule, props.rows, row.items[2].span, props.draft, notes)
+    sets = [rules.read(code, props.rows, r, props.draft, notes) for r in ratios]
     yielding = [k for k in range(3) if stiff[k] and (forces[2 * k] or forces[2 * k + 1])]
     for k in range(3):
         if stiff[k] and k not in yielding:
-            notes.append(given.draft.doubt(strong.span, f"without yield forces {_STIFF[k]} is elastic"))
-    if given.elastic:
+            notes.append(props.draft.doubt(strong.span, f"without yield forces {_STIFF[k]} is elastic"))
+    if props.elastic:
         notes.append("elastic run: IPLAS 0")
         return ""
     if not yielding:
