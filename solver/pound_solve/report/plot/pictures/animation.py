@@ -134,7 +134,10 @@ class Stage:
 def caption(scene: Film, k: int) -> str:
     """Time, magnification, and the contacts that are closed."""
     names = [name for name, closed in zip(scene.contacts, scene.closed[k]) if closed]
-    when = f"{scene.time[k]:.2f} {scene.structure.units.time}, displacements drawn {scene.factor:.3g} times as large"
+    when = (
+        f"{scene.time[k]:.2f} {scene.structure.units.time}, "
+        f"displacements drawn {scene.factor:.3g} times as large"
+    )
     return f"{when}; closed: {', '.join(names)}" if names else when
 
 
