@@ -37,7 +37,7 @@ class Asked(NamedTuple):
 
 
 class CurveError(Exception):
-    """A sweep that does not hold what is asked for; the message says why."""
+    """Raised where a sweep does not hold what is asked for; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Curve:
         values: Iterable[float],
         from_rest: bool = False,
     ) -> Self:
-        """The curve of some runs by their levels and demands."""
+        """Make a curve of some runs from their levels and demands; runs of demand NaN count as left out."""
         pairs = sorted(zip(levels, values))
         points = tuple(Point(float(x), float(d)) for x, d in pairs if not math.isnan(d))
         return cls(case, record, points, len(pairs) - len(points), from_rest)
@@ -93,7 +93,7 @@ def measure(sweep: Sweep) -> str:
 
 
 def fractiles_of(values: Array) -> Array:
-    """Values that the shares `FRACTILES` of a sample, its last axis, do not exceed: order statistics."""
+    """Fractiles `FRACTILES` of a sample along its last axis, as order statistics."""
     return np.asarray(np.quantile(values, FRACTILES, axis=-1, method="inverted_cdf"))
 
 
@@ -157,7 +157,7 @@ def demands(sweep: Sweep, asked: Asked) -> Array:
 
 
 def _rows(sweep: Sweep, quantity: str) -> Iterator[Mapping[str, float]]:
-    """Values of a quantity in every run by their labels."""
+    """Yield for every run the values of a quantity by their labels."""
     if quantity == COLLAPSE:
         return iter([{}] * len(sweep))
     own = sweep.variables[quantity]
@@ -170,7 +170,7 @@ def _rows(sweep: Sweep, quantity: str) -> Iterator[Mapping[str, float]]:
 
 
 def widest_known(sweep: Sweep) -> dict[str, float]:
-    """Gap of every case up to which its runs tell whether they needed it; infinite where nothing met.
+    """Widest gap of every case for which its runs tell whether they needed it; infinite without collisions.
 
     A collision changes the motion: a run in which something met needed more than its smallest gap.
     """
@@ -183,7 +183,7 @@ def widest_known(sweep: Sweep) -> dict[str, float]:
 
 
 def cases(sweep: Sweep) -> list[str]:
-    """Case of every run in words: what differs between the runs of its deck and PARAMs."""
+    """Name of the case of every run: its deck and those of its PARAMs that differ within the sweep."""
     names = [n for n, v in sweep.variables.items() if v.doc.startswith(PARAM)]
     varied = [n for n in ("deck", *names) if len({str(x) for x in sweep[n]}) > 1]
     return [
@@ -193,7 +193,7 @@ def cases(sweep: Sweep) -> list[str]:
 
 
 def _short(value: object) -> str:
-    """A value of a PARAM."""
+    """Value of a PARAM as text, numbers with six digits."""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
@@ -214,7 +214,7 @@ def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
 
 
 def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:
-    """Curves by their case."""
+    """Group curves by their case."""
     groups: dict[str, list[Curve]] = {}
     for curve in curves:
         groups.setdefault(curve.case, []).append(curve)

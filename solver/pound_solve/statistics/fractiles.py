@@ -15,7 +15,7 @@ ROWS: Final = 12  #: levels of the table of fractiles
 
 
 class Analysis(NamedTuple):
-    """Curves of one case, and how they are judged."""
+    """Curves of one case, and the rules by which their collapse is judged."""
 
     curves: Sequence[Curve]
     rules: Rules
@@ -28,7 +28,7 @@ def levels(analysis: Analysis) -> Array:
 
 
 def fractiles(analysis: Analysis, at: Sequence[float] | Array) -> Array:
-    """Demand that a share `FRACTILES` of the records do not exceed, shape (n_levels, 3).
+    """Demands that the shares `FRACTILES` of the records do not exceed, shape (n_levels, 3).
 
     Infinite where so many have collapsed; NaN where a record was not run so far.
     """

@@ -51,7 +51,7 @@ class FragilityError(Exception):
 
 
 class Interval(NamedTuple):
-    """Ends of an interval of confidence; infinite, or zero, where the data set no end."""
+    """Ends of an interval of confidence; infinite, or zero, where the data give no bound."""
 
     low: float
     high: float
@@ -269,13 +269,13 @@ def _fit(data: Likelihood, level: float) -> Fragility:
 
 
 def _drop(data: Likelihood, level: float) -> float:
-    """By how much the log-likelihood falls from its maximum to the ends of an interval."""
+    """Drop of the log-likelihood from its maximum to the ends of an interval of confidence."""
     t = student.ppf(0.5 + 0.5 * level, data.freedom)
     return float(0.5 * data.count * math.log1p(t**2 / data.freedom))
 
 
 def _given_dispersion(data: Likelihood, s: float) -> float:
-    """Largest log-likelihood for the logarithm of a dispersion."""
+    """Largest log-likelihood over all medians, with `s` the logarithm of the dispersion."""
     beta = math.exp(s)
     return data.of(_best_median(data, beta), beta)
 
@@ -304,7 +304,7 @@ def _exponentials(ends: tuple[float, float]) -> Interval:
 
 
 def _highest(of: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function with one maximum has it: the bracket is found by a coarse look."""
+    """Place of the only maximum of a function between two limits: on a coarse grid, then refined."""
     places = np.linspace(low, high, 33)
     best = int(np.argmax([of(x) for x in places]))
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
@@ -315,7 +315,7 @@ def _highest(of: Callable[[float], float], low: float, high: float) -> float:
 def _ends(
     of: Callable[[float], float], at: float, limits: tuple[float, float], drop: float
 ) -> tuple[float, float]:
-    """Where a function has fallen from its maximum, at a place, by `drop` on both sides; else infinite."""
+    """Places below and above the maximum at `at` where a function is lower by `drop`; else infinite."""
     least = of(at) - drop
     ends = []
     for limit in limits:

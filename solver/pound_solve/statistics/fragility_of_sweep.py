@@ -57,7 +57,7 @@ class Fitted(NamedTuple):
 
 
 def by_capacities(records: Sequence[Curve], limit: float, level: float) -> Fragility:
-    """Of the levels at which the records reach the limit."""
+    """Fit a fragility to the levels at which the records reach the limit."""
     demands = [p.demand for c in records for p in c.points if math.isfinite(p.demand)]
     in_steps = all(d == round(d) for d in demands)  # as counts and indicators are
     pairs = [capacity(c.points, STOPS, limit, in_steps, c.from_rest) for c in records if c.points]
@@ -67,13 +67,13 @@ def by_capacities(records: Sequence[Curve], limit: float, level: float) -> Fragi
 
 
 def by_stripes(records: Sequence[Curve], limit: float, level: float) -> Fragility:
-    """Of the runs at every level that exceed the limit."""
+    """Fit a fragility to the number of runs at every level that reach the limit."""
     levels, exceeded, runs = zip(*counts(records, limit))
     return from_stripes(levels, exceeded, runs, level)
 
 
 def by_cloud(records: Sequence[Curve], limit: float, level: float) -> Fragility:
-    """Of the demands of all runs that stand."""
+    """Fit a fragility to the demands of all runs that did not collapse."""
     points = [p for c in records for p in c.points if 0.0 < p.demand < math.inf]
     if not math.isfinite(limit):
         raise FragilityError("a cloud has no collapse: take stripes or capacities")
@@ -86,7 +86,7 @@ METHODS: Final[Mapping[str, Callable[[Sequence[Curve], float, float], Fragility]
 
 
 def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, int], ...]:
-    """Every level, the runs there that reach the limit, and all."""
+    """Every level, the number of runs there that reach the limit, and the number of all runs there."""
     points = [p for c in records for p in c.points]
     return tuple(
         (x, sum(p.demand >= limit for p in points if p.level == x), sum(p.level == x for p in points))
@@ -95,8 +95,8 @@ def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, in
 
 
 def suited(records: Sequence[Curve]) -> str:
-    """Method for some curves: capacities where each record has several levels, stripes where all have the
-    same two, else a cloud.
+    """Name of the method for some curves: capacities where each record has at least `FEWEST` levels, else
+    stripes where all have the same levels, two at least, else a cloud.
     """
     levels = [tuple(p.level for p in c.points) for c in records if c.points]
     if levels and min(map(len, levels)) >= FEWEST:
@@ -147,7 +147,7 @@ def fit(
 def _fitted(
     case: str, records: Sequence[Curve], limit: float, method: str, level: float, known: float
 ) -> Fitted:
-    """One fragility, of limits up to the largest of which the runs tell."""
+    """Fragility of one limit; none, with a remark, for a limit above `known`, up to which the runs tell."""
     remarks, fragility = [], None
     try:
         if known < limit:

@@ -75,7 +75,7 @@ class Rules:
 
 
 def ends(points: Sequence[Point], rules: Rules) -> list[str]:
-    """How every point counts, in the order of their levels (`points` must be so)."""
+    """Verdict on every point, such as `STANDS`; `points` must be in the order of their levels."""
     ends: list[str] = []
     first = before = None
     for point in points:
@@ -108,7 +108,7 @@ def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:
     Returns
     -------
     stands, falls : float
-        The lowest that collapses, infinite where none does, and the highest that stands below it.
+        The highest that stands below the lowest that collapses, and the latter, infinite where none does.
     """
     stands = 0.0
     for point, end in zip(points, ends(points, rules)):
@@ -138,7 +138,7 @@ def next_level(points: Sequence[Point], rules: Rules) -> float | None:
 
 
 def _hunt(points: Sequence[Point], rules: Rules) -> float | None:
-    """The next step up; None at the top."""
+    """Next level of the hunt; None where the highest level is reached."""
     highest = points[-1].level
     if highest >= rules.top * (1.0 - SAME):
         return None
@@ -169,12 +169,12 @@ def standing(points: Sequence[Point], rules: Rules) -> list[Point]:
 def capacity(
     points: Sequence[Point], rules: Rules, demand: float, in_steps: bool = False, from_rest: bool = False
 ) -> tuple[float, float]:
-    """Levels between which a demand is first reached: zero and the lowest one where the first run does, the
-    highest one and infinity where none does, twice the same where it is known.
+    """Levels between which a record first reaches a demand: zero and the lowest level where its first run
+    reaches it, the highest level and infinity where none does, twice the same where the level is known.
 
-    A straight line joins two runs.  None does where nothing was run, below the lowest level, but for a
-    demand that grows `from_rest` in proportion to the level; nor where the demand comes `in_steps`, as a
-    count does, or begins somewhere between; nor up to a collapse.
+    The level is known where two runs may be joined by a straight line.  They may not below the lowest
+    level, where nothing was run, unless the demand grows `from_rest` in proportion to the level; nor where
+    the demand comes `in_steps`, as a count does, or is zero in the lower run; nor up to a collapse.
     """
     for below, point in pairwise(standing(points, rules)):
         if point.demand >= demand:

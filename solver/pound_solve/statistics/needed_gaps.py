@@ -75,7 +75,7 @@ class Group(NamedTuple):
     fitted: Fragility | None
 
     def contacts(self, gap: float) -> tuple[int, int]:
-        """Runs that meet at a gap, and all; no runs where some do not tell."""
+        """Number of runs that collide at a gap, and of all runs; zeros where some runs do not tell."""
         if (self.met < gap).any() or not math.isfinite(gap):
             return 0, 0
         return int((self.needed > gap).sum()) + len(self.met), len(self.needed) + len(self.met)
@@ -114,7 +114,7 @@ def groups(sweep: Sweep, options: Options) -> list[Group]:
 def _contacts(
     sweep: Sweep, case: str, level: float, runs: Array, asked: int, options: Options
 ) -> Iterator[Group]:
-    """The contacts of one case and level, which has runs of some numbers."""
+    """Groups of one case and level, one for each contact; `runs` are its completed runs, by index."""
     needed, given_gap, u1, u2, rho = (sweep[name][runs] for name in NEEDS)
     there = ~np.isnan(given_gap).all(axis=0)  # contacts of this deck
     names = [n for n, is_there in zip(sweep.labels["contact"], there) if is_there]
@@ -143,7 +143,7 @@ def _contacts(
 
 
 def _fit(needed: Array, met: Array, level: float) -> Fragility | None:
-    """Lognormal distribution of the gaps that are needed; None where they determine none."""
+    """Fit a lognormal distribution to the gaps that are needed; None where they do not determine one."""
     try:
         return from_capacities(needed, met, level=level)
     except FragilityError:

@@ -71,7 +71,7 @@ def own_mode(components: Array, periods: Array, damping: Array) -> tuple[float, 
 
 
 class Peaks(NamedTuple):
-    """What rules of separation start from.
+    """Input of the rules of separation: peak displacements of both buildings and their correlation.
 
     Attributes
     ----------
