@@ -29,7 +29,7 @@ ITEMS: Final = ("demand", "label", "step", "growth", "top", "runs", "close", "li
 
 @dataclass(frozen=True)
 class Aim:
-    """What an analysis looks for.
+    """Demand of an incremental analysis, and the rules by which its levels are chosen.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ def aim(document: Document) -> Aim:
 
 
 class Hunt:
-    """Rounds of runs.
+    """Incremental dynamic analysis as rounds of runs, in each the next level of every record.
 
     Parameters
     ----------
@@ -139,12 +139,12 @@ class Hunt:
                 yield group[0].at(level)
 
     def _curve(self, runs: Sequence[Run]) -> Curve:
-        """What the runs of one record have come to."""
+        """Curve of one record: the levels of its runs and their demands."""
         levels = [run.shaking.level if run.shaking else 0.0 for run in runs]
         return Curve.of("", "", levels, [self._demands[run.identity] for run in runs])
 
     def _learn(self) -> None:
-        """Take the demands of the runs that have ended since."""
+        """Read the demands of the runs that have ended since the last call from the journal."""
         asked, ended = self.aim.asked, self.session.entries
         fresh = {r.identity: ended[r.identity] for r in self.runs if r.identity not in self._demands}
         for identity, values in self.session.journal.values(fresh):

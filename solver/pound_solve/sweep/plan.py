@@ -39,7 +39,7 @@ class Agenda:
 
     @classmethod
     def of(cls, runs: Sequence[Run], entries: Mapping[str, Entry], retry: bool) -> Agenda:
-        """Sort runs by what they have come to; `retry` tries those again that are not done."""
+        """Sort runs by how they have ended; `retry` puts stopped and failed ones among those ahead."""
         ends = [entries[r.identity].status if r.identity in entries else "" for r in runs]
         return cls(
             tuple(r for r, end in zip(runs, ends) if not end or (retry and end != DONE)),
@@ -54,7 +54,7 @@ def piece(runs: Sequence[Run], k: int, count: int) -> tuple[Run, ...]:
 
 
 def lines(study: Study, agenda: Agenda, entries: Mapping[str, Entry]) -> Iterator[str]:
-    """The plan in words."""
+    """Lines of text: the plan."""
     decks = {r.case.deck for r in study.runs}
     cases = {r.case for r in study.runs}
     counts = _many(len(decks), "deck"), f"{_many(len(cases), 'case')} of PARAMs", _shakings(study)
@@ -82,7 +82,7 @@ def _shakings(study: Study) -> str:
 
 
 def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
-    """Some runs that are not done, each with its reason in one line."""
+    """Lines that state for the first of some runs that are not done the reason of each."""
     for run in runs[:SHOWN]:
         entry = entries[run.identity]
         reason = (entry.message.splitlines() or [""])[0].replace(f"{Path(run.case.deck).parent}/", "")
@@ -93,7 +93,7 @@ def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
 
 @dataclass
 class Trial:
-    """Runs that were carried out to know what the others take.
+    """Runs that were carried out to estimate the time and the space of the others.
 
     Attributes
     ----------
@@ -127,13 +127,13 @@ class Trial:
         return self.spent / max(len(self.entries), 1) * self.left / self.workers
 
     def seconds_with(self, looser: Entry) -> float:
-        """Time that all runs take with the tolerance of one that was tried [s]."""
+        """Time that all runs would take with a looser tolerance, one of those that were tried [s]."""
         mean = self.spent / len(self.entries) * looser.cpu / self.entries[0].cpu
         return mean * self.ahead / self.workers
 
 
 def estimate(trial: Trial, size: float) -> Iterator[str]:
-    """What the runs that are left will take, from those of a trial; `size` is what one leaves [bytes]."""
+    """Lines of text: time and disk space for the runs left; `size` is that of one run [bytes]."""
     count, left = len(trial.entries), trial.left
     beyond = 1000.0 * sum(e.cpu - e.solve for e in trial.entries) / count
     each = f"{trial.spent / count:.3g} s of CPU time each, {beyond:.0f} ms beyond the integration"
@@ -145,7 +145,7 @@ def estimate(trial: Trial, size: float) -> Iterator[str]:
 
 
 def _time(seconds: float) -> str:
-    """A time in a unit that leaves it small."""
+    """Time as text in seconds, minutes or hours."""
     if seconds < 120.0:
         return f"{seconds:.3g} s"
     return f"{seconds / 60.0:.3g} min" if seconds < 7200.0 else f"{seconds / 3600.0:.3g} h"

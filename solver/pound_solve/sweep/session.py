@@ -46,11 +46,11 @@ class Session:
         self._before = set(self.entries) - {r.identity for r in self.agenda.ahead}
 
     def plan(self) -> Iterator[str]:
-        """What is to be run, in words."""
+        """Lines of text: what is to be run."""
         return plan.lines(self.study, self.agenda, self.entries)
 
     def trial(self, report: Callable[[State], None]) -> Trial:
-        """Carry out some of the runs ahead, to know what the others take.
+        """Carry out some of the runs ahead, to estimate the time and the space of the others.
 
         The strongest shaking of the middle case tells it, since collisions and yielding take time; so do
         the first and the last run where all cost little.  Where the others take long, the same run follows
@@ -73,7 +73,7 @@ class Session:
         return trial
 
     def _one_by_one(self, conductor: Conductor, runs: Sequence[Run]) -> Iterator[Entry]:
-        """What runs have come to, each carried out when it is asked for, up to an interruption."""
+        """Carry out each run when its entry is asked for, and yield the entry; end at an interruption."""
         for run in runs:
             interrupted = conductor.run([run]).ending
             self.entries = self.journal.entries()
@@ -83,7 +83,7 @@ class Session:
                 return
 
     def _looser(self, run: Run) -> Iterator[Run]:
-        """The same run with tolerances above its own, if it took steps to meet one."""
+        """Yield the run with larger tolerances of AUTO, if AUTO ran it with an error estimate."""
         ((_, values),) = self.journal.values({run.identity: self.entries[run.identity]})
         request = request_of(run.case)
         model = read_deck(request).model
@@ -94,32 +94,32 @@ class Session:
                     yield replace(run, case=replace(run.case, tol=tol))
 
     def conductor(self, report: Callable[[State], None]) -> Conductor:
-        """What carries runs of the study out, for a ``with``."""
+        """Make the conductor that carries out runs of the study, a context manager."""
         study = self.study
         folder = self.journal.folder if self.engine.notes else None
         settings = Settings(folder, study.seconds, study.memory, study.histories)
         return Conductor(self.engine, settings, self.journal, report)
 
     def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
-        """Carry runs out; return what those have come to that have ended."""
+        """Carry runs out; return the journal's entries of those that have ended."""
         with self.conductor(report) as conductor:
             return self.carry_on(conductor, runs)
 
     def carry_on(self, conductor: Conductor, runs: Sequence[Run]) -> list[Entry]:
-        """The same by a conductor that has had others."""
+        """Carry runs out by a conductor that may have carried out others before; see `carry_out`."""
         if runs:
             conductor.run(runs)
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 
     def estimate(self, trial: Trial) -> Iterator[str]:
-        """What the runs ahead will take beside those that were tried, in words."""
+        """Lines of text: time and space that the runs ahead will take, estimated from those of a trial."""
         if trial.entries:
             size = sum(p.stat().st_size for p in self.journal.folder.iterdir()) / len(self.entries)
             yield from plan.estimate(trial, size)
 
     def extend(self, runs: Sequence[Run]) -> None:
-        """Take these runs for those of the study."""
+        """Replace the runs of the study by these."""
         self.study = replace(self.study, runs=tuple(runs))
         self.runs = self.study.runs
 
@@ -142,7 +142,7 @@ class Session:
 
     @property
     def ends(self) -> list[str]:
-        """How every run has ended; empty for those that have not."""
+        """Status of every run: one of `ENDS`, empty for a run that has not ended."""
         return [self.entries[r.identity].status if r.identity in self.entries else "" for r in self.runs]
 
     @property
@@ -151,7 +151,7 @@ class Session:
         return not set(self.ends) & {"", FAILED}
 
     def summary(self) -> Iterator[str]:
-        """What the runs have come to, in words."""
+        """Lines of text: how many runs are done, stopped, failed or not run, and why some are not done."""
         ends = self.ends
         counts = [f"{ends.count(end)} {end}" for end in ENDS if end in ends]
         if "" in ends:
@@ -163,7 +163,7 @@ class Session:
 
 
 def _strongest(runs: Sequence[Run]) -> Run:
-    """The run of the highest level among those of the middle one's case."""
+    """Run of the highest level among those that share the case of the middle run."""
     middle = runs[len(runs) // 2].case
     return max((r for r in runs if r.case == middle), key=lambda r: r.shaking.level if r.shaking else 0.0)
 

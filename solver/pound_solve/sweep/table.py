@@ -22,7 +22,7 @@ MISSING = "missing"  #: status of a run that has not ended
 
 
 def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep:
-    """What the runs of a study have come to.
+    """Make the table of a study: what it gives to every run, how each has ended, and its quantities.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep
 
 
 def _labels(place: Mapping[str, int], values: Iterable[tuple[str, Values]]) -> dict[str, tuple[str, ...]]:
-    """Labels of every axis in the order in which the runs have them, whatever the order of the journal."""
+    """Labels of every axis in the order of the runs in the study, whatever their order in the journal."""
     first: dict[str, dict[str, tuple[int, int]]] = {"": {"": (0, 0)}}
     for identity, by_quantity in values:
         for q in QUANTITIES:
@@ -84,7 +84,7 @@ def _histories(runs: Sequence[Run], journal: Journal) -> Iterator[tuple[int, Map
 
 
 def _inputs(study: Study) -> dict[str, Variable]:
-    """What the study gives to every run."""
+    """Variables that the study sets for every run: deck, PARAMs, record, level."""
     runs = study.runs
     variables = {
         RUN: Variable(np.array([r.number for r in runs], np.int64), doc="number of the run"),
@@ -132,7 +132,7 @@ def _texts(values: Iterable[str]) -> NDArray[Any]:
 
 
 def _numbers(values: Sequence[str]) -> NDArray[Any]:
-    """Numbers, or texts where one of them is none."""
+    """Array of numbers, or of the texts where one of them is not a number."""
     try:
         return np.array([float(v) if v else np.nan for v in values])
     except ValueError:

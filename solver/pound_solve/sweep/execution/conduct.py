@@ -56,7 +56,7 @@ class State:
 
 @dataclass
 class Lane:
-    """One executor and what it has been given.
+    """One executor and the runs that it has been given.
 
     Attributes
     ----------
@@ -131,11 +131,11 @@ class Conductor:
 
     @property
     def _flying(self) -> dict[Future[Entry], Lane]:
-        """What was handed out, and to whom."""
+        """Runs that were handed out and have not been taken back: the lane of each future."""
         return {future: lane for lane in self._lanes for future in lane.flying}
 
     def _round(self, state: State) -> None:
-        """Hand runs out, wait for some, take them; a lane that broke gets a new executor."""
+        """Hand runs out, wait for some, take their results; give a lane whose executor broke a new one."""
         for lane in self._open():
             self._fill(lane)
         self.report(state)
@@ -152,7 +152,7 @@ class Conductor:
             self._renew(lane)
 
     def _open(self) -> list[Lane]:
-        """Lanes that may take runs: one for a run that is to go alone, else all of the engine."""
+        """Lanes that may take runs: one where the next run must go alone, else all of the engine."""
         alone = bool(self._suspects) or not self._begun
         wanted = 1 if alone else min(self.engine.lanes, max(len(self._lanes), self._ahead()))
         while len(self._lanes) < wanted:
@@ -162,7 +162,7 @@ class Conductor:
         return [] if self._flying else self._lanes[:1]
 
     def _ahead(self) -> int:
-        """Runs that wait."""
+        """Number of runs that wait."""
         return sum(map(len, self._waiting.values()))
 
     def _fill(self, lane: Lane) -> None:
@@ -184,7 +184,7 @@ class Conductor:
         lane.executor = self.engine.start()
 
     def _next(self, lane: Lane) -> Run:
-        """The next run of the lane's case; else of a case that no other lane has; else of the longest."""
+        """Next run of the lane's case, else of one that no other lane has, else of that with most runs."""
         held = {other.case for other in self._lanes if other is not lane}
         case = lane.case
         if case is None or case not in self._waiting:
@@ -197,7 +197,7 @@ class Conductor:
         return run
 
     def _take(self, future: Future[Entry], run: Run, lone: bool, state: State) -> bool:
-        """Take what a run has come to; False where its process died."""
+        """Take the result of a run; return False where its process died."""
         try:
             entry = future.result()
         except CancelledError:  # by an interruption, or by a scheduler that has gone
@@ -229,7 +229,7 @@ class Conductor:
         return True
 
     def _note(self, entry: Entry, state: State) -> None:
-        """Note a failure that no process could note."""
+        """Enter a failure in the journal that the process of the run could not enter itself."""
         self.journal.add(entry)
         self._count(entry, state)
 

@@ -28,7 +28,7 @@ _T = TypeVar("_T")
 
 
 class ExecutorError(Exception):
-    """The executor cannot be had; the text says why."""
+    """Raised where there is no such executor or it cannot be reached; the text says why."""
 
 
 class Engine(NamedTuple):
@@ -94,7 +94,7 @@ def processors() -> int:
 
 
 def process() -> ProcessPoolExecutor:
-    """A process that knows nothing of this one (spawn), with one thread."""
+    """Start a worker process by spawn, so that it shares no state with this one, with one thread."""
     threads.one()
     pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), initializer=_begin)
     with _interrupts_held_back():
@@ -104,8 +104,8 @@ def process() -> ProcessPoolExecutor:
 
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """A process that starts within this context gets no Ctrl-C before `_begin` is called in it: Python
-    would end with a traceback while it reads its modules.  That of this process waits.
+    """Keep Ctrl-C from a process that starts within this context until it calls `_begin`: Python would end
+    with a traceback while it reads its modules.  A Ctrl-C for this process waits for the end.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
@@ -119,7 +119,7 @@ def _interrupts_held_back() -> Iterator[None]:
 
 
 def _begin() -> None:
-    """A worker ends what it does when the user interrupts, and ends with the process that began it."""
+    """Prepare a worker: it ignores Ctrl-C, so as to finish its run, and ends with its parent process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, HELD_BACK)
@@ -134,7 +134,7 @@ def _end_with_parent() -> None:
 
 
 class DaskExecutor(Executor):
-    """The workers of a Dask scheduler, whose runs end where this ends.
+    """Executor on the workers of a Dask scheduler, whose runs end when this executor is shut down.
 
     Parameters
     ----------

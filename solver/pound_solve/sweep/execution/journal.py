@@ -30,7 +30,7 @@ ENDING: Final = ".jsonl"
 
 @dataclass(frozen=True)
 class Entry:
-    """What one run has come to.
+    """Result of one run.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Journal:
         self.folder = folder
 
     def add(self, entry: Entry) -> None:
-        """Note what a run has come to, in this process' own file.
+        """Append the result of a run to this process's own file.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class Journal:
         return self.folder / f"{identity}.npz"
 
     def entries(self) -> dict[str, Entry]:
-        """What every run has come to, by its identity: the end that is done, else the latest.
+        """Result of every run by its identity: of several the one with status done, else the latest.
 
         Their values, which may be many, stay in the journal, see `values`.
         """
@@ -144,7 +144,7 @@ class Journal:
 
 
 def _ends_a_line(path: Path) -> bool:
-    """Whether the last line of a file is whole."""
+    """Whether a file ends with a complete line."""
     with path.open("rb") as file:
         file.seek(-1, os.SEEK_END)
         return file.read(1) == b"\n"

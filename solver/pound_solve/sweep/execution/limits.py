@@ -26,7 +26,7 @@ _HELD: Final = Path("/proc/self/statm")
 
 
 class TooLongError(Exception):
-    """The run takes longer than it may."""
+    """Raised where a run takes longer than it may."""
 
 
 class Clock:
@@ -55,7 +55,7 @@ class Clock:
 
 @contextmanager
 def within(seconds: float | None, memory: float | None) -> Iterator[Clock]:
-    """Limits of a run; what is yielded is to be told its progress.
+    """Limit a run within the block; yield the clock that its progress must be reported to.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ except ImportError:  # Windows
 
 
 class BusyError(Exception):
-    """Another sweep writes the folder."""
+    """Raised where another sweep writes the folder."""
 
 
 @contextmanager
@@ -50,7 +50,7 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
 
 
 def _lock(path: Path) -> IO[bytes]:
-    """A file that is open to be locked; a pipe would wait for a reader."""
+    """Open a file that is to be locked; a pipe, which would wait for a reader, is refused."""
     if path.exists():
         opened(path).close()
     return path.open("ab")

@@ -64,30 +64,30 @@ class Settings:
 
 
 class ChangedError(Exception):
-    """A file is not as it was when the study was read."""
+    """Raised where a file has changed since the study was read."""
 
 
 class Kept:
-    """Takes of a run the rows of the tables that quantities are made from (`sequence.RunOutput`)."""
+    """Output of a run (`sequence.RunOutput`) that keeps only the table rows that quantities need."""
 
     def __init__(self) -> None:
         self.rows = dict[str, list[Fields]]()
 
     def text(self, name: str, text: str) -> None:
-        """Texts of the input are the study's."""
+        """Do nothing: the texts of the input are those of the study."""
 
     def tables(self, stage: Stage, record: RunRecord) -> None:
-        """Make the rows of a stage."""
+        """Keep the rows of the tables of a stage that quantities are made from."""
         self.rows |= rows_at(stage, record)
 
     def start_history(self, layout: Layout, packed: bool = False) -> None:
-        """Histories stay in memory, see `sequence.HistoryWriter`."""
+        """Do nothing: histories stay in memory, see `sequence.HistoryWriter`."""
 
     def append(self, block: Mapping[str, Array]) -> None:
-        """See `start_history`."""
+        """Do nothing, see `start_history`."""
 
     def stored(self, name: str) -> Array:
-        """There is no history without an analysis that makes it."""
+        """Raise KeyError: no history is stored here."""
         raise KeyError(name)
 
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
@@ -99,11 +99,11 @@ class Kept:
         """A sweep keeps none."""
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
-        """No run goes on from one of a sweep."""
+        """Do nothing: no run is restarted from a run of a sweep."""
 
 
 def carry_out(run: Run, settings: Settings) -> Entry:
-    """Run, and note what has come of it.
+    """Carry a run out, enter its result in the journal, and return it.
 
     Raises
     ------
@@ -127,12 +127,12 @@ def one_at_a_time() -> threading.Lock:
 
 @cache
 def numbers() -> count[int]:
-    """Numbers of the runs of this process."""
+    """Counter of the runs of this process, from 1."""
     return count(1)
 
 
 def _carried_out(run: Run, settings: Settings) -> Entry:
-    """See `carry_out`."""
+    """Carry a run out within its limits; every failure becomes part of the entry, see `carry_out`."""
     began = time.process_time()
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
@@ -188,7 +188,7 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
 
 @lru_cache(maxsize=2)
 def prepared(case: Case, first: RecordFile | None, histories: tuple[str, ...]) -> tuple[Prepared, Settled]:
-    """A case under the study's first record, and what its runs share; some histories are kept of them."""
+    """Prepare a case under the study's first record; also return the store of what its runs share."""
     motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
     ready = prepare(request_of(case, motion))
     if case.texts != digest_of(ready.model.files):
@@ -200,8 +200,8 @@ def prepared(case: Case, first: RecordFile | None, histories: tuple[str, ...]) -
 
 
 def output_of(model: Model, structure: Structure, histories: Sequence[str]) -> Card:
-    """OUTPUT of the runs of a sweep: of the nodes and members that the deck names those that a quantity, a
-    history that is kept or a tolerance of AUTO looks at.
+    """OUTPUT card of the runs of a sweep: of the nodes and members that the deck names, it keeps those that
+    a quantity, a history to be kept or a tolerance of AUTO needs.
     """
     items = {**model.output.values, "HISTORIES": "NO"}
     groups, compared = {name.partition("/")[0] for name in histories}, compared_peaks(model)
@@ -214,13 +214,13 @@ def output_of(model: Model, structure: Structure, histories: Sequence[str]) -> C
 
 
 def compared_peaks(model: Model) -> Collection[int]:
-    """What AUTO compares between runs, see `compared.tolerances`; nothing with another method."""
+    """Peaks that AUTO compares between its runs, see `compared.tolerances`; none with another method."""
     options = options_of_auto(model)
     return tolerances(options) if options else ()
 
 
 def options_of_auto(model: Model) -> dict[str, Any]:
-    """Items of HISTORY that are those of AUTO; none with another method."""
+    """Items of AUTO on the HISTORY card; none with another method."""
     for card in model.analyses:
         spec = card.laws["METHOD"][0] if card.spec.name == "HISTORY" else None
         if spec is not None and spec.name == "AUTO":

@@ -29,7 +29,7 @@ _WORDS: Final = {str: "a text", int: "a whole number", float: "a number", list: 
 
 
 def _number(value: float) -> float:
-    """A number of TOML, whose whole ones have no largest one."""
+    """Number of TOML as a float; its integers may be too large for one."""
     try:
         return float(value)
     except OverflowError:
@@ -108,7 +108,7 @@ class Document:
         return document
 
     def _no_toml(self, message: str, text: str) -> None:
-        """Tell where the file is no TOML."""
+        """Add a diagnostic at the place where the file is not TOML."""
         lines = text.splitlines() or [""]
         where = _WHERE.search(message)
         if where is None:  # it is about the depth or the length of something
@@ -120,7 +120,7 @@ class Document:
         self.found.append(Diagnostic("S601", said, Span(self.name, line, column, column + 1), hint))
 
     def given(self, path: Path_, value: object, option: str, text: str) -> None:
-        """Put in an item of the command line, in place of that of the file."""
+        """Replace an item of the file by one of the command line."""
         table: Any = self.values
         for name in path[:-1]:
             table = table[name] if isinstance(name, int) else table.setdefault(name, {})
@@ -136,7 +136,7 @@ class Document:
         return Span(self.name, 1, 1, 2) if self.name in self.files else None
 
     def mistake(self, code: str, message: str, path: Path_ = (), hint: str = "") -> None:
-        """Note a mistake at an item, once."""
+        """Add a diagnostic at an item, unless it is there already."""
         diagnostic = Diagnostic(code, message, self.place(path), hint)
         if diagnostic not in self.found:
             self.found.append(diagnostic)
@@ -152,7 +152,7 @@ class Document:
         return value
 
     def known(self, path: Path_, names: Iterable[str]) -> None:
-        """Note the items of a table that are none of the known ones."""
+        """Add a diagnostic for every item of a table that is not one of `names`."""
         names = list(names)
         table = self.at(path)
         for key in table if isinstance(table, dict) else ():
@@ -162,7 +162,7 @@ class Document:
                 self.mistake("S602", f"{where} has no item {key}", (*path, key), hint)
 
     def take(self, path: Path_, kind: type[_T], default: _T) -> _T:
-        """Value of an item of a kind, the default where it is left out or wrong."""
+        """Value of an item if it is of a kind, else the default; a wrong value adds a diagnostic."""
         value = self.at(path)
         if value is None:
             return default
@@ -179,14 +179,14 @@ class Document:
         return default if self._has_zero(value, path) else value
 
     def _has_zero(self, value: object, path: Path_) -> bool:
-        """Whether a value is a text with a zero character, which no name of a file has; note it."""
+        """Whether a text has a zero character, which no file name can have; adds a diagnostic if so."""
         if not isinstance(value, str) or "\0" not in value:
             return False
         self.mistake("S603", f"{path[-1]} holds a zero character", path)
         return True
 
     def matching(self, pattern: str) -> list[Path]:
-        """Files and folders that a pattern fits, in order; it counts from the study's folder."""
+        """Files and folders that match a pattern, sorted; the pattern is relative to the study's folder."""
         path = Path(pattern)
         root = Path(path.anchor) if path.anchor else self.folder
         try:
@@ -195,7 +195,7 @@ class Document:
             return []
 
     def listed(self, path: Path_, kinds: tuple[type, ...]) -> list[Any]:
-        """Values of an item that is a list or stands for a list of one; empty where it is left out."""
+        """Values of an item that is a list or a single value; empty where it is left out or wrong."""
         value = self.at(path)
         values = value if isinstance(value, list) else [] if value is None else [value]
         for element in values:
@@ -230,7 +230,7 @@ class Document:
 
 
 def _told(value: object) -> str:
-    """A value in a message."""
+    """Value as a message shows it."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, dict):

@@ -17,7 +17,7 @@ from pound_solve.structure.structure import Structure
 
 
 def nodes(structure: Structure) -> set[int]:
-    """Nodes whose displacements the rows hold."""
+    """Nodes of the contacts, whose displacements `rows` needs."""
     elements = structure.model.elements
     contacts = (elements[s.element] for s in structure.laws if s.role.collides)
     return {node for element in contacts for node in (element.i, element.j) if node}

@@ -76,7 +76,7 @@ def _first_mode(row: Fields) -> str | None:
 
 
 def _known(value: float) -> float:
-    """Where a value comes in the order of several: one that is not known before all others."""
+    """Sort key of a value: NaN, a value that is not known, comes before all others."""
     return -math.inf if math.isnan(value) else value
 
 
@@ -90,7 +90,7 @@ def _each(
     label: Callable[[Fields], str | None],
     entries: Sequence[tuple[str, str, str, Callable[[Fields], float]]],
 ) -> Iterator[Quantity]:
-    """Quantities of one table with the same labels."""
+    """Make the quantities of one table that share their labels, each from name, unit, meaning, value."""
     return (Quantity(name, axis, unit, doc, table, label, value) for name, unit, doc, value in entries)
 
 
@@ -142,7 +142,7 @@ SOURCES: Final[Mapping[str, Table[RunRecord]]] = MappingProxyType(
 
 
 def taken(rows: Mapping[str, list[Fields]]) -> Values:
-    """The quantities of one run from the rows of its tables; of rows with one label the largest."""
+    """Quantities of one run from the rows of its tables; of rows with the same label the largest value."""
     values: Values = {}
     for q in QUANTITIES:
         by_label: dict[str, float] = {}
@@ -155,7 +155,7 @@ def taken(rows: Mapping[str, list[Fields]]) -> Values:
 
 
 def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]]]:
-    """Name of every source of a stage, and its rows by column."""
+    """Name of every table in `SOURCES` that is written at a stage, and its rows as mappings by column."""
     for name, table in SOURCES.items():
         if stage in table.stages:
             columns = [c.name for c in table.columns]
@@ -163,7 +163,7 @@ def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]
 
 
 def doubts(rows: Mapping[str, list[Fields]]) -> str:
-    """The checks of one run whose verdict calls for a look."""
+    """Text of the checks of one run whose verdict calls for a look."""
     return "; ".join(map(str, looked(map(Check.of, rows.get("checks", ())))))
 
 

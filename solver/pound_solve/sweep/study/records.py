@@ -48,7 +48,7 @@ class Suite:
         self.records = tuple(self._records())
 
     def _levels(self) -> tuple[str, list[float]]:
-        """What the levels measure, and their values."""
+        """Name of the intensity measure that the levels are given in, and the levels."""
         named = [name for name in LEVELS if self.document.at((*self.path, name)) is not None]
         for name in named[1:]:
             message = f"{name} stands beside {named[0]}: one of them tells how strong the records are"
@@ -112,7 +112,7 @@ class Suite:
                     yield from self._read(str(file), path)
 
     def _matched(self, name: str, path: Path_) -> list[str]:
-        """Files of a pattern, or the one file or known record of a name."""
+        """Files that match a pattern, or the one file or known record of that name."""
         if known(name) is not None:
             return [name]
         if any(c in name for c in "*?["):
@@ -129,7 +129,7 @@ class Suite:
             return []
 
     def _read(self, file: str, path: Path_) -> Iterator[RecordFile]:
-        """The record, if it can be read as the study says."""
+        """Yield the record if it can be read as the study says; a mistake adds a diagnostic."""
         name = file if known(file) else Path(file).name
         place = self.document.place(path)
         record_file = RecordFile(name, file, self.items, "", place)
@@ -166,27 +166,27 @@ class Suite:
                 elif measured > 0.0:
                     yield Shaking(record_file, level * context.gravity / measured, level)
 
-    def _measured(self, source: RecordFile, context: LoadingContext) -> float | None:
-        """Intensity of the record as it is [L/T^2]; None where its levels are factors."""
+    def _measured(self, record_file: RecordFile, context: LoadingContext) -> float | None:
+        """Intensity of the unscaled record [L/T^2]; None where its levels are factors."""
         if self.measure == "scale":
             return None
         try:
-            acceleration = unscaled(source, context).acceleration
+            acceleration = unscaled(record_file, context).acceleration
             if self.measure == "pga":
                 intensity = abs(acceleration.peak()[1])
             else:
                 intensity = float(pseudo_acceleration(acceleration, self.period, self.damping)[0, 0])
         except (RecordError, ValueError) as err:
-            self.document.mistake("S606", f"{source.name}: {err}", (*self.path, self.measure))
+            self.document.mistake("S606", f"{record_file.name}: {err}", (*self.path, self.measure))
             return 0.0
         if not intensity > 0.0:
-            message = f"{source.name} has no acceleration that could be scaled"
+            message = f"{record_file.name} has no acceleration that could be scaled"
             self.document.mistake("S606", message, (*self.path, FILES))
         return intensity
 
 
 class UnreadableError(Exception):
-    """The items by which a record is to be read are wrong."""
+    """Raised where the items by which a record is to be read are wrong."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         super().__init__("; ".join(d.message for d in diagnostics))
@@ -194,28 +194,28 @@ class UnreadableError(Exception):
 
 
 @lru_cache(maxsize=256)
-def card_of(source: RecordFile) -> Card:
-    """RECORD card of a record, unscaled; its place is the study's.
+def card_of(record_file: RecordFile) -> Card:
+    """RECORD card of a record, unscaled; its place is that in the study.
 
     Raises
     ------
     UnreadableError
     """
-    model, diagnostics, _ = record_card.read(source.file, source.items, source.name)
+    model, diagnostics, _ = record_card.read(record_file.file, record_file.items, record_file.name)
     if model is None or has_errors(diagnostics):
         raise UnreadableError(diagnostics)
     (card,) = model.equake
-    return replace(card, span=source.place, spans={}) if source.place else replace(card, spans={})
+    return replace(card, span=record_file.place, spans={}) if record_file.place else replace(card, spans={})
 
 
 def scaled(shaking: Shaking) -> Card:
-    """RECORD card of a shaking."""
+    """RECORD card of a record with its scale."""
     card = card_of(shaking.record)
     return replace(card, values={**card.values, "SCALE": shaking.scale})
 
 
-def unscaled(source: RecordFile, context: LoadingContext) -> Motion:
-    """The motion of a record as it is."""
-    card = card_of(source)
+def unscaled(record_file: RecordFile, context: LoadingContext) -> Motion:
+    """Motion of a record without scaling."""
+    card = card_of(record_file)
     motion: Motion = card.spec.impl(card.values, context)
     return motion

@@ -127,7 +127,7 @@ class _Reader:
         self.warned: list[Diagnostic] = []
 
     def study(self) -> Study:
-        """The whole study, if nothing is wrong."""
+        """Read the whole study; raise StudyError where it has mistakes."""
         document = self.document
         decks, combinations = list(self._decks()), self._combinations()
         texts = {name: document.take((name,), str, "") for name in ("out", "method")}
@@ -171,7 +171,7 @@ class _Reader:
         return value
 
     def _stop_at_mistakes(self) -> None:
-        """Raise where there are some, in the order of the study."""
+        """Raise StudyError where there are mistakes, sorted in the order of the study."""
         mistakes = self.document.found
         order = {name: k for k, name in enumerate(self.document.files)}
         mistakes.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
@@ -179,19 +179,19 @@ class _Reader:
             raise StudyError(mistakes, self.document.files)
 
     def _warnings(self) -> str:
-        """Warnings about the decks, with their lines."""
+        """Text of the warnings about the decks, with the lines that they are about."""
         return render(self.warned, self.document.files)
 
     def _beside(self, name: str) -> Path:
-        """A path of the study, which counts from its folder."""
+        """Absolute path of a file that the study names relative to its folder."""
         return (self.document.folder / os.path.expanduser(name)).absolute()
 
     def _out(self, folder: str) -> Path:
-        """Folder of the results."""
+        """Folder of the results: the given one, else one named after the study's file."""
         return self._beside(folder or Path(self.document.name).stem + ".sweep")
 
     def _decks(self) -> Iterator[str]:
-        """Paths of all decks; a pattern stands for the files that it fits."""
+        """Yield the paths of all decks; a pattern stands for the files that match it."""
         document = self.document
         named = [name for name in ("deck", "decks") if document.at((name,)) is not None]
         if len(named) != 1:
@@ -222,7 +222,7 @@ class _Reader:
                 self.document.mistake("S602", f"there is no history {name}", ("histories",), hint)
 
     def _combinations(self) -> list[Params]:
-        """Values of PARAMs of every case."""
+        """PARAMs of every case: all combinations of the tables grid and zip and the file of cases."""
         document = self.document
         grid: list[list[Params]] = [
             [((n, v),) for v in self._values(("grid", n))] for n in self._table("grid")
@@ -241,7 +241,7 @@ class _Reader:
         return [tuple(itertools.chain(*choice)) for choice in itertools.product(*parts)]
 
     def _table(self, name: str) -> dict[str, Any]:
-        """One table of lists; empty where there is none."""
+        """Table of the study by its name; empty where there is none."""
         return self.document.take((name,), dict, {})
 
     def _values(self, path: Path_) -> list[str]:
@@ -273,7 +273,7 @@ class _Reader:
         return [tuple(zip(names, (cell.strip() for cell in row))) for row in lines[1:]]
 
     def _sources(self) -> Iterator[tuple[str, Path_]]:
-        """Every PARAM with the place that gives it values."""
+        """Yield the name of every PARAM with the path of the item that gives it values."""
         for table in ("grid", "zip"):
             for name in self._table(table):
                 yield name, (table, name)
@@ -281,7 +281,7 @@ class _Reader:
             yield name, ("cases",)
 
     def _names(self, decks: Sequence[str], combinations: Sequence[Params]) -> None:
-        """Note PARAMs that are given twice; read the decks."""
+        """Add a diagnostic for every PARAM that is given twice, and read the decks."""
         seen: dict[str, Path_] = {}
         for name, path in self._sources():
             if name.upper() in seen:
@@ -297,7 +297,7 @@ class _Reader:
                 self.models[deck] = read.model
 
     def _told(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
-        """Note mistakes of a deck; those of a value at the study's item."""
+        """Add the mistakes of a deck to the study's; that of a value is placed at the item that sets it."""
         for d in map(self._here, diagnostics):
             if d.severity == "error" and d not in self.document.found:
                 self.document.found.append(d)
@@ -305,17 +305,17 @@ class _Reader:
         self.document.files.update({n: t for n, t in files.items() if n not in options})
 
     def _options(self) -> dict[str, Path_]:
-        """Items of the study by the options of a run that they stand for."""
+        """Paths of the study's items by the options of a run (``--set NAME``, ...) that they stand for."""
         values = {f"--set {name}": path for name, path in self._sources()}
         return {option(name).file: (name,) for name in ("method", "dt", "tol")} | values
 
     def _here(self, diagnostic: Diagnostic) -> Diagnostic:
-        """What is found in a deck, at the item of the study whose value it is about."""
+        """Diagnostic of a deck, placed at the study's item whose value it is about, if any."""
         path = self._options().get(diagnostic.span.file) if diagnostic.span else None
         return replace(diagnostic, span=self.document.place(path)) if path else diagnostic
 
     def _tried(self, case: Case, combinations: Sequence[Params]) -> None:
-        """Prepare the first run of a deck, and look whether every PARAM has an effect."""
+        """Prepare the first run of a deck, and check that every PARAM has an effect."""
         if case.deck not in self.models:
             return
         first = next((r for s in self.suites for r in s.records), None)
@@ -338,7 +338,7 @@ class _Reader:
             self._effective(name, path, case, combinations)
 
     def _effective(self, name: str, path: Path_, case: Case, combinations: Sequence[Params]) -> None:
-        """Note a PARAM on which nothing of the deck depends but the motion that the study replaces."""
+        """Add a diagnostic where a PARAM affects nothing but the motion, which the study replaces."""
         first = dict(combinations[0])
         other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
         if other is None or not self.suites:
@@ -380,8 +380,8 @@ class _Reader:
         return loading.context(self.models[deck], Request(deck))
 
     def _inputs(self, case: Case) -> tuple[dict[str, str], str]:
-        """Texts of a deck and its included files, digests of the files that it reads beside them, and what
-        is kept of its runs; the digest of the texts alone.
+        """Inputs that the results of a deck depend on: texts of the deck and of included files, digests of
+        other files that it reads, and the histories to keep; also return the digest of the texts alone.
         """
         deck = read_deck(request_of(case))
         model = deck.model
@@ -406,7 +406,7 @@ class _Reader:
 
 
 def request_of(case: Case, motion: Any = None) -> Request:
-    """Request of a run of a case."""
+    """Make the request for a run of a case."""
     return Request(
         case.deck,
         dict(case.params),
@@ -419,7 +419,7 @@ def request_of(case: Case, motion: Any = None) -> Request:
 
 
 def _contents(model: Model) -> str:
-    """All of a model but its motion and its PARAMs."""
+    """Text that identifies all of a model but its motion, its PARAMs and its files."""
     return repr(replace(model, params={}, equake=(), files={}))
 
 
