@@ -22,12 +22,12 @@ class Axis(NamedTuple):
 
     @property
     def named(self) -> Mapping[str, Sequence[Any]]:
-        """What a place is found by: the coordinates, or else the labels."""
+        """Labels that select a place, by their names: the coordinates, or else those of the axis."""
         return self.coordinates or {self.name: self.labels}
 
 
 def axes_of(name: str, attributes: Mapping[str, Any]) -> tuple[Axis, ...]:
-    """Axes of a history behind that of time, from the attributes of its dataset."""
+    """Axes of a history other than time, from the attributes of its dataset."""
     sources = HISTORIES[name].axes if name in HISTORIES else {}
     labels = attributes["labels"]
     if name == "time":
@@ -42,7 +42,7 @@ def axes_of(name: str, attributes: Mapping[str, Any]) -> tuple[Axis, ...]:
 
 
 def coordinates(axes: Sequence[Axis]) -> dict[str, tuple[Any, ...]]:
-    """Coordinates of every number of a row, row by row, by their names."""
+    """Coordinates of every number of a row in C order, by their names."""
     places = list(itertools.product(*(range(len(axis.labels)) for axis in axes)))
     return {
         name: tuple(values[place[k]] for place in places)

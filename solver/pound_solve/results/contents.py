@@ -57,7 +57,7 @@ def tables_at(stage: Stage) -> Iterator[Table[Any]]:
 
 
 def layout_of(items: RecordedItems) -> Layout:
-    """Layout of all histories but ``time``, of what is recorded."""
+    """Layout of all histories but ``time`` for the items that are recorded."""
     return {name: h.layout(items) for name, h in HISTORIES.items() if name != "time"}
 
 
@@ -67,10 +67,10 @@ def values_of(block: SampleBlock) -> dict[str, Array]:
 
 
 def closeups_of(block: SampleBlock) -> dict[str, Array]:
-    """Rows of the histories that close-ups have."""
+    """Rows of the histories that are stored in close-ups, from a block of samples."""
     return {name: h.values(block) for name, h in HISTORIES.items() if h.closeup}
 
 
 def extremes_of(block: SampleBlock) -> dict[str, Array]:
-    """Rows of the histories whose extremes are kept."""
+    """Rows of the histories whose extremes are stored, from a block of samples."""
     return {name: h.values(block) for name, h in HISTORIES.items() if h.extremes}

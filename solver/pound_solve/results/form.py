@@ -33,7 +33,7 @@ class ResultsError(Exception):
 
 
 def storable(text: str) -> str:
-    """Text that HDF5 can hold: no NUL, nothing outside UTF-8 (undecodable bytes in file names)."""
+    """Text made fit for HDF5: without NUL and what UTF-8 cannot hold (undecodable bytes in file names)."""
     if text.isascii() and "\0" not in text:
         return text
     return text.replace("\0", "\N{REPLACEMENT CHARACTER}").encode("utf-8", "replace").decode("utf-8")
@@ -50,7 +50,7 @@ def unescape(key: str) -> str:
 
 
 def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = None) -> blake2b:
-    """Digest of a dataset, by which a reader sees that it is as it was written.
+    """Digest of a dataset, by which a reader checks that it has not changed since it was written.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def digest_of_file(parts: Mapping[str, str], attributes: Mapping[str, Any]) -> s
 
 
 def reason(err: OSError) -> str:
-    """Why a file does not open, in a user's words."""
+    """Reason why a file cannot be opened, for a message to the user."""
     said = str(err)
     if "unable to lock" in said:
         return "in use by another program (perhaps the run is still going on)"

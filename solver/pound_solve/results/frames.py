@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def library(name: str) -> Any:
-    """A package of the extra ``data``.
+    """Import a package of the extra ``data``.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def labelled(
 
 
 def _dense(values: Array, pairs: Sequence[tuple[Any, Any]]) -> tuple[Array, tuple[Any, Any]]:
-    """Columns of pairs as a grid of both labels."""
+    """Columns labelled by pairs as an array with an axis for each label, and the labels of both axes."""
     first, second = (list(dict.fromkeys(labels)) for labels in zip(*pairs))
     grid = np.full((len(values), len(first), len(second)), np.nan)
     grid[:, [first.index(a) for a, _ in pairs], [second.index(b) for _, b in pairs]] = values

@@ -7,7 +7,7 @@ from pound_solve.results.schema import FORMATS
 
 
 def results_page() -> str:
-    """Return that part as Markdown."""
+    """Return the list of all tables and histories as Markdown."""
     lines = ["## Tables", ""]
     for number, (heading, names) in enumerate(SECTIONS, 1):
         lines += [f"### {number} {heading}", ""]

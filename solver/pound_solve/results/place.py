@@ -58,7 +58,7 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
 
 
 def _lay(path: Path, report: str) -> None:
-    """Write a report under its name `partial`; nothing stays of one that finds no room."""
+    """Write a report to a temporary file, which is removed where the disk has no room for it."""
     try:
         path.write_text(report, encoding="ascii", newline="\n")
         hold(path)
@@ -68,6 +68,6 @@ def _lay(path: Path, report: str) -> None:
 
 
 def digest_in(report: Path) -> str:
-    """Digest of the results that a report was made from; empty where it has none."""
+    """Digest that a report gives of the results that it was made from; empty where it gives none."""
     match = _DIGEST.search(contents(report).decode("ascii", "replace")) if report.is_file() else None
     return match[0].split()[-1] if match else ""

@@ -68,7 +68,7 @@ class NoSuchPartError(ResultsError, KeyError):
 
 
 def _sound(method: Callable[Concatenate[Results, _P], _T]) -> Callable[Concatenate[Results, _P], _T]:
-    """The method, which says that the file is damaged where it cannot be read."""
+    """Decorate a method so that it raises ResultsError where the file is damaged."""
 
     @wraps(method)
     def read(self: Results, /, *args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -165,7 +165,7 @@ class Results:
             raise self._damaged("parts are missing or not as they were written")
 
     def _own_digest(self) -> str:
-        """Digest of the file from those that its parts name."""
+        """Digest of the file, computed from the digests that its parts hold."""
         parts: dict[str, str] = {}
 
         def take(name: str, item: h5py.Dataset | h5py.Group) -> None:
@@ -239,7 +239,7 @@ class Results:
 
     @_sound
     def holds(self, name: str) -> bool:
-        """Whether the history of that name has an instant, or else the table of that name a row."""
+        """Whether the history of that name has an instant, or where there is none, the table a row."""
         if name in self._datasets:
             return self._length > 0
         return name in self.tables and len(self._table(name)) > 0
@@ -313,13 +313,13 @@ class Results:
 
     @_sound
     def coordinates(self, name: str) -> dict[str, tuple[Any, ...]]:
-        """What the numbers of a history's row are found by: each coordinate (``node``, ``component``, ...)
+        """Coordinates that select the numbers of a history's row: each (``node``, ``component``, ...)
         with its value for every number, in the order of `labels`.
         """
         return coordinates(axes_of(name, self.attributes(name)))
 
     def places(self, name: str, /, **at: object) -> list[int]:
-        """Where in a history's row, in the order of `labels`, the numbers with these coordinates stand.
+        """Indices of the numbers with these coordinates in a history's row, in the order of `labels`.
 
         Raises
         ------
@@ -381,7 +381,7 @@ class Results:
 
     @_sound
     def course(self, name: str) -> tuple[Array, Array]:
-        r"""A history with its close-ups: rising times, shape (n,), and rows, shape (n, \*row)."""
+        r"""A history merged with its close-ups: ascending times, shape (n,), and rows, shape (n, \*row)."""
         t, rows = self.time, self.history(name)
         if name not in self.closeups:
             return t, rows
@@ -479,7 +479,7 @@ class Results:
         return "\n".join(self._contents())
 
     def _contents(self) -> Iterator[str]:
-        """Lines that tell what is in the file."""
+        """Lines of text that list what is in the file."""
         units = self.units
         yield f"<Results {str(self.path)!r}>"
         yield self.title or "(no title)"
@@ -499,7 +499,7 @@ class Results:
 
     @_sound
     def restart(self) -> dict[str, Array]:
-        """State that a later run can be taken up from; empty where the file has none."""
+        """State that a later run can continue from; empty where the file has none."""
         group = self._file.get("restart", {})
         return {
             name: self._as_written(name, group[name], np.asarray(group[name], float))
@@ -509,7 +509,7 @@ class Results:
 
     @_sound
     def identity(self) -> dict[str, str]:
-        """What that state belongs to: parts of the deck and their values; empty where the file has none."""
+        """Parts of the deck that the state of `restart` depends on, and their values; empty without one."""
         group = self._file.get("restart", {})
         if IDENTITY not in group:
             return {}
@@ -522,7 +522,7 @@ class Results:
     def _find(
         self, group: Mapping[str, Any], key: str, kind: str, name: str, existing: tuple[str, ...]
     ) -> h5py.Dataset:
-        """A dataset of this file."""
+        """Dataset `key` of a group; raise NoSuchPartError where there is none."""
         if key not in group:
             raise NoSuchPartError(
                 f"no {kind} {name!r} in this file; it has: {', '.join(existing) or 'none'}"
@@ -535,7 +535,7 @@ class Results:
         return dataset
 
     def _as_written(self, name: str, dataset: h5py.Dataset, data: _D, ours: bool = True) -> _D:
-        """The data of a dataset, if they are those that were written; `ours` have a digest."""
+        """Return the data of a dataset; raise ResultsError where they do not match its digest."""
         if self._whole:
             return data
         attrs = dataset.attrs
@@ -552,12 +552,12 @@ class Results:
 
 
 def is_hdf5(path: str | Path) -> bool:
-    """Whether there is a file of the format of results, ours or not."""
+    """Whether there is an HDF5 file at the path, written by this program or not."""
     return Path(path).is_file() and bool(h5py.is_hdf5(path))
 
 
 def _plain(value: Any) -> Any:
-    """Python's own str or number for what h5py gives."""
+    """Convert a value of h5py to a str or number of Python."""
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
     return value.item() if isinstance(value, np.generic) else value

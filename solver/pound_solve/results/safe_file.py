@@ -31,11 +31,11 @@ RESERVE: Final = 4 * PAGE  #: room held behind the data
 
 
 class NoRoomError(ResultsError):
-    """The disk has no room for what is to be written; what stands in the file is whole."""
+    """Raised where the disk has no room for what is to be written; the file stays as last committed."""
 
 
 class BusyError(ResultsError):
-    """Another program writes the file."""
+    """Raised where another program writes the file."""
 
 
 class SafeFile:
@@ -80,11 +80,11 @@ class SafeFile:
         return self._place
 
     def tell(self) -> int:
-        """The place."""
+        """Current place in the file."""
         return self._place
 
     def readinto(self, buffer: memoryview) -> int:
-        """Fill a buffer with what stands at the place, zeros behind the end."""
+        """Fill a buffer from the current place on, with zeros behind the end of the data."""
         at, done = self._place, 0
         while done < len(buffer):
             number, inside = divmod(at + done, PAGE)
@@ -95,13 +95,13 @@ class SafeFile:
         return done
 
     def read(self, count: int) -> bytes:
-        """What stands at the place."""
+        """Read some bytes from the current place on."""
         buffer = bytearray(count)
         self.readinto(memoryview(buffer))
         return bytes(buffer)
 
     def write(self, data: memoryview) -> int:
-        """Keep data that belongs to the place."""
+        """Keep data for the current place in memory until `commit`."""
         at, done = self._place, 0
         while done < len(data):
             number, inside = divmod(at + done, PAGE)
@@ -116,7 +116,7 @@ class SafeFile:
         return done
 
     def truncate(self, size: int) -> int:
-        """Set where the data end."""
+        """Set the size of the data."""
         self._size = size
         return size
 
@@ -124,7 +124,7 @@ class SafeFile:
         """Do nothing: `commit` writes."""
 
     def _page(self, number: int) -> bytes | bytearray:
-        """One page as it was last written."""
+        """One page as it was last written, in memory or on the disk."""
         if number in self._pages:
             return self._pages[number]
         start = number * PAGE
@@ -134,7 +134,7 @@ class SafeFile:
         return self._disk.read(PAGE).ljust(PAGE, b"\0")
 
     def commit(self) -> None:
-        """Write all that was kept.
+        """Write all kept pages to the disk.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class SafeFile:
         self._seal(self._room - LENGTH)
 
     def _seal(self, place: int) -> None:
-        """Seal what stands on the disk, at the end of the file."""
+        """Write the seal of the data on the disk at a place, the end of the file."""
         self._sealed = place
         self._lay(place, seal(self._sums, self._committed))
 
@@ -165,7 +165,7 @@ class SafeFile:
         self._disk.write(data)
 
     def _sum_up(self, changed: list[int]) -> None:
-        """Checksums of the pages that changed, those from the former end to the new one among them."""
+        """Update the checksums of changed pages and of those between the former and the new end."""
         count = -(-self._size // PAGE)
         ends = range(min(self._committed, self._size) // PAGE, count)
         self._sums = self._sums[:count] + [0] * (count - len(self._sums))
@@ -175,12 +175,12 @@ class SafeFile:
                 self._sums[number] = next(checksums(self._disk, start, min(start + PAGE, self._size)))
 
     def forget(self) -> None:
-        """Return to the last commit."""
+        """Discard all that was written since the last commit."""
         self._pages.clear()
         self._size = self._committed
 
     def _make_room(self, size: int) -> None:
-        """Have the disk hold room up to a size."""
+        """Reserve room on the disk up to a size; raise NoRoomError where there is none."""
         if size <= self._room:
             return
         try:
@@ -193,7 +193,7 @@ class SafeFile:
         self._room = size
 
     def end(self) -> None:
-        """Give the reserve back and seal the file; from here on others may read the file, not write it."""
+        """Release the reserve and seal the file; from now on others may read the file, but not write it."""
         self._seal(self._committed)
         self._disk.truncate(self._committed + LENGTH)
         self._room = self._committed + LENGTH
@@ -206,7 +206,7 @@ class SafeFile:
         self.path.unlink()
 
     def close(self) -> None:
-        """Close the file and give it free."""
+        """Close the file and release its lock."""
         self._disk.close()
 
 
@@ -251,7 +251,7 @@ def _locked(path: Path) -> IO[bytes]:
 
 
 def _fresh(path: Path) -> IO[bytes]:
-    """A new file at a path where there are no locks, but no file that is open can be removed."""
+    """New file at a path, on a system without locks where an open file cannot be removed (Windows)."""
     try:
         path.unlink(missing_ok=True)
     except PermissionError as err:
@@ -270,7 +270,7 @@ def _only_read(disk: IO[bytes]) -> bool:
 
 
 def _give_up(path: Path, disk: IO[bytes]) -> None:
-    """Free the name of the file, if it is still that of the file."""
+    """Remove the file from its path, if the path still leads to it, and close it."""
     try:
         if os.path.samestat(os.fstat(disk.fileno()), path.stat()):
             path.unlink()
@@ -280,7 +280,7 @@ def _give_up(path: Path, disk: IO[bytes]) -> None:
 
 
 def _allocate(disk: IO[bytes], start: int, count: int) -> None:
-    """Have the disk hold room for some bytes from a place on."""
+    """Reserve room on the disk for `count` bytes from a place on."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(disk.fileno(), start, count)
     else:

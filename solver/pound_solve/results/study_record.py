@@ -16,7 +16,7 @@ class Trial(Protocol):
 
     @property
     def setting(self) -> str:
-        """Its step or tolerance as a deck has it."""
+        """Step or tolerance as a deck gives it."""
         ...
 
     @property
@@ -61,16 +61,16 @@ class Trial(Protocol):
 
 
 class Reference(Protocol):
-    """What errors are measured against."""
+    """Reference that the errors of trials are measured against."""
 
     @property
     def error(self) -> Mapping[str, float]:
-        """Its own errors by kind."""
+        """Estimated errors of the reference itself, by kind."""
         ...
 
     @property
     def how(self) -> str:
-        """How it was found."""
+        """Text on how it was found."""
         ...
 
 
@@ -84,7 +84,7 @@ class Advice(Protocol):
 
     @property
     def trial(self) -> Trial | None:
-        """None where no trial is sure to meet it."""
+        """Trial of least time that meets the target; None where none is sure to."""
         ...
 
     @property
@@ -108,7 +108,7 @@ class StudyRecord(Protocol):
 
     @property
     def reference(self) -> Reference:
-        """What errors are measured against."""
+        """Reference that the errors of trials are measured against."""
         ...
 
     @property

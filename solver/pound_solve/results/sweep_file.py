@@ -59,7 +59,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Sweep:
-    """What all runs of a sweep have come to.
+    """Results of all runs of a sweep.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Sweep:
 
     @staticmethod
     def is_of(path: str | Path) -> bool:
-        """Whether a file holds a sweep, as far as its head tells."""
+        """Whether a file holds a sweep, by the file type that its attributes give."""
         if not Path(path).is_file():  # a pipe would wait
             return False
         try:
@@ -118,7 +118,7 @@ class Sweep:
             raise ResultsError(f"{path}: damaged file: {err}") from err
 
     def columns(self) -> Iterator[tuple[str, Sequence[Any]]]:
-        """Every column of a flat table with its name; that of a quantity with labels is ``name label``."""
+        """Yield name and values of every column of a flat table; a labelled quantity has ``name label``."""
         for name, variable in self.variables.items():
             if not variable.axis:
                 yield name, variable.values.tolist()
@@ -127,13 +127,13 @@ class Sweep:
                     yield f"{name} {label}", values.tolist()
 
     def to_pandas(self) -> DataFrame:
-        """One row a run, one column a number; needs the extra ``data``."""
+        """DataFrame with a row for each run and a column for each number; needs the extra ``data``."""
         from pandas import DataFrame
 
         return DataFrame(dict(self.columns())).set_index(RUN)
 
     def to_xarray(self) -> Dataset:
-        """Variables with their dimensions and labels; needs the extra ``data``."""
+        """Dataset of the variables with their dimensions and labels; needs the extra ``data``."""
         from xarray import Dataset
 
         data = {
@@ -149,7 +149,7 @@ class Sweep:
         return Dataset(data, coords, dict(self.about))
 
     def history(self, run: int, name: str) -> tuple[NDArray[Any], NDArray[Any], tuple[str, ...]]:
-        """A history that the sweep has kept: times [T], rows, labels of the columns.
+        """A history that is stored in the sweep: times [T], rows, labels of the columns.
 
         Parameters
         ----------
@@ -234,14 +234,14 @@ def _put(path: Path, fill: Callable[[h5py.File], None], columns: Mapping[str, Se
 
 
 def _cell(value: object) -> object:
-    """A value of the table; nothing for what a run does not have."""
+    """Value as a cell of the CSV table; empty for NaN."""
     if isinstance(value, float):
         return "" if math.isnan(value) else repr(value)
     return value
 
 
 def _write(file: h5py.File, sweep: Sweep) -> None:
-    """Variables and their axes."""
+    """Write the variables and their axes into a file."""
     file.attrs.update({"filetype": FILETYPE, "format_version": np.array(FORMAT_VERSION)})
     file.attrs.update({key: storable(value) for key, value in sweep.about.items()})
     file.attrs[ORDER] = list(sweep.variables)
@@ -258,7 +258,7 @@ def _write(file: h5py.File, sweep: Sweep) -> None:
 
 
 def _dataset(file: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
-    """One dataset with its unit and its meaning."""
+    """Create the dataset of a variable with its unit and its meaning."""
     texts = variable.values.dtype.kind == "O"
     data = np.array([storable(v) for v in variable.values.tolist()], object) if texts else variable.values
     dataset = file.create_dataset(name, data=data, dtype=_TEXT if texts else None)
@@ -269,7 +269,7 @@ def _dataset(file: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
 
 
 def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[Any]]) -> None:
-    """Histories of one run in a group of its own."""
+    """Write the histories of one run into a group of its own."""
     group = file.create_group(f"{HISTORIES}/{number}")
     time = group.create_dataset("time", data=kept["time"])
     time.make_scale("time")
@@ -288,7 +288,7 @@ def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[An
 
 
 def _read(file: h5py.File) -> tuple[dict[str, Variable], dict[str, tuple[str, ...]], dict[str, str]]:
-    """Variables, labels and what else a file tells."""
+    """Read the variables of a file, the labels of the axes, and its other attributes."""
     variables, axes = dict[str, Variable](), dict[str, None]()
     for name in map(_plain, file.attrs[ORDER]):
         item = file[name]
@@ -304,5 +304,5 @@ def _read(file: h5py.File) -> tuple[dict[str, Variable], dict[str, tuple[str, ..
 
 
 def _plain(value: Any) -> Any:
-    """Python's own text for what h5py gives."""
+    """Convert a text of h5py to a str."""
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else value

@@ -142,7 +142,7 @@ def _of_cells(results: Results, grid: Grid) -> dict[str, Array]:
 
 
 def _write_grid(root: h5py.Group, grid: Grid) -> None:
-    """Points and cells, in one part."""
+    """Write points and cells as one part."""
     offsets = np.cumsum([0, *map(len, grid.ends)])
     parts: dict[str, NDArray[Any]] = {
         "NumberOfPoints": np.array([len(grid.points)]),
@@ -163,7 +163,7 @@ def _write_steps(
     fixed: Mapping[str, Mapping[str, NDArray[Any]]],
     moving: Mapping[str, Mapping[str, Array]],
 ) -> None:
-    """Values of all steps, and where those of each begin; `fixed` are the same in all steps."""
+    """Write the values of all steps and the offset of each step; `fixed` values are the same in all."""
     steps, n = root.create_group("Steps"), len(time)
     steps.attrs["NSteps"] = n
     steps.create_dataset("Values", data=time)

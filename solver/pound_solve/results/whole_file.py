@@ -100,7 +100,7 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
 
 @contextmanager
 def whole_hdf(path: Path) -> Iterator[h5py.File]:
-    """A new HDF5 file, see `whole`.
+    """Yield a new HDF5 file in memory, which is written at the end of the block, see `whole`.
 
     HDF5 does not survive a write that fails, and closing such a file ends the process: it writes into
     memory.

@@ -134,7 +134,7 @@ class Writer:
                 self._disk.end()
 
     def _commit(self) -> None:
-        """Have the disk hold what was written, or be as before."""
+        """Write all to the disk; where it has no room, restore the last commit and raise NoRoomError."""
         self._file.flush()
         try:
             self._disk.commit()
@@ -218,7 +218,7 @@ class Writer:
         self._stored[f"{group}/{name}"] = THERE if name in OF_THE_DAY else digest
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
-        """Store all tables of a stage that have something to tell.
+        """Store the tables of a stage, but for those whose `rows` returns None.
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ class Writer:
         self._scale(name, dataset, attributes)
 
     def _scale(self, name: str, dataset: h5py.Dataset, attributes: Mapping[str, Any]) -> None:
-        """Give the axes of a history their labels in the way of netCDF: a dimension scale for each axis,
+        """Attach labels to the axes of a history in the way of netCDF: a dimension scale for each axis,
         beside the history, so that programs for netCDF open its group by themselves.
         """
         group, _, leaf = name.rpartition("/")
@@ -351,7 +351,7 @@ class Writer:
             self._commit()
 
     def _aside(self, group: str, name: str, layout: HistoryLayout, rows: NDArray[Any]) -> None:
-        """Store rows of a history that are no samples in a group of their own."""
+        """Store rows of a history other than its samples (close-ups, extremes) in a group of their own."""
         if 0 in layout.shape:
             return
         attributes = _complete(name, layout)
@@ -410,7 +410,7 @@ class Writer:
             self._commit()
 
     def finish(self, status: str, message: str = "") -> None:
-        """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
+        """Store how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
         parts = {name: digest.hexdigest() for name, digest in self._digests.items()}
@@ -424,7 +424,7 @@ class Writer:
 
 
 def _items(values: Any) -> NDArray[Any]:
-    """Numbers as an array, anything else as an array of texts."""
+    """Array of numbers; of texts for anything else."""
     items = np.asarray(values)
     if items.dtype.kind in "iuf":
         return items
@@ -432,7 +432,7 @@ def _items(values: Any) -> NDArray[Any]:
 
 
 def _beside(place: h5py.Group, name: str, values: Sequence[Any]) -> h5py.Dataset:
-    """Dataset with the labels of an axis; histories of a group share it."""
+    """Dataset with the labels of an axis, created if it is missing; the histories of a group share it."""
     items = _items(values)
     if name not in place:
         return place.create_dataset(name, data=items, dtype=None if items.dtype.kind in "iuf" else _TEXT)
@@ -443,8 +443,8 @@ def _beside(place: h5py.Group, name: str, values: Sequence[Any]) -> h5py.Dataset
 
 
 def _complete(name: str, layout: HistoryLayout) -> dict[str, Any]:
-    """Attributes of a history with its labels, and one unit for each column; ValueError where they are not
-    as many as the columns.
+    """Attributes of a history, completed by labels and one unit for each column; ValueError where their
+    number is not that of the columns.
     """
     shape, attributes = layout.shape, dict(layout.attributes)
     width = shape[-1] if shape else 1
@@ -463,7 +463,7 @@ def _complete(name: str, layout: HistoryLayout) -> dict[str, Any]:
 
 
 def _checked(table: str, column: Column, values: Sequence[Any]) -> Sequence[Any]:
-    """The values of one column, ready to store."""
+    """Values of one column as they are stored; TypeError where one is not of the column's type."""
     kind: type = {"text": str, "int": Integral}.get(column.fmt, Real)
     wrong = {
         actual

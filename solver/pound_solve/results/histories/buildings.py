@@ -56,7 +56,7 @@ def storey_layout(unit: str, places: Sequence[tuple[str, int]]) -> HistoryLayout
 
 
 def total(name: str, chosen: slice, block: SampleBlock) -> Array:
-    """Some sums of a name, shape (n_times, n_chosen)."""
+    """Part `chosen` of the recorded sums of forces called `name`, shape (n_times, n_chosen)."""
     return block.totals[name][chosen].T
 
 

@@ -44,7 +44,7 @@ def force_layout(items: RecordedItems) -> HistoryLayout:
 
 
 def forces(block: SampleBlock) -> Array:
-    """Histories of the forces, the last of the inputs, shape (n_times, n_forces)."""
+    """Forces in time, which are the last of the inputs, shape (n_times, n_forces)."""
     return block.inputs[len(block.inputs) - len(block.items.system.forces) :].T
 
 

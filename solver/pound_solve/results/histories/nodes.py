@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def layout(nodes: Sequence[int], per: str) -> HistoryLayout:
-    """Layout of three values a node; `per` is what follows their dimension of length or angle."""
+    """Layout of three values for each node; `per` ends their unit, as ``/T`` for velocities."""
     units = [f"{dimension}{per}" for dimension in ("L", "L", "rad")]
     return HistoryLayout((len(nodes), 3), {"nodes": tuple(nodes), "labels": ["X", "Y", "R"], "unit": units})
 

@@ -14,7 +14,7 @@ LIBRARIES: Final = ("lark", "numpy", "scipy", "numba", "llvmlite", "h5py", "tabu
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """Modules of this program, by package, and of libraries, and kernels of this process."""
+    """One row for each package of this program and each library, and two for the compiled kernels."""
     packages: dict[str, list[str]] = {}
     for name in sorted(sys.modules):
         program, _, rest = name.partition(".")
@@ -32,7 +32,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 def kernels() -> tuple[int, int]:
-    """Kernels of this program that numba compiled in this process, and those it took from its cache."""
+    """Number of kernels that numba compiled in this process, and of those it loaded from its cache."""
     if "numba" not in sys.modules:
         return 0, 0
     statistics = list(_statistics())
@@ -43,7 +43,7 @@ def kernels() -> tuple[int, int]:
 
 
 def _statistics() -> Iterator[Any]:
-    """Statistics of every kernel's dispatcher: nothing is counted while a run needs its time."""
+    """Statistics that numba keeps of every kernel of this program that is loaded."""
     dispatcher = sys.modules["numba.core.dispatcher"].Dispatcher
     for x in gc.get_objects():
         if isinstance(x, dispatcher) and x.py_func.__module__.startswith("pound_solve"):

@@ -22,7 +22,7 @@ def rows(run: RunRecord) -> Iterator[Row] | None:
 
 
 def _rows(run: RunRecord, motions: list[tuple[int, Motion]]) -> Iterator[Row]:
-    """See `rows`; what a wave brings to several supports is measured once."""
+    """Rows as of `rows`; equal motions, as a wave brings to several supports, are measured once."""
     from pound_solve.loading import intensity
 
     done: dict[tuple[float, ...], intensity.Intensity] = {}

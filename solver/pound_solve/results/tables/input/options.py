@@ -24,7 +24,7 @@ GEOMETRY: Final[Mapping[str, str]] = MappingProxyType(
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """Units, mass, geometry, warnings that are not told, PARAMs, analyses with their items, and OUTPUT."""
+    """Rows on units, mass, geometry, suppressed warnings, PARAMs, analyses with items, and OUTPUT."""
     model, units = run.model, run.model.units
 
     def default(key: str) -> str:

@@ -7,7 +7,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 
 def rows(run: RunRecord) -> list[Row] | None:
-    """Decisions of the reduction; after MODAL a row only if there are no modes."""
+    """One row for each decision of the reduction; without a history only one where MODAL finds no modes."""
     if run.recorded is None:
         if run.modal.modes:
             return None

@@ -50,14 +50,14 @@ def periods(run: RunRecord) -> Iterator[Row]:
 
 
 def damping(run: RunRecord) -> str:
-    """The damping beside that of elements."""
+    """Text on the damping other than that of contacts and dampers."""
     cards = [(card.spec.name, damped_part(card), text) for card, text in run.structure.damping_texts]
     texts = [f"{kind}{'' if part == 'all' else ' of ' + part}: {text}" for kind, part, text in cards]
     return _few(texts, "cards") if texts else "none but that of contacts and dampers"
 
 
 def contact_law(run: RunRecord) -> str:
-    """Laws of the contacts, their stiffness and restitution."""
+    """Text on the laws of the contacts with their stiffness and restitution."""
     kinds, units = dict[str, None](), run.model.units
     for s in run.structure.laws:
         if s.role.collides:
@@ -73,7 +73,7 @@ def _few(texts: list[str], what: str) -> str:
 
 
 def ground_motion(run: RunRecord, motion: Motion) -> str:
-    """Name and peak of a motion."""
+    """Text on a motion: its name and peak."""
     info, units = motion.info, run.model.units
     name = " ".join(str(info[k]) for k in ("name", "component") if info.get(k)) or str(info.get("kind"))
     if motion.direction == "R":
@@ -118,7 +118,7 @@ def response(run: RunRecord) -> Iterator[Row]:
 
 
 def error_of(outcome: Outcome) -> str:
-    """What is known about the error of a method in time."""
+    """Text on what is known about the error of a method in time."""
     if outcome.one_of_several:
         return "not known: the motion is one of several, see the checks"
     if outcome.exact:

@@ -19,8 +19,8 @@ BEYOND = "look: beyond ordinary rotations"
 
 
 def rows(run: RunRecord) -> list[Row] | None:
-    """The springs and members of the largest damage, or ductility where the deck gives no ultimate one; of
-    a member, its end that is worse off.
+    """Rows of the springs and members of the largest damage, or of the largest ductility where the deck
+    gives no ultimate one; of a member, that of its worse end.
     """
     members: dict[tuple[int, str], list[SpringResponse]] = {}
     for r in run.history.springs:
@@ -49,13 +49,13 @@ def _state(r: SpringResponse, index: float) -> str:
 
 
 def _end(r: SpringResponse) -> str:
-    """End of a member at which a hinge is, I or J; empty for all that is no hinge."""
+    """End of the member at which a hinge is, I or J; empty for what is not a hinge."""
     kind, _, rest = r.spring.component.partition(" ")
     return rest[:1] if kind == "hinge" else ""
 
 
 def _rank(r: SpringResponse) -> tuple[float, float]:
-    """Damage, then ductility; what has none comes last."""
+    """Sort key of the largest damage, then ductility; what has none is smallest."""
     return (r.damage.total if r.damage else -1.0, r.ductility if r.ductility == r.ductility else -1.0)
 
 
