@@ -20,7 +20,7 @@ NOISY: Final = 0.25  #: share that times may differ by and be alike; repeats tha
 
 
 class StudyError(Exception):
-    """The deck or the options contain nothing to study."""
+    """Raised where the deck or the options contain nothing to study."""
 
 
 #: Extremes by kind and unit.
@@ -84,13 +84,13 @@ class Reference:
 
     @property
     def unseen(self) -> bool:
-        """Whether there are contacts, none of which closed: the effect of steps on them is unknown."""
+        """Whether there are contacts but none has closed: the effect of steps on them is unknown."""
         forces = [values for (kind, _), values in self.peaks.items() if kind == "contact"]
         return bool(forces) and not any(values.any() for values in forces)
 
     @property
     def doubt(self) -> float:
-        """Largest of its errors."""
+        """Largest estimated error of the reference itself."""
         return max((e for e in self.error.values() if math.isfinite(e)), default=0.0)
 
 
@@ -114,7 +114,7 @@ class Advice:
 
 
 def errors(peaks: Peaks, reference: Peaks) -> Errors:
-    """Largest difference of an extreme over the largest extreme of its kind and unit, by kind.
+    """Error by kind: largest difference of an extreme, divided by the largest extreme of its kind and unit.
 
     NaN for a kind that nothing belongs to, or all of whose extremes are zero.
     """
@@ -130,7 +130,7 @@ def errors(peaks: Peaks, reference: Peaks) -> Errors:
 
 
 def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
-    """Limit of a ladder for steps of zero, from its two finest trials by the order of the method.
+    """Reference extrapolated to steps of zero from the two finest trials of a ladder by the method's order.
 
     Its own error is estimated by what the same extrapolation gives one rung before.
 

@@ -40,7 +40,7 @@ AXES: Final = {"hysteresis": ("deformation", "force"), "contact": ("closure", "c
 
 
 class LawTestError(Exception):
-    """A specimen that cannot be made, or cannot be driven."""
+    """Raised where a specimen cannot be made, or cannot be driven."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Trace:
-    """A law's answer to a path: its corners, and the curve between them for drawings."""
+    """Response of a law to a path: its corners, and the curve between them for drawings."""
 
     corners: tuple[Point, ...]
     curve: tuple[tuple[float, float], ...]
@@ -97,7 +97,7 @@ def law_of(name: str) -> Spec:
 
 
 def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
-    """A law with its items, and these with what was added to them.
+    """Build a law from its items; also return these as text with what was added to them.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
 
 
 def _branches(law: Law, state: State, d: float, goal: float, rate: float) -> Iterator[tuple[float, State]]:
-    """Ends of the branches on the way, the state after each, and the goal."""
+    """Yield deformation and state at the end of each branch on the way to `goal`, and at `goal`."""
     for at, after in transitions(law, state, d, goal, rate):
         yield at, after
         state = after
@@ -209,7 +209,7 @@ def _point(law: Law, state: State, d: float, v: float, drag: float, turn: bool) 
 
 
 def _drag(law: Law, state: State, d0: float, d1: float, v: float) -> float:
-    """Work on the dashpot between two deformations (exact for forces up to a high power of them)."""
+    """Work of the dashpot force between two deformations by Gauss points (exact for high powers)."""
     if v == 0.0:
         return 0.0
     half, middle = 0.5 * (d1 - d0), 0.5 * (d0 + d1)
@@ -220,7 +220,7 @@ def _drag(law: Law, state: State, d0: float, d1: float, v: float) -> float:
 
 
 def table(points: Sequence[Point]) -> str:
-    """Corners as a table; turning points are marked, rounding errors are zero."""
+    """Text of a table of the corners, turning points marked and rounding errors set to zero."""
     heads = ("deformation", "force", "work", "stored", "dissipated")
     columns = np.array([(p.d, p.f, p.work, p.stored, p.lost) for p in points])
     columns[np.abs(columns) < 1e-13 * np.abs(columns).max(axis=0)] = 0.0

@@ -19,7 +19,7 @@ LONGEST: Final = 10**7  #: file, in steps
 
 
 class MotionError(Exception):
-    """A motion that no file can hold; the message says why."""
+    """Raised where a motion cannot be written to a file; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class MotionFile:
 
 
 def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
-    """Every translation under EQUAKE, in shares of the deck's gravity.
+    """Yield a record file for every translation under EQUAKE, in shares of the deck's gravity.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
 
 
 def _file(number: int, motion: Motion, gravity: float, dt: float | None) -> MotionFile:
-    """File of one motion."""
+    """Make the record file of one motion."""
     name, a = str(motion.info["name"]), motion.acceleration
     steps = np.diff(a.breaks)
     equal = len(a.coefs) <= 2 and bool(np.ptp(steps) <= EQUAL * steps.mean())

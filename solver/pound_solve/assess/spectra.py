@@ -28,7 +28,7 @@ WAYS: Final = MappingProxyType({"X": "X", "Y": "Y", "R": "R (rad)"})  #: names o
 
 
 class SpectrumError(Exception):
-    """A source that has no motion to show; the message says why."""
+    """Raised where a source has no motion; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> So
 
 
 def coarse(source: Source, shortest: float) -> str:
-    """Warning that accelerations are stored too seldom for the shortest period [T]; empty if not."""
+    """Warning where accelerations are stored too seldom for the shortest period [T]; else empty."""
     step = max(float(np.diff(a.breaks).max()) for a in source.accelerations.values())
     if step * SAMPLES <= shortest * (1.0 + 1e-9):
         return ""

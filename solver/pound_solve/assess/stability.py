@@ -138,7 +138,7 @@ class JudgedRun:
 
 
 def motion(results: Results) -> dict[str, Array]:
-    """The compared quantities of a run, by their names in `Found`."""
+    """Quantities of a run that are compared, by their names in `Found`."""
     tables = {x: results.table(x) for x in ("spring_envelope", "contact_summary") if x in results.tables}
     quantities = {}
     if "node/u" in results.histories:
@@ -188,7 +188,7 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
 
 
 def serve(line: Connection) -> None:
-    """Solve the decks that arrive on a connection; send None first, once the kernels are compiled."""
+    """Solve the decks that arrive on a connection; before, send None when the kernels are compiled."""
     solve(one(KICK).replace(METHOD, "NEWMARK DT=0.1"), {})
     line.send(None)
     with suppress(EOFError):
@@ -248,12 +248,12 @@ def methods() -> list[str]:
 
 
 def written(method: str, step: float) -> str:
-    """A method as it is written in a deck."""
+    """Method as it is written in a deck."""
     return f"{method} DT={step!r}" if catalog().family("method")[method].field("DT") else method
 
 
 def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
-    """The right motion, its method, and the share by which it may be off; None where it cannot be found.
+    """Reference motion of a case, its method, and its possible error as a share; None where there is none.
 
     EXACT; where that stops or loses energy, NEWMARK with steps that are quartered until the motion changes
     no more.
@@ -281,14 +281,14 @@ def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
 
 
 def shares(x: Array, right: Array) -> Array:
-    """Error at some times, as a share of the largest right value."""
+    """Largest error at each time, as a share of the largest right value."""
     size, off = np.abs(right).max(initial=0.0), np.abs(x - right)
     off = off.reshape(len(off), math.prod(off.shape[1:]))
     return np.asarray((off / size if size else off).max(axis=1, initial=0.0))
 
 
 def nudged(deck: str, share: float) -> str:
-    """A deck whose masses are greater by a share, as far as they are given as weights."""
+    """Deck whose masses are greater by a share, as far as they are given as weights."""
     return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + share)!r}", deck)
 
 
@@ -328,7 +328,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
 def compared(
     run: Runner, case: Case, method: str, result: Found, right: tuple[Found, str, float]
 ) -> tuple[Offs, str]:
-    """Errors against a reference, as far as that is known (see `known`); and in words how far."""
+    """Errors against a reference, restricted to what is `known` of it; and a remark on the restriction."""
     best, by, doubt = right
     within = allowed(case, method) + doubt
 
@@ -352,7 +352,7 @@ def compared(
 
 
 def whole(case: Case) -> bool:
-    """Whether all quantities of the runs of a case can be compared, not only some displacements."""
+    """Whether the reference of a case is a run of the same deck, so that all quantities are compared."""
     return case.right is None and not case.like[0] and case.compared is every
 
 
@@ -376,14 +376,14 @@ def forces(result: Found, right: Found, within: float) -> Offs:
 
 
 def blows(result: Found, right: Found) -> Array:
-    """Errors of the largest contact forces, of which those that are rounding have none."""
+    """Errors of the largest contact forces; forces as small as rounding have no error of note."""
     storey = STOREY * float(np.abs(right.u).max(initial=0.0))
     size = np.maximum(np.abs(right.blows), ROUNDING * storey)
     return parts(result.blows, right.blows, 0.05, size)
 
 
 def promised(result: Found, right: Found, within: float) -> Offs:
-    """Errors of the figures that AUTO brings to its tolerance (see `auto`)."""
+    """Errors of the peaks whose accuracy AUTO promises (see `auto`)."""
     swings = np.abs(right.swings).max(axis=1, keepdims=True, initial=0.0)
     return {
         f"{PEAKS}deformations": (parts(result.swings, right.swings, 1e-6, swings), within),
@@ -392,8 +392,8 @@ def promised(result: Found, right: Found, within: float) -> Offs:
 
 
 def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Array:
-    """Errors of some values, each as a share of its own right size, or of the share `floor` of the largest
-    if that is greater.
+    """Errors of some values, each divided by its own size, but at least by `floor` times the largest size;
+    sizes are those of the right values if left out.
     """
     size = np.abs(right) if size is None else size
     size = np.maximum(size, floor * size.max(initial=0.0))
@@ -401,15 +401,15 @@ def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Ar
 
 
 def turns(result: Found) -> Flags:
-    """Times at which a body all but stands still, shape (n_times,): steps may not see that a law turns."""
+    """Whether a body is almost at rest at each time, shape (n_times,): steps may miss reversals there."""
     speed = np.abs(result.v)
     return np.asarray((speed < BACK * speed.max(axis=0, initial=0.0)).any(axis=1))
 
 
 def known(offs: Offs, nudged: Offs, t: Array, unseen: Flags) -> tuple[Offs, str]:
-    """Errors that count: those of quantities, at the times `t`, which a nudged deck changes by less than is
-    allowed, of springs' forces those at times that are not `unseen`; and in words whether they are a part
-    only.
+    """Errors that count: those where the errors of the `nudged` deck are allowed ones, up to the first time
+    at which they are not, and of springs' forces not at times that are `unseen`; and a remark where that
+    is a part only.
     """
     good = {x: off <= most for x, (off, most) in nudged.items()}
     series = [x for x in good if not x.startswith(PEAKS)]
@@ -425,7 +425,7 @@ def known(offs: Offs, nudged: Offs, t: Array, unseen: Flags) -> tuple[Offs, str]
 
 
 def beyond(offs: Offs) -> str:
-    """Errors beyond the allowed ones, in words."""
+    """Text on the errors beyond the allowed ones; empty without any."""
     bad = [(x, off.max(), most) for x, (off, most) in offs.items() if not (off <= most).all()]
     return ", ".join(f"{x} {off:.2g} off, above {most:g}" for x, off, most in bad)
 
@@ -495,7 +495,7 @@ def _counts(family: str, scenes: Mapping[str, Sequence[JudgedRun]]) -> list[str]
 
 
 def _total(rows: Sequence[JudgedRun]) -> str:
-    """Number of all cases and outcomes, in words."""
+    """Text with the number of all cases and outcomes."""
     ends, alone = Counter(r.end for r in rows), sum(r.says == ALONE for r in rows)
     counts = ", ".join(f"{ends[e]} {e}" for e in ENDS)
     n = len({id(r.case) for r in rows})

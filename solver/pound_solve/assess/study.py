@@ -57,7 +57,7 @@ TOO_LONG: Final = "takes longer than --longest"
 
 
 class TooLong(Exception):
-    """A run takes longer than the plan allows."""
+    """Raised where a run takes longer than the plan allows."""
 
 
 @dataclass(frozen=True)
@@ -244,8 +244,8 @@ class _Bench:
         return Reference(fine.peaks, errors(usual.peaks, fine.peaks), f"LAGUERRE with {fine.setting}")
 
     def _stepped(self, methods: Sequence[str], out: dict[str, list[Trial]]) -> Reference:
-        """The limit of the first of some methods that follows the motion with such steps; the ladders that
-        were run go into `out`.
+        """Reference extrapolated from the ladder of the first of some methods for which that succeeds; the
+        trials of all ladders go into `out`, but for the two finest of the reference.
         """
         told = "without EXACT and LAGUERRE a study needs a method with steps: name one in --methods"
         why = StudyError(told)
@@ -367,7 +367,7 @@ class _Bench:
 
 
 def _converged(done: Sequence[Trial], reference: Reference | None) -> bool:
-    """Whether the finest of some trials is well within the last target, or as good as the reference.
+    """Whether the error of the last trial is well below the last target, or as small as the reference's.
 
     Errors are those against the reference, without one those against the trial before.
     """

@@ -25,7 +25,7 @@ ZEROS: Final = "EQUAKE\n TABLE POINTS=0,0,10,0\n"
 
 
 def every(t: Array, u: Array) -> Array:
-    """All displacements."""
+    """Return all displacements: the default of `Case.compared`."""
     return u
 
 
@@ -76,7 +76,7 @@ class Case:
 
 
 def powers(unit: str, n: float) -> tuple[float, float]:
-    """Powers of force and length in a unit of both, as F/L^1.5; N stands for `n`."""
+    """Exponents of force and length in a unit such as F/L^1.5; N in the unit stands for `n`."""
     match = re.fullmatch(r"(F)?(?:(/?)L(?:\^([0-9.]+|N))?)?", unit)
     if not match or not unit:
         return 0.0, 0.0
@@ -85,8 +85,8 @@ def powers(unit: str, n: float) -> tuple[float, float]:
 
 
 def items(spec: Spec, length: float = 1.0, force: float = 1.0, **given: float) -> str:
-    """A law's sample items, and a stiffness K of 1 if it has one, as if the units of length and force
-    were `length` and `force`; items given that it has replace its own.
+    """Text of a law's sample items, with K=1 if it has K, scaled to units of `length` and `force`; the
+    items in `given` that the law has replace its own.
     """
     values = dict(word.split("=", 1) for word in spec.sample.split())
     if spec.field("K") is not None:
@@ -103,5 +103,5 @@ def items(spec: Spec, length: float = 1.0, force: float = 1.0, **given: float) -
 
 
 def damped(share: float) -> str:
-    """Section DAMPING: `share` of critical at the storey's own period."""
+    """Text of a section DAMPING with a `share` of critical damping at the storey's period."""
     return f"DAMPING\n RAYLEIGH ALPHA={2.0 * share * OMEGA!r} BETA=0\n"

@@ -55,7 +55,7 @@ OUTPUT
 
 
 def pair(law: str, **given: object) -> str:
-    """Two storeys of which the left one meets the right one."""
+    """Deck of two storeys of which the left one collides with the right one."""
     plain: dict[str, object] = {
         "length": "m", "k1": STOREY, "k2": STOREY, "gap": 0.05, "mass": 1.0, "damping": "", "speed": 1.0,
         "motion": "", "end": 0.6, "every": 0.02,
@@ -159,7 +159,7 @@ def last_speed(t: Array, u: Array) -> Array:
 
 
 def contact_scenes(spec: Spec) -> Iterator[Case]:
-    """Scenes with one contact law."""
+    """Yield all scenes with one contact law."""
     scenes = _Contacts(spec)
     yield from scenes.stiffness()
     yield from scenes.masses_and_gaps()
@@ -180,11 +180,11 @@ class _Contacts:
         self.spec, self.plain = spec, contact(spec, 1e3 * STOREY)
 
     def law(self, ratio: float = 1e3, bodies: int = 2, **given: float) -> str:
-        """The law with a stiffness that is a multiple of the storey's."""
+        """Text of the law with a stiffness of `ratio` times that of the storey."""
         return contact(self.spec, ratio * STOREY, 1.0, bodies, **given)
 
     def case(self, scene: str, variant: str, deck: str, **given: Any) -> Case:
-        """A case of this law."""
+        """Make a case of this law."""
         return Case("contact", scene, variant, self.spec.name, deck, **given)
 
     def stiffness(self) -> Iterator[Case]:

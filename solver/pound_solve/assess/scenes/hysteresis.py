@@ -33,7 +33,7 @@ OUTPUT
 
 
 def storeys(rule: str, **given: object) -> str:
-    """Two storeys on springs of one rule, shaken by a sine close to their period."""
+    """Deck of two storeys on springs of one rule, shaken by a sine close to their period."""
     plain: dict[str, object] = {
         "length": "m", "g": 1.0, "k": 2.6 * STOREY, "fy": 4.0, "middle": 1.0, "damping": "", "end": 2.0,
         "every": 0.05, "motion": "SINE AMPLITUDE=4 PERIOD=1 DURATION=30",
@@ -42,14 +42,14 @@ def storeys(rule: str, **given: object) -> str:
 
 
 def top(t: Array, u: Array) -> Array:
-    """The last node's motion: of two springs in line that yield without hardening, with hardly any mass
-    between, either may have the other's share.
+    """Displacements of the last node only: of two springs in line that yield without hardening, with hardly
+    any mass between, the plastic deformation may be in either.
     """
     return u[:, -1:]
 
 
 def hysteresis_scenes(spec: Spec) -> Iterator[Case]:
-    """Scenes with one hysteresis rule."""
+    """Yield all scenes with one hysteresis rule."""
     scenes = _Springs(spec)
     yield from scenes.strength_and_stiffness()
     yield from scenes.masses_and_motions()
@@ -64,11 +64,11 @@ class _Springs:
         self.plain = self.rule()
 
     def rule(self, fy: float = 4.0, k: float = 2.6 * STOREY, **given: float) -> str:
-        """The rule; lengths and forces of its sample items are shares of those at yield."""
+        """Text of the rule, the lengths and forces of its sample items scaled by those at yield."""
         return items(self.spec, fy / k, fy, **given)
 
     def case(self, scene: str, variant: str, deck: str, **given: Any) -> Case:
-        """A case of this rule."""
+        """Make a case of this rule."""
         return Case("hysteresis", scene, variant, self.spec.name, deck, **given)
 
     def strength_and_stiffness(self) -> Iterator[Case]:

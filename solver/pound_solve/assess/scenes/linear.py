@@ -32,12 +32,12 @@ OUTPUT
 def one(
     more: str, end: float = 3.0, every: float = 0.0437123456789, k: float = STOREY, mass: float = 1.0
 ) -> str:
-    """One storey."""
+    """Deck of one storey."""
     return ONE.format(more=more, end=end, every=every, k=k, mass=mass)
 
 
 def swing(share: float, omega: float = OMEGA) -> Callable[[Array], Array]:
-    """Free vibration after a unit velocity with a `share` of critical damping."""
+    """Closed form of the free vibration after a unit velocity with a `share` of critical damping."""
 
     def motion(t: Array) -> Array:
         decay, w = share * omega, omega * math.sqrt(abs(1.0 - share * share))
@@ -94,7 +94,7 @@ OUTPUT
 
 
 def linear_scenes() -> Iterator[Case]:
-    """Linear scenes, whose motion is known."""
+    """Yield all linear scenes."""
     yield from _one_storey()
     yield from _several_masses()
     yield from _motions()
