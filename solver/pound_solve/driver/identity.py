@@ -12,7 +12,7 @@ MOTION = "motion"  #: first word of what another earthquake changes
 
 
 def identity(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> dict[str, str]:
-    """Structure and loading of a deck: for each part its name and its values, all digits of them."""
+    """Structure and loading of a deck as text: for each part its name and its values with all digits."""
     return dict(_parts(model, motions, forces))
 
 
@@ -39,7 +39,7 @@ def _parts(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> 
 
 
 def _values(card: Card, leave_out: str = "") -> str:
-    """Kind and values of a card."""
+    """Text of the kind and the values of a card."""
     values = (f"{k}={_text(v)}" for k, v in card.values.items() if k != leave_out and v is not None)
     return " ".join((card.spec.name, *values))
 
@@ -50,7 +50,7 @@ def _text(value: object) -> str:
 
 
 def differences(present: Mapping[str, str], saved: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Parts that differ, each with what is here and what was saved."""
+    """Yield the name of every part that differs, with a text of what it is here and in the saved state."""
     for name in dict.fromkeys((*present, *saved)):
         here, there = present.get(name, ""), saved.get(name, "")
         if here != there:

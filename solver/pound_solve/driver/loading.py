@@ -29,7 +29,7 @@ MOST: Final = 6  #: differences from a saved run that are named
 
 
 def context(model: Model, request: Request) -> LoadingContext:
-    """What motions and forces need to know: units, search path, length of the analysis."""
+    """Make the context of motions and forces: gravity, unit of length, search path, duration."""
     folders = [Path(request.deck).parent, *request.records]
     folders += [Path(p) for p in os.environ.get("POUND_RECORDS", "").split(os.pathsep) if p]
     duration = max((c["T"] for c in model.analyses if c.spec.name == "HISTORY"), default=0.0)
@@ -66,7 +66,7 @@ def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagno
 
 
 def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]:
-    """A history that ends before a fifth of an earthquake has acted."""
+    """Warn of a history that ends before the share `LEAST_ACTED` of the Arias intensity has acted."""
     histories = [c for c in model.analyses if c.spec.name == "HISTORY" and not c["RESTART"]]
     for history in histories if card.spec.name in EARTHQUAKES else ():
         unit, end = model.units.time, motion.acceleration.end
@@ -92,7 +92,7 @@ def forces(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnos
 
 
 def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) -> None:
-    """Warn where the record of a card contradicts its header."""
+    """Warn where a card cuts off parts of its motion, and where its record contradicts its header."""
     notes = info.get("notes", ())
     cuts = info.get("cuts", ())
     diagnostics += [
@@ -102,7 +102,7 @@ def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) ->
 
 
 def _built(card: Card, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> Any:
-    """What a card of EQUAKE or FORCES makes; None where it has a mistake."""
+    """Motion or force of a card of EQUAKE or FORCES; None, with a diagnostic, where it has a mistake."""
     try:
         return card.spec.impl(card.values, surroundings)
     except RecordError as err:
@@ -117,7 +117,7 @@ def saved_state(
     forces: Sequence[Force],
     diagnostics: list[Diagnostic],
 ) -> dict[str, Array]:
-    """State of the results file that a history goes on from.
+    """State that a history with RESTART continues from, out of a results file; empty without RESTART.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def saved_state(
 def _taken_up(
     card: Card, path: Path, signature: Mapping[str, str], diagnostics: list[Diagnostic]
 ) -> dict[str, Array]:
-    """State of a results file; its time is zero where another motion begins."""
+    """State of a results file, at time zero for NEW=MOTION; adds diagnostics where it does not fit."""
     place, message, hint = card.place("RESTART"), "", ""
     try:
         with Results.open(path) as results:

@@ -23,7 +23,7 @@ MARKS: Final = {".h5": FILETYPE.encode(), ".rpt": b"POUND-SOLVE"}
 
 
 def overwritten(model: Model, request: Request, context: LoadingContext) -> list[Diagnostic]:
-    """The deck, an included file, a record or a saved state that an output file would replace.
+    """Diagnostics for a deck, an included file, a record or a saved state that an output would replace.
 
     Results may replace those that a RESTART goes on from: these are read before and stand until the end.
     """
@@ -39,7 +39,7 @@ def overwritten(model: Model, request: Request, context: LoadingContext) -> list
 
 
 def taken(request: Request) -> list[Diagnostic]:
-    """What has the names of results and report and is no file of ours."""
+    """Diagnostics for files at the paths of results and report that this program has not written."""
     marks = {request.path(suffix): mark for suffix, mark in MARKS.items()}
     return [
         Diagnostic(
@@ -54,7 +54,7 @@ def taken(request: Request) -> list[Diagnostic]:
 
 
 def _of_others(path: Path, mark: bytes) -> bool:
-    """Whether there is a file, not empty, that does not bear our mark, or a folder, a pipe or a device."""
+    """Whether a path is a file, not empty, without our mark, or a folder, a pipe or a device."""
     if not path.is_file():
         return path.exists()
     with suppress(OSError), opened(path) as file:
@@ -64,7 +64,7 @@ def _of_others(path: Path, mark: bytes) -> bool:
 
 
 def _read(model: Model, request: Request, context: LoadingContext) -> Iterator[tuple[Path, Span | None]]:
-    """Files that the run reads, and where the deck names them."""
+    """Yield the files that the run reads, and the places where the deck names them."""
     for name in model.files:
         yield Path(name), None
     for card in (*model.equake, *model.forces):

@@ -45,7 +45,7 @@ def overridden(model: Model, request: Request, diagnostics: list[Diagnostic]) ->
 
 
 def with_motion(model: Model, motion: Card, diagnostics: list[Diagnostic]) -> Model:
-    """The model with a motion in place of the one under EQUAKE.
+    """Model with a motion in place of the one under EQUAKE.
 
     The record is the other motion's, with all that tells how it is read and scaled.  How it meets the
     structure, the items `MEETING`, stays that of the deck's line.
@@ -65,7 +65,7 @@ def with_motion(model: Model, motion: Card, diagnostics: list[Diagnostic]) -> Mo
 def _changed(
     card: Card, name: str | None, asked: Mapping[str, float], diagnostics: list[Diagnostic]
 ) -> Card | None:
-    """HISTORY card with the method and the items that are asked for; None where it has a mistake."""
+    """HISTORY card with the requested method and items; None, with diagnostics, where they are wrong."""
     method = _method(name or card["METHOD"], diagnostics)
     if method is None:
         return None
@@ -83,7 +83,7 @@ def _changed(
 
 
 def _method(name: str, diagnostics: list[Diagnostic]) -> Spec | None:
-    """Method of a name; None, with a mistake, where there is none."""
+    """Spec of a method by its name; None, with a diagnostic, where there is none."""
     methods = catalog().family("method")
     method = methods.get(name.upper())
     if method is None:
@@ -93,12 +93,12 @@ def _method(name: str, diagnostics: list[Diagnostic]) -> Spec | None:
 
 
 def option(item: str) -> Span:
-    """Place of an item of HISTORY that is not the deck's but the request's."""
+    """Place, for diagnostics, of an item of HISTORY that comes from an option of the request."""
     return Span(f"--{item.lower()}", 1, 1, 2)
 
 
 def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnostic]:
-    """Numbers out of limits, and those for which there is no item.
+    """Yield diagnostics for requested numbers out of limits, and warnings for items that the method lacks.
 
     Limits are those of the method's items; of an item that it lacks, those of another method.  The method
     is None for a deck without HISTORY.

@@ -30,7 +30,7 @@ MOST_ROWS: Final = 5 * 10**6  #: of stored histories
 
 
 def pressed(structure: Structure) -> list[Diagnostic]:
-    """Contacts that are closed at rest: some programs write the gap with a minus sign."""
+    """Warn of contacts that are closed at rest: some programs write the gap with a minus sign."""
     elements, props = structure.model.elements, structure.model.props
     used = dict.fromkeys(elements[s.element].prop for s in structure.laws if s.role.collides)
     hint = "a distance is positive; leave it if the bodies are pressed on purpose"
@@ -48,7 +48,7 @@ def pressed(structure: Structure) -> list[Diagnostic]:
 
 
 def too_many(structure: Structure) -> list[Diagnostic]:
-    """Histories of more steps than anyone waits for, and of more rows than a results file holds."""
+    """Report histories of more than `MOST_STEPS` steps, or of more than `MOST_ROWS` stored rows."""
     model = structure.model
     diagnostics = []
     for card in model.analyses:
@@ -65,13 +65,13 @@ def too_many(structure: Structure) -> list[Diagnostic]:
 
 
 def unsteady(structure: Structure) -> list[Diagnostic]:
-    """Buildings that are mechanisms; where there are none, those that could move as one body."""
+    """Report buildings that are mechanisms; where there are none, those that could move as one body."""
     return loose(structure, standing(structure)) or adrift(structure)
 
 
 def misbuilt(structure: Structure) -> list[Diagnostic]:
-    """Buildings that are `unsteady`; of heights, periods and weights the first of each that is wrong; what
-    does not fit their periods.
+    """Report buildings that are `unsteady`, for each the first wrong one of height, period and weight, and
+    what does not fit their periods.
     """
     parts, first = standing(structure), dict[str, Diagnostic]()
     wrong = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
@@ -84,7 +84,7 @@ def misbuilt(structure: Structure) -> list[Diagnostic]:
 
 
 def rounded_up(x: float) -> float:
-    """The next number of one digit that is not below `x`."""
+    """Round up to a number of one significant digit."""
     unit = 10.0 ** floor(log10(x))
     return ceil(x / unit * (1.0 - 1e-12)) * unit
 
@@ -125,10 +125,10 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
 
 
 def causes(structure: Structure) -> list[Diagnostic]:
-    """What is wrong with a structure that could not be assembled with its damping and contacts."""
+    """Diagnostics of a structure that could not be assembled with its damping and contacts."""
     return [diagnostic for check in (unsteady, *FRAME_CHECKS) for diagnostic in check(structure)]
 
 
 def preflight(structure: Structure) -> list[Diagnostic]:
-    """What the assembly and all checks find: mistakes and warnings."""
+    """Diagnostics of the assembly and of all checks: mistakes and warnings."""
     return [*structure.remarks, *(diagnostic for check in CHECKS for diagnostic in check(structure))]

@@ -29,8 +29,8 @@ LATER = "Records and the structure are checked when these mistakes are gone."
 
 
 class DeckError(Exception):
-    """The deck has mistakes: `diagnostics` are those that could be found, `files` the texts that they are
-    in, and `later` says what was not looked at because of them.
+    """Raised where the deck has mistakes: `diagnostics` are those that could be found, `files` the texts
+    that they are in, and `later` says what was not checked because of them.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Prepared:
 
 @dataclass(frozen=True)
 class Ground:
-    """The ground motions of a deck, whose structure does not matter, and what is to be said of it."""
+    """Ground motions of a deck, read without its structure, and the diagnostics."""
 
     model: Model
     motions: tuple[Motion, ...]
@@ -135,7 +135,7 @@ def assembled(
 
 
 def shaken(ready: Prepared, request: Request) -> Prepared:
-    """The same structure under the motion of another request.
+    """Return the prepared deck with the motion of another request, its structure unchanged.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
-    """The structure with the loads that STATIC asks for."""
+    """Assemble the structure with the loads that STATIC asks for, and its damping."""
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
     statics = [c for c in model.analyses if c.spec.name == "STATIC"]
     if any(c["GRAVITY"] == "YES" for c in statics):
@@ -174,8 +174,8 @@ def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
 
 
 def _causes(model: Model) -> list[Diagnostic]:
-    """What else may be wrong with a structure whose damping or contacts could not be built, as supports or
-    masses that are missing.
+    """Further diagnostics, such as missing supports or masses, of a structure whose damping or contacts
+    could not be built.
     """
     apart = {k: e for k, e in model.elements.items() if model.props[e.prop].spec.name != "CONTACT"}
     try:
@@ -204,7 +204,7 @@ def _damp_loaded(structure: Structure) -> None:
 
 
 def _weighed(model: Model) -> Model:
-    """The model with its nodal weights as loads (STATIC GRAVITY=YES)."""
+    """Model with its nodal weights as additional loads (STATIC GRAVITY=YES)."""
     extra = []
     for card in model.weights:
         wy = card["WX"] if card["WY"] is None else card["WY"]

@@ -37,7 +37,7 @@ Progress: TypeAlias = Callable[[float, float, str], None]
 
 
 class RunOutput(Protocol):
-    """Where a run puts what it finds; `results.Writer` is one, which says what the calls mean."""
+    """Receiver of the results of a run; `results.Writer` is one, which documents the calls."""
 
     def text(self, name: str, text: str) -> None:
         """Take a text of the input."""
@@ -70,13 +70,13 @@ class RunOutput(Protocol):
         ...
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
-        """Take the state that a later run can be taken up from."""
+        """Take the state that a later run can continue from."""
         ...
 
 
 @dataclass
 class Settled:
-    """What runs of one structure share: the first of them finds it, the others differ in their motion.
+    """Results that the first run of a structure leaves to later ones, which differ from it by their motion.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class AnalysisSequence:
         self.output = HistoryWriter(self.record, writer, progress)
 
     def run(self) -> str:
-        """Run everything the deck asks for; return why it stopped, or nothing."""
+        """Run everything the deck asks for; return the reason of a stop, or an empty text."""
         try:
             try:
                 return self._analyses()
@@ -153,7 +153,7 @@ class AnalysisSequence:
             return NO_ROOM
 
     def _analyses(self) -> str:
-        """Run one analysis after the other; return why they stopped, or nothing."""
+        """Run one analysis after the other; return the reason of a stop, or an empty text."""
         doing = "static analysis"
         try:
             self._input()
@@ -196,7 +196,7 @@ class AnalysisSequence:
         self._write(Stage.INPUT)
 
     def _static(self) -> static.StaticState:
-        """The static state, if anything needs one; from here on the structure has the stiffness that the
+        """Static state, solved if anything needs it; from here on the structure has the stiffness that the
         axial forces of that state give.
         """
         structure, settled = self.record.structure, self.settled
@@ -252,7 +252,7 @@ class AnalysisSequence:
 
 
 class HistoryWriter:
-    """Where the samples of a history go (`history.HistoryOutput`): into the results file.
+    """Output of a history (`history.HistoryOutput`) that puts the samples into the results file.
 
     With OUTPUT HISTORIES=NO the file gets their times only; the samples stay in memory until the tables
     that need them are made.
@@ -296,11 +296,11 @@ class HistoryWriter:
             self.writer.extremes(self.record.layout, bounds, *map(extremes_of, blocks))
 
     def save(self, state: Mapping[str, Array]) -> None:
-        """Store the state that a later run can be taken up from."""
+        """Store the state that a later run can continue from."""
         run = self.record
         self.writer.restart(state, identity(run.model, run.motions, run.forces))
 
     def progress(self, t: float, end: float, doing: str) -> None:
-        """Tell the user."""
+        """Show the progress to the user."""
         if self._progress is not None:
             self._progress(t, end, doing)
