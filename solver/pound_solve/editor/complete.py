@@ -1,4 +1,4 @@
-"""What may follow: sections, kinds, items, their values, and the names in use."""
+"""Completion: sections, kinds, items, their values, and the names in use."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LAST: Final = re.compile(r"[A-Za-z0-9_.]*$")
 
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """What may stand at the place.
+    """Something that may stand at the place.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Suggestion:
 
 
 def complete(reading: Reading, text: str, line: int, column: int) -> tuple[list[Suggestion], int]:
-    """What may stand at a place of a text.
+    """Suggest what may stand at a place of a text.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def _match(pattern: re.Pattern[str], text: str) -> str:
 
 
 def _begun(above: list[str]) -> str:
-    """Lines above that go on in the next one."""
+    """Text of the lines above that are continued by the line at the place."""
     begun = ""
     for raw in reversed(above):
         code = without_comment(raw).rstrip()
@@ -105,7 +105,7 @@ def _begun(above: list[str]) -> str:
 
 
 def _section(above: list[str]) -> str:
-    """Name of the section that lines stand in."""
+    """Name of the section that the last of some lines belongs to; empty without one."""
     for raw in reversed(above):
         word = without_comment(raw).split()[:1]
         if word and word[0].upper() in NAMES:
@@ -114,14 +114,14 @@ def _section(above: list[str]) -> str:
 
 
 def _first(reading: Reading, section: str) -> list[Suggestion]:
-    """A line's first word."""
+    """Suggestions for the first word of a line."""
     words = _within(reading, section, "") if section else []
     words += [Suggestion(spec.name, "section", spec.title) for spec in (*SECTIONS, *CARDS)]
     return words + [Suggestion(name, "section", f"lines of the family {f}") for name, f in FAMILIES.items()]
 
 
 def _within(reading: Reading, section: str, typed: str) -> list[Suggestion]:
-    """An item of a line, or its value."""
+    """Suggestions within a line: an item, or the value of one."""
     words, current = _pieces(typed)
     card = words[0][1].upper() if words and not words[0][0] else ""
     name, equal, _ = current.partition("=")
@@ -142,7 +142,7 @@ def _within(reading: Reading, section: str, typed: str) -> list[Suggestion]:
 
 
 def _pieces(typed: str) -> tuple[list[tuple[str, str]], str]:
-    """Whole items of half a line, and the one that is begun."""
+    """Complete items of a partly typed line as (name, value), and the item that is being typed."""
     typed = _TIGHT.sub("=", typed)
     pieces = _PIECE.findall(typed)
     current = pieces.pop() if pieces and not typed[-1:].isspace() else ""
@@ -156,7 +156,7 @@ def _kinds(known: Fields, reading: Reading) -> list[Suggestion]:
 
 
 def _items(known: Fields, words: Iterable[tuple[str, str]], reading: Reading) -> Iterator[Suggestion]:
-    """Items that are not there yet, those that must be first."""
+    """Suggestions of items that the line does not have yet, required ones first."""
     present = {f.name for f in known.matched if f} | {name for name, _ in words}
     left = [f for f in known.known.values() if f.name not in present]
     for f in sorted(left, key=lambda f: f.default is not REQUIRED):
@@ -165,7 +165,7 @@ def _items(known: Fields, words: Iterable[tuple[str, str]], reading: Reading) ->
 
 
 def _values(f: Field | None, reading: Reading) -> Iterator[Suggestion]:
-    """Values of a field."""
+    """Suggestions of values of a field."""
     if f is None:
         return
     for word in f.words if f.kind is not Kind.FLAGS else ():
@@ -185,13 +185,13 @@ def _values(f: Field | None, reading: Reading) -> Iterator[Suggestion]:
 
 
 def _flags(letters: str) -> Iterator[str]:
-    """Every set of letters."""
+    """Every combination of one or more letters."""
     for n in range(1, len(letters) + 1):
         yield from map("".join, combinations(letters, n))
 
 
 def _names(reading: Reading, sort: str) -> Iterator[Suggestion]:
-    """Names that the deck defines."""
+    """Suggestions of names that the deck defines."""
     defined = (m for m in mentions(reading) if m.defines and m.sort == sort)
     keys = ((key, m) for m in defined for key in m.keys)
     for key, m in islice(keys, MOST):
@@ -199,7 +199,7 @@ def _names(reading: Reading, sort: str) -> Iterator[Suggestion]:
 
 
 def _text(key: int | str, m: Mention, reading: Reading) -> str:
-    """A name as the deck writes it."""
+    """Name as the deck writes it."""
     if not m.plain:
         return str(key)
     line = reading.files[m.span.file].split("\n")[m.span.line - 1]
@@ -207,7 +207,7 @@ def _text(key: int | str, m: Mention, reading: Reading) -> str:
 
 
 def _numbers(reading: Reading) -> Iterator[Suggestion]:
-    """PARAMs and functions."""
+    """Suggestions of PARAMs and functions."""
     for name, value in reading.params.items():
         shown = f"{value:.10g}" if isinstance(value, float) else f'"{value}"' if value is not None else ""
         yield Suggestion(_written(reading, name), "name", f"PARAM = {shown}")
@@ -217,7 +217,7 @@ def _numbers(reading: Reading) -> Iterator[Suggestion]:
 
 
 def _written(reading: Reading, name: str) -> str:
-    """Name of a PARAM as its definition has it."""
+    """Name of a PARAM as its definition writes it."""
     d = reading.definitions.get(name)
     if d is None or d.span.file not in reading.files:
         return name

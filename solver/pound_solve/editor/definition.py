@@ -8,14 +8,14 @@ from pound_solve.editor.reading import Reading
 
 
 def define(reading: Reading, place: Span) -> list[Span]:
-    """Where what stands at a place is defined; a node of a range is defined by the range."""
+    """Places that define the name at a place; a node of a range is defined by the range."""
     mentioned = mentions(reading)
     here = at(mentioned, place)
     return [m.span for m in definitions(mentioned, here)] if here else []
 
 
 def references(reading: Reading, place: Span) -> list[Span]:
-    """Every place that names what stands at a place, its definition among them."""
+    """All places that mention the name at a place, its definition among them."""
     mentioned = mentions(reading)
     here = at(mentioned, place)
     return [m.span for m in mentioned if here and m.sort == here.sort and here.key in m.keys]

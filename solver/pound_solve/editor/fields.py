@@ -46,7 +46,7 @@ class Fields:
     chosen: Mapping[str, Spec]
 
     def next(self) -> Field | None:
-        """Field of a further item by position."""
+        """Field that a further item by position would have; None where there is none."""
         taken = len(self.matched) - self.kind_at - 1
         places = [f for f in self.known.values() if f.positional]
         return places[taken] if 0 <= taken < len(places) else None
@@ -88,7 +88,7 @@ def _kind(words: Words, section: str, catalog: Catalog, params: Params) -> tuple
 
 
 def _chosen(words: Words, known: dict[str, Field], catalog: Catalog, params: Params) -> dict[str, Spec]:
-    """Members of families that a line chooses; their fields, and those of defaults, join `known`."""
+    """Members of families that a line chooses or takes by default; their fields are added to `known`."""
     texts = {f.name: f.default for f in known.values() if isinstance(f.default, str)} | dict(words)
     chosen = {}
     for f in [f for f in known.values() if f.kind is Kind.FAMILY]:
@@ -112,7 +112,7 @@ def member(word: str, family: str, catalog: Catalog, params: Params) -> Spec | N
 
 
 def _given(words: Words, spec: Spec | None, kind_at: int) -> list[tuple[str, str]]:
-    """Items behind the kind with the names of their fields; empty names where there is no field."""
+    """Items behind the kind as (name of the field, text); the name is empty where there is no field."""
     places = [f.name for f in spec.fields if f.positional] if spec else []
     items, named = [], False
     for k, (name, text) in enumerate(words[kind_at + 1 :]):

@@ -13,7 +13,7 @@ from pound_solve.report.deck_reference import default, takes, usage
 
 
 def hover(reading: Reading, place: Span) -> tuple[str, Span] | None:
-    """Markdown, and the item that it is about; None where there is nothing to say."""
+    """Text in Markdown on the item at a place, and the item's span; None where there is nothing to say."""
     for section, row in reading.rows:
         for k, item in enumerate(row.items or ()):
             if _holds(item, place):
@@ -54,14 +54,14 @@ def _heading(word: str) -> str:
 
 
 def describe(spec: Spec) -> str:
-    """A Spec: title, how it is written, its source."""
+    """Text in Markdown on a Spec: title, usage, source."""
     parts = [f"**{spec.name}**: {spec.title}"]
     parts += [f"```\n{usage(spec)}\n```"] if spec.fields else []
     return "\n\n".join(parts + ([f"Reference: {spec.reference}"] if spec.reference else []))
 
 
 def explain(f: Field, units: Units) -> str:
-    """A field: unit, meaning, default and what it takes."""
+    """Text in Markdown on a field: unit, meaning, default and permitted values."""
     unit = f" [{units.text(f.unit)}]" if f.unit else ""
     left_out = default(f)
     missing = "must be given" if left_out == "must" else f"default: {left_out}"
@@ -70,7 +70,7 @@ def explain(f: Field, units: Units) -> str:
 
 
 def _definition(reading: Reading, there: Mention, named: Mention) -> str:
-    """The line that defines a name, and the value of a PARAM."""
+    """Text in Markdown on the definition of a name: its line, or the value of a PARAM."""
     if named.sort == "PARAM":
         value = reading.params.get(str(named.key))
         shown = f"{value:.10g}" if isinstance(value, float) else f'"{value}"' if value is not None else "?"

@@ -76,18 +76,18 @@ def mentions(reading: Reading) -> list[Mention]:
 
 
 def at(all_mentions: Sequence[Mention], place: Span) -> Mention | None:
-    """The shortest mention at a place; of a PARAM that stands for another name, that of the PARAM."""
+    """Shortest mention at a place; where a PARAM stands for another name, the mention of the PARAM."""
     here = [m for m in all_mentions if m.holds(place)]
     return min(here, key=lambda m: (m.span.end - m.span.column, not m.plain), default=None)
 
 
 def definitions(all_mentions: Sequence[Mention], of: Mention) -> list[Mention]:
-    """Where that name is defined."""
+    """Mentions that define the name of a mention."""
     return [m for m in all_mentions if m.defines and m.sort == of.sort and of.key in m.keys]
 
 
 def words_of(row: Row) -> list[tuple[str, str]]:
-    """Items of a row as the fields of a line want them."""
+    """Items of a row as (name, text), the form that `fields` takes."""
     return [(item.name, item.text) for item in row.items or ()]
 
 
@@ -133,7 +133,7 @@ def _named(
 
 
 def _of_range(part: Range, sort: Sort, defines: bool, values: Values) -> Iterator[Mention]:
-    """The whole range, and its ends."""
+    """Yield the mention of a whole range, and those of its ends."""
     first, last = (values.whole(end, None, False) for end in (part.first, part.last))
     step = values.whole(part.step, None) if part.step else 1
     numbers = range(first, last + 1, max(1, step))
@@ -149,7 +149,7 @@ def _params(
     f: Field | None = None,
     values: Values | None = None,
 ) -> Iterator[Mention]:
-    """PARAMs in the expressions of an item."""
+    """Yield the mentions of PARAMs in the expressions of an item."""
     for part in parts:
         ends = (part,) if isinstance(part, Expression) else (part.first, part.last, part.step)
         for expression in ends:
@@ -161,7 +161,7 @@ def _params(
 
 
 def _is_word(step: Step, f: Field, values: Values) -> bool:
-    """Whether a word is one of the words that a field takes, though there is a PARAM of that name."""
+    """Whether a field takes a word literally, although there is a PARAM of that name."""
     word = step.text.upper()
     match f.kind:
         case Kind.WORD:

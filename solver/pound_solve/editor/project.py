@@ -36,7 +36,7 @@ class Project:
     _readings: dict[str, Reading] = field(default_factory=dict)
 
     def put(self, path: str, text: str) -> None:
-        """Take a text of the editor."""
+        """Store the present text of a file in the editor."""
         if path not in self.texts:
             self._decks.clear()
         self.texts[path] = text.replace("\r\n", "\n").replace("\r", "\n")
@@ -57,7 +57,7 @@ class Project:
         return next(read_now, "")
 
     def reading(self, path: str) -> Reading:
-        """The deck that a file belongs to, as it is now."""
+        """Reading of the deck that a file belongs to, with the present texts of the editor."""
         deck = self.deck(path)
         if deck not in self._readings:
             self._readings[deck] = read(deck, catalog(), self.texts)
@@ -84,7 +84,7 @@ class Project:
                 yield other
 
     def check(self, path: str) -> Found:
-        """Mistakes of the decks that a file belongs to: in this file, and in others where they are new."""
+        """Check the decks that a file belongs to; return its mistakes, and those of files where they changed."""
         decks = {self.deck(p) for p in self.texts}
         own_deck = self.deck(path) if path in self.texts else ""
         changed = {deck for deck in decks if deck == own_deck or path in self._said.get(deck, {})}
@@ -113,7 +113,7 @@ class Project:
 
 
 def _files(deck: str, texts: dict[str, str]) -> set[str]:
-    """Real paths of a deck and of what it includes."""
+    """Real paths of a deck and of the files that it includes."""
     source = Source(unsaved=texts)
     try:
         source.read(deck)

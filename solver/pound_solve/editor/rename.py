@@ -19,17 +19,17 @@ _WORD: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
 
 
 class RenameError(Exception):
-    """What is at the place cannot get that name; the text says why."""
+    """Raised where the name at a place cannot be changed as asked; the text says why."""
 
 
 def renamable(reading: Reading, place: Span) -> Span | None:
-    """The name at a place, where it can be replaced."""
+    """Span of the name at a place; None where there is none that can be replaced."""
     here = at(mentions(reading), place)
     return here.span if here and here.plain else None
 
 
 def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
-    """Places of a name and what to write there.
+    """Edits that rename all mentions of the name at a place.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
 
 
 def _same(reading: Reading, all_mentions: Sequence[Mention], place: Span) -> list[Mention]:
-    """All mentions of what stands at a place, each replaceable."""
+    """All mentions of the name at a place; raise RenameError where one cannot be replaced."""
     unread = next((row for _, row in reading.rows if row.items is None), None)
     if unread:
         raise RenameError(f"line {unread.span.line} of {unread.span.file} has a mistake of syntax")
@@ -77,7 +77,7 @@ def _same(reading: Reading, all_mentions: Sequence[Mention], place: Span) -> lis
 
 
 def applied(files: Mapping[str, str], edits: Iterable[tuple[Span, str]]) -> dict[str, str]:
-    """Texts with edits, each within a line."""
+    """Apply edits to texts, each within one line."""
     lines = {name: text.split("\n") for name, text in files.items()}
     for span, text in sorted(set(edits), key=lambda e: (e[0].line, e[0].column), reverse=True):
         line = lines[span.file][span.line - 1]
@@ -86,7 +86,7 @@ def applied(files: Mapping[str, str], edits: Iterable[tuple[Span, str]]) -> dict
 
 
 def _checked(new: str, here: Mention) -> tuple[str, int | str]:
-    """The text to write, and the name that it is."""
+    """New name as text to write, and as a key of mentions; raise RenameError where it is not valid."""
     new = new.strip()
     if here.sort in ("node", "element"):
         if new.isascii() and new.isdecimal() and 0 < int(new[:20]) < 10**15:
@@ -100,7 +100,7 @@ def _checked(new: str, here: Mention) -> tuple[str, int | str]:
 
 
 def _label(new: str) -> str:
-    """Label of a property set as a deck writes it."""
+    """Label of a property set as a deck writes it, in quotes if needed."""
     word = _WORD.fullmatch(new) and new.upper() not in _KEYWORDS
     if word or (new.isascii() and new.isdecimal()):
         return new
@@ -117,7 +117,7 @@ def _verify(
     key: int | str,
     edits: Edits,
 ) -> None:
-    """Read the edited deck: all must be named as before, but for the new name."""
+    """Read the edited deck; raise RenameError where its mentions change by more than the new name."""
     texts = applied(reading.files, edits)
     unsaved = {os.path.realpath(name): text for name, text in texts.items()}
     after = mentions(read(path, reading.catalog, unsaved))

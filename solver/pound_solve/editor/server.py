@@ -55,7 +55,7 @@ class DeckServer(LanguageServer):
         return path
 
     def tell(self, mistakes: Found) -> None:
-        """Send the mistakes of files."""
+        """Send the mistakes of files, given by path, to the editor."""
         for path, diagnostics in mistakes.items():
             lines = self.lines(path)
             items = [self.diagnostic(d, lines) for d in diagnostics]
@@ -114,7 +114,7 @@ def path_of(uri: str) -> str:
 
 
 def _is_fault(record: logging.LogRecord) -> bool:
-    """Whether an entry of the log is more than a rename that was refused, which the editor shows itself."""
+    """Whether an entry of the log is other than a refused rename, which the editor shows itself."""
     return not (record.exc_info and isinstance(record.exc_info[1], JsonRpcException))
 
 
@@ -135,7 +135,7 @@ def server(records: tuple[Path, ...] = ()) -> DeckServer:
 
 
 def _documents(ls: DeckServer) -> None:
-    """Open, change, save and close: diagnostics."""
+    """Add the features that send diagnostics when a document is opened, changed, saved or closed."""
 
     @ls.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
     def opened(params: lsp.DidOpenTextDocumentParams) -> None:
@@ -162,7 +162,7 @@ def _documents(ls: DeckServer) -> None:
 
 
 def _help(ls: DeckServer) -> None:
-    """Completion, hover, outline and layout."""
+    """Add completion, hover, outline and layout."""
 
     @ls.feature(lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=["=", ","]))
     def completed(params: lsp.CompletionParams) -> lsp.CompletionList:
@@ -222,7 +222,7 @@ def _help(ls: DeckServer) -> None:
 
 
 def _names(ls: DeckServer) -> None:
-    """Definition, references and rename."""
+    """Add definition, references and rename."""
 
     @ls.feature(lsp.TEXT_DOCUMENT_DEFINITION)
     def defined(params: lsp.DefinitionParams) -> list[lsp.Location]:
