@@ -81,7 +81,7 @@ def parameters(items: Sequence[str]) -> dict[str, str]:
 
 
 def picture(word: str) -> Path:
-    """File of a picture by matplotlib, whose ending names the format."""
+    """Parse the file of a picture; its ending must be a format of matplotlib."""
     path = Path(word)
     if path.suffix.removeprefix(".") not in FORMATS:
         raise argparse.ArgumentTypeError(f"{word}: a picture ends in .{', .'.join(FORMATS)}")
@@ -89,12 +89,12 @@ def picture(word: str) -> Path:
 
 
 def finite(word: str) -> float:
-    """A finite number."""
+    """Parse a finite number."""
     return numbers([word], "the option takes a number", argparse.ArgumentTypeError)[0]
 
 
 def share(word: str) -> float:
-    """A level of confidence, between 0 and 1."""
+    """Parse a level of confidence, between 0 and 1."""
     (value,) = numbers([word], "--confidence takes a number", argparse.ArgumentTypeError)
     if not 0.0 < value < 1.0:
         raise argparse.ArgumentTypeError(f"{word}: a level of confidence is between 0 and 1")
@@ -102,7 +102,7 @@ def share(word: str) -> float:
 
 
 def drawable(path: Path | None) -> bool:
-    """Whether a picture that is asked for can be drawn; says what is missing before the work begins."""
+    """Whether a requested picture can be drawn; prints what is missing before the work begins."""
     if path is None:
         return True
     from pound_solve.report import plot
@@ -116,8 +116,8 @@ def drawable(path: Path | None) -> bool:
 
 
 def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[float]:
-    """Numbers of the magnitudes that a deck may have; raise `error`, which says what the option `takes`, at
-    the first word that is none.
+    """Parse finite numbers of the magnitudes that a deck may have; raise `error`, with the text `takes` on
+    what the option takes, at the first word that is not one.
     """
     from pound_deck.schema import GREAT, OF_MAGNITUDE
 

@@ -65,7 +65,7 @@ def _tell(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """Print a warning of a library in one line of ours: the numbers it met are the deck's."""
+    """Print a warning of a library in one line that refers to the magnitudes of the deck."""
     where = f"{category.__name__}: {message}".splitlines()[0]
     complain(f"warning: arithmetic at the limits of floating point ({where}): check the deck's magnitudes")
 

@@ -24,8 +24,8 @@ class StatusLine:
             print(f"\r {text:{WIDTH}}", end="", file=sys.stderr, flush=True)
 
     def tell(self, text: str) -> None:
-        """Show what keeps a run waiting; where there is no terminal, or what is to know is longer than the
-        line, print it once.
+        """Show what a run is doing; where there is no terminal, or the text is longer than the line, print
+        it once.
         """
         if self.live and len(text) <= WIDTH:
             self.show(text)
@@ -40,7 +40,7 @@ class StatusLine:
             print(f"pound-solve: {' '.join(text.split())}", file=sys.stderr, flush=True)
 
     def clear(self) -> None:
-        """Blank the line and return to its start."""
+        """Erase the line."""
         if self.live:
             print("\r" + " " * (WIDTH + 1) + "\r", end="", file=sys.stderr, flush=True)
 
@@ -85,7 +85,7 @@ class Progress:
             self.line.note(text)
 
     def _state(self, now: float, t: float, end: float) -> str:
-        """The time reached, the number of the run and the time that it will take, in words."""
+        """Text on the time reached, the number of the run and the seconds to go."""
         ahead = (now - self.began) * (end - t) / (t - self.first) if t > self.first else 0.0
         run = f"   run {self.runs}" if self.runs > 1 else ""
         return f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %{run}   {ahead:6.0f} s to go"

@@ -27,7 +27,7 @@ def add_conduct(parser: argparse.ArgumentParser) -> None:
 
 
 def give_conduct(args: argparse.Namespace, document: Document) -> None:
-    """Put in what the options say in place of items of the study."""
+    """Replace items of the study by the options of the command line."""
     if args.out:
         document.given(("out",), str(args.out.absolute()), "--out", str(args.out))
     if args.workers is not None:
@@ -35,7 +35,7 @@ def give_conduct(args: argparse.Namespace, document: Document) -> None:
 
 
 def carried_out(study: str, work: Callable[[], int]) -> int:
-    """Exit status of some work on a study; mistakes are told, and what else keeps it from being done."""
+    """Do some work on a study; print its mistakes or why it cannot be done, and return the exit status."""
     from pound_solve.results import ResultsError
     from pound_solve.statistics.curves import CurveError
     from pound_solve.sweep.execution.executors import ExecutorError
@@ -56,7 +56,7 @@ def carried_out(study: str, work: Callable[[], int]) -> int:
 
 
 class Progress:
-    """The line that shows how far a study is; a call may raise KeyboardInterrupt."""
+    """Line that shows the progress of a study; a call may raise KeyboardInterrupt."""
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.line, self.interruption = StatusLine(args.quiet), args.interruption
@@ -72,7 +72,7 @@ class Progress:
 
 
 def ended(args: argparse.Namespace, session: Session, path: Path | None) -> int:
-    """Tell what the runs have come to and where their table is; the exit status."""
+    """Print how the runs have ended and where their table is; return the exit status."""
     if not args.quiet:
         print("\n".join(session.summary()))
         if path is not None:

@@ -49,20 +49,20 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def listed(folder: Path) -> Mapping[str, str]:
-    """What each example shows, by its name, from the README of their folder."""
+    """Descriptions of the examples by their names, from the README of their folder."""
     rows = _ROW.findall((folder / "README.md").read_text(encoding="utf-8"))
     return {name: text + _needs(needs) for name, text, needs in rows}
 
 
 def _needs(told: str) -> str:
-    """What an example needs beside the program, from the table's word on records."""
+    """Remark on what an example needs beside the program, from the column on records of the README."""
     if told == "yes":
         return " (needs the extra records)"
     return f" ({told.removeprefix('no; ')})" if told != "no" else ""
 
 
 def _write(source: Path, out: Path) -> int:
-    """Write an example; no file that is there is changed."""
+    """Write an example, unless one of its files exists already."""
     files = sorted(path for path in source.iterdir() if path.is_file() and path.suffix in _KEPT)
     there = [out / path.name for path in files if (out / path.name).exists()]
     if there:

@@ -68,7 +68,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _coordinates(items: Sequence[str]) -> dict[str, str]:
-    """Coordinates of columns from KEY=VALUE."""
+    """Parse coordinates of columns, given as KEY=VALUE."""
     coordinates = {}
     for item in items:
         key, equals, value = item.partition("=")

@@ -68,6 +68,6 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _name(asked: Asked, limits: Sequence[float]) -> str:
-    """Name of the report: those of other demands and limits stay."""
+    """File name of the report, with demand and limits, so that it replaces no report on others."""
     words = ["fragility", asked.quantity, asked.label, *(f"{x:g}" for x in limits)]
     return "_".join(re.sub(r"[^\w.+-]+", "-", word) for word in words if word) + ".rpt"

@@ -24,7 +24,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _hunted(args: argparse.Namespace) -> int:
-    """Run the rounds and tell what was found."""
+    """Run the rounds, write the table and print the report."""
     from pound_solve.report.plot import suites
     from pound_solve.report.sweep import incremental
     from pound_solve.results.sweep_file import Sweep

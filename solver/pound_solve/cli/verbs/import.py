@@ -53,7 +53,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _from(folder: Path, path: Path) -> str:
-    """Path of a file as a deck in a folder names it."""
+    """Path of a file relative to the folder of the deck, where there is one."""
     try:
         return Path(os.path.relpath(path, folder)).as_posix()
     except ValueError:  # another drive

@@ -60,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _turning_points(args: argparse.Namespace) -> list[float]:
-    """Numbers of --path or --file; empty where neither is given."""
+    """Turning points of the deformation from --path or --file; empty where neither is given."""
     from pound_deck.files import contents
     from pound_solve.assess.law_test import LawTestError
 

@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _time(word: str) -> float:
-    """A finite time of an option."""
+    """Parse a time, a finite number."""
     (value,) = common.numbers([word], "this option takes a time", argparse.ArgumentTypeError)
     return value
 
@@ -73,7 +73,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _wrong(args: argparse.Namespace, choice: Choice) -> str:
-    """What is wrong with the arguments, or nothing."""
+    """Message on what is wrong with the arguments, or an empty text."""
     from pound_solve.report.plot import PICTURES
 
     for name in args.pictures:
@@ -91,7 +91,7 @@ def _wrong(args: argparse.Namespace, choice: Choice) -> str:
 
 
 def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
-    """Draw what is asked for, or what can be drawn in this format."""
+    """Draw the named pictures, or all that can be drawn in this format."""
     from pound_solve.report import plot
 
     folder: Path = args.out or results.path.parent

@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _two(word: str) -> tuple[float, float]:
-    """Two positive numbers of an option, of the magnitudes that a deck may have."""
+    """Parse two positive numbers of the magnitudes that a deck may have."""
     from pound_deck.schema import SMALL
 
     values = common.numbers(word.split(","), "write two numbers, as 0.2,0.3", argparse.ArgumentTypeError)
@@ -100,7 +100,7 @@ def _of_sweep(args: argparse.Namespace) -> int:
 
 
 def _options(args: argparse.Namespace) -> Options:
-    """Options of the command line.
+    """Make the options of the statistics from those of the command line.
 
     Raises
     ------

@@ -53,7 +53,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _piece(word: str | None) -> tuple[int, int]:
-    """Number of a piece, and how many there are."""
+    """Parse K/N: number of a piece, and how many there are; 1 of 1 without the option."""
     if word is None:
         return 1, 1
     match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", word)
@@ -64,7 +64,7 @@ def _piece(word: str | None) -> tuple[int, int]:
 
 
 def _document(args: argparse.Namespace) -> Document:
-    """The study's file, or one for a deck, with what the command line gives."""
+    """Read the study's file, or make a study of a deck, with the items that the command line gives."""
     from pound_solve.sweep.study.document import Document
 
     if args.study.endswith(".toml"):
@@ -91,7 +91,7 @@ def _document(args: argparse.Namespace) -> Document:
 
 
 def _give_motions(args: argparse.Namespace, out: Document) -> None:
-    """Put in the records of the command line, in place of all of the study's."""
+    """Replace all records of the study by those of the command line, if any."""
     from pound_solve.loading.records.known import known
 
     arguments = {name: getattr(args, name) for name in (*LISTS, "period", "damping")}
@@ -118,7 +118,7 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
 
 
 def _swept(args: argparse.Namespace) -> int:
-    """Run what is ahead, and write the table; with --plan a trial only."""
+    """Run what is ahead and write the table; with --plan, print the plan and run a trial only."""
     from pound_solve.sweep.execution.executors import engine
     from pound_solve.sweep.execution.lock import locked
     from pound_solve.sweep.session import Session
