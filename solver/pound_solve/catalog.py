@@ -64,7 +64,7 @@ class Members(Mapping[str, Spec]):
 
 
 class Families(Catalog):
-    """A Catalog whose families are looked into when they are asked for."""
+    """Catalog that looks up the members of a family only when they are asked for."""
 
     def families(self) -> tuple[str, ...]:
         """Names of the families."""
@@ -82,7 +82,7 @@ def members(family: str) -> Members:
 
 
 def catalog() -> Catalog:
-    """Return the vocabulary that a deck may use."""
+    """Return the catalog of all families: the vocabulary that a deck may use."""
     return Families(())
 
 

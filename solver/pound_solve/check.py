@@ -76,7 +76,7 @@ class Check:
 
     @property
     def looks(self) -> bool:
-        """Whether the user should look at it."""
+        """Whether the user should look at the value."""
         return self.verdict is Verdict.LOOK
 
     @property
@@ -86,7 +86,7 @@ class Check:
 
     @property
     def severity(self) -> tuple[bool, float]:
-        """Larger for the worse of two checks of one name."""
+        """Sort key that is larger for the worse of two checks of one name."""
         value = -self.value if self.bound is Bound.LEAST else self.value
         return self.looks, math.inf if math.isnan(value) else value
 
@@ -95,13 +95,13 @@ class Check:
         return f"{self.name}: {self.told}{allowed}" + (f"; {self.remark}" if self.remark else "")
 
     def row(self) -> tuple[Any, ...]:
-        """The row of the table `checks`: `COLUMNS`."""
+        """Row of the table `checks`, in the order of `COLUMNS`."""
         fields = (self.subject, self.name, self.value, self.unit, self.bound, self.allowed)
         return tuple(str(x) if isinstance(x, str) else x for x in (*fields, self.verdict, self.remark))
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> Self:
-        """The check of a row of the table `checks`, by its columns."""
+        """Make a check from a row of the table `checks`, given by its columns."""
         subject, name, value, unit, bound, allowed, verdict, remark = (row[column] for column in COLUMNS)
         return cls(
             Subject(subject),
@@ -118,7 +118,7 @@ class Check:
 def at_most(
     subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = ""
 ) -> Check:
-    """Check that a value is not above what is allowed; `remark` is for the case that it is, or is NaN."""
+    """Make a check that a value is at most `allowed`; `remark` is kept only where it is not, or is NaN."""
     check = Check(subject, name, float(value), Bound.MOST, float(allowed), remark=remark, unit=unit)
     return _judged(check, check.value <= check.allowed)
 
@@ -126,13 +126,13 @@ def at_most(
 def at_least(
     subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = ""
 ) -> Check:
-    """Check that a value is not below what is allowed; `remark` is for the case that it is, or is NaN."""
+    """Make a check that a value is at least `allowed`; `remark` is kept only where it is not, or is NaN."""
     check = Check(subject, name, float(value), Bound.LEAST, float(allowed), remark=remark, unit=unit)
     return _judged(check, check.value >= check.allowed)
 
 
 def beyond(subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = "") -> Check:
-    """A value to look at whatever it is: it has reached what it must stay below, or it proves nothing."""
+    """Make a check to look at whatever its value: it has reached its bound, or it proves nothing."""
     check = Check(subject, name, float(value), Bound.MOST, float(allowed), remark=remark, unit=unit)
     return _judged(check, False)
 
@@ -142,7 +142,7 @@ def _judged(check: Check, good: bool) -> Check:
 
 
 def worst(checks: Iterable[Check]) -> list[Check]:
-    """Of those of one name, as of the parts of a history, the worst."""
+    """Worst of all checks of one name, such as those of the parts of a history."""
     by_name = dict[tuple[Subject, str], Check]()
     for check in checks:
         kept = by_name.setdefault((check.subject, check.name), check)
@@ -152,5 +152,5 @@ def worst(checks: Iterable[Check]) -> list[Check]:
 
 
 def looked(checks: Iterable[Check]) -> list[Check]:
-    """Those that the user should look at."""
+    """Checks that the user should look at."""
     return [check for check in checks if check.looks]

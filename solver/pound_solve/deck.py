@@ -63,7 +63,7 @@ class Deck:
 
 
 def _line(content: object) -> str:
-    """What stands on one line: items by position, then named ones."""
+    """Text of one line of a deck, made of one item, a list of items, or a mapping of named ones."""
     if isinstance(content, Mapping):
         return " ".join(f"{key}={_item(value)}" for key, value in content.items())
     if isinstance(content, list | tuple):
@@ -72,7 +72,7 @@ def _line(content: object) -> str:
 
 
 def _item(value: object) -> str:
-    """A value as a deck writes it: several are joined by commas, a path stands in quotes."""
+    """Value as a deck writes it: several joined by commas, a path in quotes."""
     if isinstance(value, str):
         return value
     if isinstance(value, PurePath):
