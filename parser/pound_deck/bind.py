@@ -27,7 +27,7 @@ _PLURAL: Final = {
 
 @dataclass(slots=True)
 class _Draft:
-    """A card while its fields are filled in.
+    """Card under construction, while its fields are filled in.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class _Draft:
     lost: set[str] = field(default_factory=set)
 
     def cards(self) -> list[Card]:
-        """The card, or one for each of the generated numbers."""
+        """Make the finished card, or one for each of the generated numbers."""
         spans = {name: item.span for name, item in self.given.items()}
         every = [self.values]
         if self.numbers is not None:
@@ -149,7 +149,7 @@ class Binder:
         return [g for law in draft.laws[f.name] for g in law.fields]
 
     def _match(self, spec: Spec, items: Sequence[Item]) -> tuple[dict[str, Item], bool]:
-        """Items by field name, and whether all of them found one."""
+        """Items by field name, and whether all of them have a field."""
         places = [f.name for f in spec.fields if f.positional]
         by_field: dict[str, Item] = {}
         before, named = len(self.report), False
@@ -214,7 +214,7 @@ class Binder:
         return Diagnostic("P211", f"{owner} has no item {name}", item.name_span, hint)
 
     def _count(self, spec: Spec, items: Mapping[str, Item]) -> Sequence[int] | None:
-        """Numbers that the first item's range generates; None where it is no range."""
+        """Numbers that a range in the first item generates; None where that is not a range."""
         first = spec.fields[0]
         item = items.get(first.name)
         part = item.parts[0] if item and len(item.parts) == 1 else None
@@ -226,7 +226,7 @@ class Binder:
             return ()  # the item itself reports it; the ranges beside it need no message of theirs
 
     def _members(self, part: Range, f: Field) -> Sequence[int]:
-        """Whole numbers of an ascending range; none where its last number is one less than its first."""
+        """Whole numbers of an ascending range; empty where its last number is one less than its first."""
         a, b = (self.read.whole(end, f, bounded=False) for end in (part.first, part.last))
         step = self.read.whole(part.step, None) if part.step else 1
         if step < 1:
@@ -259,7 +259,7 @@ class Binder:
         self._generated += count
 
     def _spread(self, part: Range, f: Field, numbers: Sequence[int]) -> _Steps:
-        """One value for each generated card, evenly spaced."""
+        """Values from the first to the last of a range, evenly spaced, one for each generated card."""
         count = len(numbers)
         whole = f.kind in _WHOLE
         read: Callable[[Expression, Field | None, bool], float] = (
@@ -330,7 +330,7 @@ class _Steps(tuple[Any, ...]):
 
 
 def _joined(spec: Spec, name: str, first: Item, second: Item) -> str:
-    """Both items as one list, where the field of that name may hold several values; else empty."""
+    """Text of both items as one list, where the field may hold several values; else empty."""
     f = spec.field(name)
     several = f is None or f.kind in _LISTS or f.count[1] > 1  # an unknown name may belong to a law
     return f"{name}={first.text},{second.text}"[:80] if several else ""
@@ -351,6 +351,6 @@ def _how(f: Field) -> str:
 
 
 def _field(spec: Spec, laws: Mapping[str, tuple[Spec, ...]], name: str) -> Field:
-    """Field of that name of the Spec or of one of the laws that joined it."""
+    """Field of that name in the Spec or in one of the chosen laws."""
     owners = [spec, *(s for specs in laws.values() for s in specs)]
     return next(f for owner in owners if (f := owner.field(name)))

@@ -32,7 +32,7 @@ def build(
     files: Mapping[str, str],
     report: list[Diagnostic],
 ) -> tuple[Model, list[Card]]:
-    """Model of all that could be bound, and every card in it."""
+    """Build the model of all that could be bound; also return every card."""
     units = units_of(outline.single.get("UNITS"), report)
     heads = [row.items[0] for row in outline.sections["PROPS"] if row.items]
     binder = Binder(Values(catalog, params, frozenset(_plain_labels(heads)), units), report)
@@ -91,7 +91,7 @@ def _section(name: str, outline: Outline, binder: Binder) -> tuple[Card, ...]:
 
 
 def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:
-    """Cards of a row: none where its range is empty, None where it has mistakes."""
+    """Cards of a row: an empty list where its range is empty, None where it has mistakes."""
     if name not in _SPECS:
         card = _kind(name, row, binder)
         return [card] if card else None
@@ -103,7 +103,7 @@ def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:
 
 
 def _kind(name: str, row: Row, binder: Binder) -> Card | None:
-    """Card of a section whose lines name their kind: first, or after the label of a property set."""
+    """Card of a line that names its kind, as first item or, under PROPS, after the label; None if wrong."""
     items, family = row.items or (), FAMILIES[name]
     specs = binder.read.catalog.family(family)
     codes = partial(binder.read.catalog.codes, family)
@@ -138,7 +138,7 @@ def _plain_labels(heads: Iterable[Item]) -> list[str]:
 
 
 def _lone_steps(items: Iterable[Item]) -> list[Step | None]:
-    """The only step of each item's first part, such as a word; None where there are more."""
+    """For each item the single step of its first part, such as a word; None for a formula or a range."""
     parts = [item.parts[0] for item in items]
     return [p.lone if isinstance(p, Expression) else None for p in parts]
 
@@ -187,7 +187,7 @@ def _once(
     span: Span,
     report: list[Diagnostic],
 ) -> None:
-    """Add to a table; what has a key that is there already is reported and left out."""
+    """Add a value to a table; report it and leave it out where its key is there already."""
     if key in table:
         first = table[key].span
         message = f"{what} is already given at {first.file}:{first.line}"
@@ -205,7 +205,7 @@ def _single(name: str, outline: Outline, binder: Binder) -> Any:
 
 
 def units_of(row: Row | None, report: list[Diagnostic]) -> Units:
-    """Units of the UNITS card; the default ones without it, or where it has mistakes."""
+    """Units of the UNITS card; default units without the card, or where it has mistakes."""
     if row is None or row.items is None:
         return Units()
     steps = _lone_steps(row.items[1:])
@@ -223,7 +223,7 @@ def units_of(row: Row | None, report: list[Diagnostic]) -> Units:
 
 
 def _in_order(words: Iterable[str]) -> bool:
-    """Whether words may be units of force, length and time in this order; an unknown one may be any."""
+    """Whether words may be units of force, length and time in this order; unknown words fit anywhere."""
     return all(_dimension(word.upper()) in ("", want) for word, want in zip(words, "FLT"))
 
 
@@ -238,7 +238,7 @@ def _default_gravity(units: Units) -> float | None:
 def _doubtful_gravity(
     gravity: float | None, units: Units, single: Mapping[str, Row], weights: Sequence[Card]
 ) -> Iterator[Diagnostic]:
-    """Gravity that fits another unit of length than the deck's, or that is needed and not known."""
+    """Report gravity that fits another unit of length than the deck's, or that is needed and unknown."""
     known = _default_gravity(units)
     if known is None and "GRAVITY" not in single and weights:
         message = f"no value of gravity is known for {units.length} and {units.time}"

@@ -41,12 +41,12 @@ class Item:
 
     @property
     def text(self) -> str:
-        """Its value as written."""
+        """The item's value as written."""
         return ",".join(part.text for part in self.parts)
 
     @property
     def word(self) -> str:
-        """The word in upper case, where the item is nothing but an unquoted word; else empty."""
+        """The item's word in upper case, where it is an unquoted word without a name; else empty."""
         part = self.parts[0]
         return (
             part.lone_word
@@ -57,7 +57,7 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A parsed line: first word in upper case, items (None where it could not be parsed), place."""
+    """Parsed line: first word in upper case, items (None where it could not be parsed), place."""
 
     word: str
     items: tuple[Item, ...] | None
@@ -107,7 +107,7 @@ def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None)
 
 
 def _first_error(parser: Lark, line: Line, error: UnexpectedInput) -> UnexpectedInput:
-    """First error of the parser: the lexer alone does not find errors of grammar."""
+    """First error that the parser finds in a line, which may stand before that of the lexer."""
     try:
         parser.parse(line.text)
     except UnexpectedInput as first:
@@ -116,7 +116,7 @@ def _first_error(parser: Lark, line: Line, error: UnexpectedInput) -> Unexpected
 
 
 class _Blanks(PostLex):
-    """Drops the blanks that separate no items."""
+    """Post-lexer that drops the blanks that do not separate items."""
 
     always_accept = ("_WS",)
 
@@ -138,7 +138,7 @@ _Parts = list[tuple[_Postfixed, ...]]  #: of one formula an expression, of more 
 
 
 class _Postfix(Transformer[Token, list[tuple[Token | None, _Parts]]]):
-    """Puts tokens into postfix order: lists that are extended in place.
+    """Callbacks of the parser that put tokens into postfix order, in lists that are extended in place.
 
     Brackets stay as steps of the kind ``mark``: they have a place, but no value.
     """
@@ -243,7 +243,7 @@ def _span(token: Token, line: Line) -> Span:
 
 
 def _join(first: Span, last: Span) -> Span:
-    """From the start of one to the end of the other, within the first one's line."""
+    """Span from the start of one span to the end of another, but no further than the first one's line."""
     return Span(first.file, first.line, first.column, last.end if last.line == first.line else first.end)
 
 

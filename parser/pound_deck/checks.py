@@ -43,7 +43,7 @@ def run_checks(
 
 
 def _references(model: Model, cards: Iterable[Card], gone: Set[str], maimed: Set[str]) -> Found:
-    """Nodes, elements and property sets that are named but not defined."""
+    """Report nodes, elements and property sets that are named but not defined."""
     tables: tuple[tuple[str, str, str, Any], ...] = (
         ("P305", "node", "NODES", model.nodes),
         ("P306", "element", "ELEMENTS", model.elements),
@@ -61,7 +61,7 @@ def _references(model: Model, cards: Iterable[Card], gone: Set[str], maimed: Set
 
 
 def _named(cards: Iterable[Card]) -> Iterator[tuple[Any, Kind, Span]]:
-    """Nodes, elements and property sets that cards name, with the places."""
+    """Yield the nodes, elements and property sets that cards name, with kind and place."""
     for card in cards:
         for spec in (card.spec, *(s for specs in card.laws.values() for s in specs)):
             for f in spec.fields:
@@ -105,7 +105,7 @@ def _zero_length(model: Model) -> Found:
 
 
 def _element_names(model: Model) -> Found:
-    """Names that several elements bear, as where NAME stands on a line that generates several."""
+    """Warn of names that several elements share, as when NAME is on a line that generates several."""
     named: dict[str, list[Element]] = {}
     for element in model.elements.values():
         if element.name:
@@ -163,7 +163,7 @@ def _analysis(model: Model) -> Found:
 
 
 def _deck(model: Model) -> Span:
-    """The start of the deck's file, for what stands nowhere in it."""
+    """Span of the start of the deck, for diagnostics without a place of their own."""
     return Span(next(iter(model.files)), 1, 1, 2)
 
 
@@ -210,7 +210,7 @@ def _excitation(model: Model) -> Found:
 
 
 def _percent(model: Model) -> Found:
-    """Damping given in percent where a share is meant."""
+    """Warn of damping that seems to be given in percent instead of as a ratio."""
     for card in model.damping:
         value = card.values.get("XI")
         ratios = value if isinstance(value, tuple) else () if value is None else (value,)
@@ -242,7 +242,7 @@ def _drift_nodes(model: Model) -> Found:
 
 
 def _node_like(model: Model, card: Card) -> bool:
-    """Whether a weight looks like the second of two nodes that should have a comma between them."""
+    """Whether WX looks like the second of two node numbers that lack a comma between them."""
     wx, wy = card["WX"], card["WY"]
     return wy is not None and wx < wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys()
 
@@ -256,7 +256,9 @@ def _node_like_weights(model: Model) -> Found:
 
 
 def _weights_twice(model: Model) -> Found:
-    """Lines that overlap in part are meant: elements that share an end put half their weight on each."""
+    """Warn of nodes with two weights, but not of lists that overlap in part: there elements that share a
+    node put half their weight on each end.
+    """
     lines = [(card, frozenset(card["NODES"])) for card in model.weights]
     first: dict[int, int] = {}  # the line that names a node first
     for i, (card, nodes) in enumerate(lines):
@@ -277,7 +279,9 @@ def _weights_twice(model: Model) -> Found:
 
 
 def _weights_of_supports(model: Model) -> Found:
-    """They have no effect, except on supports with a motion of their own, or where they act as loads."""
+    """Warn of weights on fixed nodes: they have no effect, except on supports with a motion of their own,
+    or where weights act as loads.
+    """
     if any(card.values.get("GRAVITY") == "YES" for card in model.analyses):
         return
     moved = {node for card in model.equake for node in card.values.get("SUPPORTS") or ()}
@@ -296,7 +300,7 @@ def _weights_of_supports(model: Model) -> Found:
 
 
 def _numbers(numbers: Sequence[int]) -> str:
-    """The first of several numbers, and how many more there are."""
+    """Text of the first of some numbers, and how many more there are."""
     more = f" and {len(numbers) - _MOST_NAMED} more" if len(numbers) > _MOST_NAMED else ""
     return ", ".join(map(str, numbers[:_MOST_NAMED])) + more
 

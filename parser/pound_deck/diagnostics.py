@@ -30,7 +30,7 @@ class Diagnostic:
 
 
 class Mistake(Exception):
-    """Ends the reading of one item; holds its Diagnostic, or None where the cause is already reported."""
+    """Raised to end the reading of an item; holds a Diagnostic, or None where one is already reported."""
 
     def __init__(self, diagnostic: Diagnostic | None = None) -> None:
         super().__init__(diagnostic.message if diagnostic else "already reported")
@@ -38,7 +38,7 @@ class Mistake(Exception):
 
 
 def mistake(code: str, message: str, span: Span, hint: str = "") -> Mistake:
-    """Mistake with a new Diagnostic."""
+    """Make a Mistake with a new Diagnostic."""
     return Mistake(Diagnostic(code, message, span, hint))
 
 
@@ -48,12 +48,12 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def doubted(diagnostics: Iterable[Diagnostic], meant: Container[str]) -> list[Diagnostic]:
-    """Those of them that are not warnings of a code which the deck says is meant so."""
+    """Diagnostics without the warnings whose code the deck declares as meant."""
     return [d for d in diagnostics if d.severity == "error" or d.code not in meant]
 
 
 def closest(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
-    """The choice most similar to a misspelt word, in any case; empty where none is near."""
+    """Choice most similar to a misspelt word, ignoring case; empty where none is similar."""
     known = {choice.upper(): choice for choice in islice(choices, _MOST_CHOICES)}
     word = word.upper()[:100]
     if len(known) > _MANY_CHOICES:  # a slip seldom changes both ends; comparing all is slow
@@ -63,7 +63,9 @@ def closest(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
 
 
 def suggest(word: str, choices: Iterable[str]) -> str:
-    """``did you mean X?`` for the closest choice; of short words for all that begin alike; or nothing."""
+    """Hint ``did you mean X?`` with the closest choice, or for short words all of the same first letter
+    and length; empty where there are none, or too many.
+    """
     known = list(islice(choices, _MOST_CHOICES))
     near = closest(word, known)
     if not near and len(word) <= SHORT:
@@ -78,7 +80,7 @@ def hints(*parts: str) -> str:
 
 
 def caret(diagnostic: Diagnostic, files: Mapping[str, str]) -> str:
-    """Print a diagnostic with its source line, its place underlined.
+    """Format a diagnostic with its source line, its place underlined.
 
     Parameters
     ----------
@@ -114,7 +116,7 @@ def _underlined(line: str, span: Span) -> list[str]:
 
 
 def render(diagnostics: Sequence[Diagnostic], files: Mapping[str, str], limit: int = 50) -> str:
-    """Print up to `limit` diagnostics, errors before warnings, and how many more there are."""
+    """Format up to `limit` diagnostics, errors before warnings, and how many more there are."""
     ordered = sorted(
         diagnostics, key=lambda d: d.severity != "error"
     )  # stable: the deck's order within each

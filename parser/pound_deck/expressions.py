@@ -39,7 +39,7 @@ class Expression:
 
     @property
     def lone(self) -> Step | None:
-        """The only step, where there is just one."""
+        """The step of an expression that has just one; else None."""
         return self.steps[0] if len(self.steps) == 1 else None
 
     @property
@@ -59,7 +59,7 @@ class Range:
 
     @property
     def text(self) -> str:
-        """As written, with single blanks."""
+        """The range as written, with single blanks."""
         return f"{self.first.text} TO {self.last.text}" + (f" BY {self.step.text}" if self.step else "")
 
 
@@ -73,7 +73,7 @@ class Definition:
 
 
 def _round(x: float) -> float:
-    """Nearest whole number, halves away from zero as Fortran's NINT."""
+    """Round to the nearest whole number, halves away from zero as Fortran's NINT."""
     return math.copysign(math.floor(abs(x) + 0.5), x)
 
 

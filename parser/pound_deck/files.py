@@ -9,7 +9,7 @@ from typing import IO
 
 
 def opened(name: str | os.PathLike[str]) -> IO[bytes]:
-    """A file that is open to be read.
+    """Open a file for reading.
 
     Raises
     ------
@@ -24,6 +24,6 @@ def opened(name: str | os.PathLike[str]) -> IO[bytes]:
 
 
 def contents(name: str | os.PathLike[str]) -> bytes:
-    """All that stands in a file; raises as `opened`."""
+    """Read a whole file; raises as `opened`."""
     with opened(name) as file:
         return file.read()

@@ -28,7 +28,7 @@ _SINGLE: Final = frozenset(SINGLE) - {"TITLE"}
 
 @dataclass(frozen=True, slots=True)
 class _Cells:
-    """A line of code in cells.
+    """A line of a deck, divided into cells.
 
     Attributes
     ----------
@@ -124,12 +124,12 @@ def _up_to_end(lines: Iterable[Line]) -> Iterator[Line]:
 
 
 def _stripped(lines: Iterable[Line]) -> Iterator[tuple[int, str]]:
-    """Index and text of each line that is a card of its own."""
+    """Yield index and stripped text of each line that is a whole card."""
     return ((line.number - 1, line.text.strip()) for line in lines if "\n" not in line.text)
 
 
 def _blocks(rows: Iterable[Row]) -> Iterator[list[_Cells]]:
-    """Lines that share columns: those below one heading, and PARAMs that follow one another."""
+    """Yield groups of lines that share columns: those below one heading, and consecutive PARAMs."""
     section = ""
     block: list[_Cells] = []
     params: list[_Cells] = []
@@ -151,7 +151,7 @@ def _blocks(rows: Iterable[Row]) -> Iterator[list[_Cells]]:
 
 
 def _lines(row: Row, section: str) -> list[_Cells]:
-    """Physical lines of a row; none where an item, or the name before all, goes over the end of a line."""
+    """Physical lines of a row as cells; empty where an item spans two lines, or the first has no item."""
     texts = row.line.text.split("\n")
     try:
         items = [parse_items(Line("", 1, text)) for text in texts]
@@ -185,13 +185,13 @@ def _first(at: int, word: str, section: str, text: str, items: Sequence[Item], t
 
 
 def _cell(text: str, item: Item, equal: str = "=") -> str:
-    """An item with its name as written."""
+    """Text of an item with its name as written."""
     name = text[item.name_span.column - 1 : item.name_span.end - 1] + equal if item.name else ""
     return name + item.text
 
 
 def _in_columns(block: Sequence[_Cells]) -> Iterator[tuple[int, str]]:
-    """Index and text of each line."""
+    """Yield index and text of each line of a block, its cells aligned in columns."""
     starts: dict[str, int] = {}  # number of columns before the named items, by kind
     wide: dict[tuple[str, int], int] = {}
 
@@ -211,7 +211,7 @@ def _in_columns(block: Sequence[_Cells]) -> Iterator[tuple[int, str]]:
 
 
 def _named_widths(block: Sequence[_Cells]) -> list[list[int]]:
-    """Widths of the named cells of each line."""
+    """Widths of the named cells of each line, aligned with neighbours of the same names so far."""
     all_widths: list[list[int]] = [[] for _ in block]
     named = [(row, widths) for row, widths in zip(block, all_widths) if row.named]
     for j in range(max((len(row.named) for row, _ in named), default=0)):
@@ -225,7 +225,7 @@ def _named_widths(block: Sequence[_Cells]) -> list[list[int]]:
 
 
 def _with_comments(raw: Sequence[str], code: Sequence[str], headings: set[int]) -> Iterator[str]:
-    """Lines with their comments: those that follow one another stand below one another."""
+    """Yield lines with their comments, which start in one column in consecutive lines."""
     before = [without_comment(line) for line in raw]
     texts = [line[len(b) :].rstrip() for line, b in zip(raw, before)]
 

@@ -98,7 +98,7 @@ class Units:
     given: bool = False
 
     def text(self, dimension: str) -> str:
-        """Dimension (``F/L`` ...) in the deck's units (``kN/m`` ...)."""
+        """Text of a dimension (``F/L`` ...) in the deck's units (``kN/m`` ...)."""
         unit = ""
         for ch in dimension:
             unit += {"F": self.force, "L": self.length, "T": self.time}.get(ch, ch)
@@ -119,7 +119,7 @@ class Model:
         ``LUMPED`` or ``CONSISTENT`` mass of FRAME members.
     geometry : str
         ``SMALL`` displacements, or the effect of axial forces on the stiffness: ``PDELTA``,
-        ``PDELTA_MEMBER``.
+        ``PDELTA_MEMBER``, ``PDELTA_VARYING``, or ``LARGE`` displacements.
     params : mapping of str to float or str
         Values of all PARAM names, after ``--set``.
     nodes, elements, props : mappings by number or label

@@ -39,7 +39,7 @@ class Outline:
     _skipping: bool = False
 
     def add(self, row: Row) -> None:
-        """Put a row where it belongs."""
+        """Sort a row into its section, or take it as a single card or as PARAMs."""
         if row.word in NAMES:
             self._open(row)
         elif row.word in SINGLE:
@@ -68,7 +68,7 @@ class Outline:
             self.lose_all()
 
     def lose(self, section: str, label: str = "") -> None:
-        """Note that a section has lost a row, which begins with a label where that is known."""
+        """Record that a section has lost a row to a mistake, with the row's first label, if known."""
         self.broken.add(section)
         if section == "PROPS" and label:
             self.maimed.add(label)
@@ -76,7 +76,7 @@ class Outline:
             self.gone.add(section)
 
     def lose_all(self) -> None:
-        """Note that rows of any section may be lost."""
+        """Record that rows of any section may be lost."""
         for section in NAMES:
             self.lose(section)
 
@@ -89,7 +89,7 @@ class Outline:
             self._error("P236", f"{row.word} stands alone on its line", rest[0].name_span, hint)
 
     def _misspelt(self, row: Row) -> bool:
-        """Whether the row is a misspelt name of a section, whose lines then follow."""
+        """Whether a row is a misspelt section name; if so, report it and open the section that is meant."""
         items = row.items or ()
         if not _like_a_heading(items) or row.word in self.definitions or row.word in self.lost:
             return False
@@ -136,7 +136,7 @@ class Outline:
 
 
 def _like_a_heading(items: Sequence[Item]) -> bool:
-    """Whether a line is a word alone, or a word and a whole number, as the name of a section is."""
+    """Whether a line has the form of a section name: a word alone, or a word and a whole number."""
     numbered = len(items) == 2 and _is_whole(items[1])
     return bool(items and items[0].word) and (len(items) == 1 or numbered)
 

@@ -71,7 +71,7 @@ def read_text(
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Pause the search for reference cycles: a deck makes none, and a long one takes twice the time."""
+    """Pause garbage collection: a deck makes no reference cycles, and a long one takes twice the time."""
     was = gc.isenabled()
     gc.disable()
     try:
@@ -145,14 +145,14 @@ def _override(
 
 
 def _text(text: str, place: Span) -> Expression:
-    """A text, without the quotes around it."""
+    """Expression of a text, without the quotes around it."""
     bare = text.strip()
     quoted = len(bare) > 1 and bare[0] == bare[-1] and bare[0] in "\"'" and bare.count(bare[0]) == 2
     return Expression((Step("text", bare[1:-1] if quoted else bare, place),), place, bare)
 
 
 def _number(line: Line) -> Expression | None:
-    """The one expression of a line, such as a number; None where it holds anything else."""
+    """The single expression of a line, such as a number; None where the line holds anything else."""
     try:
         items = parse_items(line)
     except Mistake:

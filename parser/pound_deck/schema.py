@@ -100,12 +100,12 @@ class Field:
 
 
 def out_of_limits(value: float, f: Field) -> str:
-    """What is wrong with a number that no deck could give this item; empty where one could."""
+    """Text on what is wrong with the magnitude or the limits of a number for an item; empty if nothing."""
     return beyond(value, f) or outside(value, f)
 
 
 def beyond(value: float, f: Field | None) -> str:
-    """What is wrong with the magnitude of a number, which may be no number at all."""
+    """Text on what is wrong with the magnitude of a number, which may be NaN; empty if nothing."""
     nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
     if nothing <= abs(value) <= GREAT:
         return ""
@@ -114,7 +114,7 @@ def beyond(value: float, f: Field | None) -> str:
 
 
 def outside(value: float, f: Field) -> str:
-    """What is wrong with a number that is not within the limits of its field."""
+    """Text on how a number violates the limits of its field; empty if it does not."""
     inside = (
         (f.lo is None or value >= f.lo)
         and (f.hi is None or value <= f.hi)

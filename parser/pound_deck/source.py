@@ -36,7 +36,7 @@ class Line:
 
     @property
     def span(self) -> Span:
-        """Its first physical line, without the blanks around it."""
+        """Span of the first physical line, without the blanks around it."""
         first = self.text.split("\n", 1)[0]
         column = len(first) - len(first.lstrip()) + 1
         return Span(self.file, self.number, column, max(len(first.rstrip()), column) + 1)
@@ -171,12 +171,12 @@ class Source:
 
 
 def is_end(text: str) -> bool:
-    """Whether a logical line ends its file."""
+    """Whether a logical line is END, which ends its file."""
     return text.strip().upper() == "END"
 
 
 def without_comment(raw: str) -> str:
-    """A line up to the exclamation mark that starts its comment."""
+    """Text of a line up to the exclamation mark that starts its comment."""
     if "!" not in raw:
         return raw
     mark = next((m.start() for m in _COMMENT.finditer(raw) if m[1]), len(raw))

@@ -101,7 +101,7 @@ def place(line: Line, at: int, length: int = 1) -> Span:
 
 
 def explain(fault: Fault) -> Mistake:
-    """The mistake behind a fault, in words."""
+    """Mistake whose message explains a fault."""
     for kind in _KINDS:
         if slip := kind(fault):
             return slip
@@ -111,7 +111,7 @@ def explain(fault: Fault) -> Mistake:
 
 
 def _unquoted_path(fault: Fault) -> Mistake | None:
-    """The name of a file without quotes."""
+    """Mistake for the name of a file without quotes; None for other faults."""
     text, start, end = fault.line.text, fault.at, fault.at
     while start and text[start - 1] not in " \t\n=,":
         start -= 1

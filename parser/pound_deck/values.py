@@ -40,7 +40,7 @@ class Values:
     units: Units
 
     def one(self, f: Field, part: Part) -> Any:
-        """Value of a field's kind."""
+        """Value of a part, read by the kind of its field."""
         if isinstance(part, Range):
             hint = f"give {f.name} one value"
             if f.varies:
@@ -67,14 +67,14 @@ class Values:
         raise AssertionError(f.kind)
 
     def _instead(self, part: Expression, f: Field) -> str:
-        """Word that stands for the field's number, itself or as a PARAM; empty where a number does."""
+        """Word that a field takes in place of a number, written or from a PARAM; empty for a number."""
         step = part.lone
         value = self._param(step) if f.words and step and step.kind == "word" else None
         text = value if isinstance(value, str) else step.text if step else ""
         return text.upper() if text.upper() in f.words else ""
 
     def real(self, part: Expression, f: Field | None, bounded: bool = True) -> float:
-        """Number of a sensible magnitude (of BY where the field is None), within the field's limits where
+        """Number of a sensible magnitude (that of BY where the field is None), within the field's limits if
         `bounded`.
         """
         value = self._number(part, f)
@@ -115,7 +115,7 @@ class Values:
         return value
 
     def within(self, value: float, part: Expression, f: Field | None) -> float:
-        """The value, which must be within the field's limits."""
+        """Return the value; raise Mistake where it is not within the field's limits."""
         if f and (wrong := outside(value, f)):
             raise mistake("P217", f"{f.name} {wrong}", part.span, self.meaning(f))
         return value
@@ -135,7 +135,7 @@ class Values:
         raise mistake("P216", f"{f.name} takes a text, and {what}", part.span, hint)
 
     def _param(self, step: Step) -> Value | None:
-        """Value of the PARAM of that name, None where there is none."""
+        """Value of the PARAM that a step names; None where there is none."""
         name = step.text.upper()
         if name in self.params and self.params[name] is None:
             raise Mistake
@@ -196,7 +196,7 @@ class Values:
         raise mistake("P210", f"{name} cannot be {shown}", part.span, hint)
 
     def _substituted(self, step: Step, known: Collection[str]) -> str:
-        """Text of a step in upper case; of an unknown word that names a PARAM, the value of that."""
+        """Text of a step in upper case; for an unknown word that names a PARAM, the PARAM's value."""
         text = step.text.upper()
         if step.kind != "word" or text in known:
             return text
@@ -216,5 +216,5 @@ def _are_flags(text: str, letters: str) -> bool:
 
 
 def _code(text: str) -> int | None:
-    """The whole number that a text is, or None."""
+    """Whole number of up to nine digits that a text stands for; else None."""
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else None

@@ -22,7 +22,7 @@ _DAMPING: Final = {
 
 
 def kind(control: Control) -> int:
-    """The analysis.
+    """Code of the analysis, IPANAL.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def forces(
     separate: list[equake.File],
     draft: Draft,
 ) -> None:
-    """Add the forces of a history that SHAPE distributes.
+    """Add the forces in time that SHAPE distributes over the nodes.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class Entry:
 
 @dataclass(slots=True)
 class Draft:
-    """Lines of the new deck by section, and what is to be said of them.
+    """Lines of the new deck by section, and the diagnostics about them.
 
     Attributes
     ----------
@@ -58,32 +58,32 @@ class Draft:
         self.sections[section].append(Entry(text, span, tuple(notes)))
 
     def doubt(self, span: Span, reading: str) -> str:
-        """Tell that an item is read by convention; returns the comment that marks it."""
+        """Warn that an item is read by convention; return the comment that marks it."""
         self.report.append(Diagnostic("L605", f"by convention, {reading}", span, _CHECK, "warning"))
         return f"{CONVENTION}: {reading}"
 
     def lose(self, span: Span, what: str, cure: str = "add it to the new deck by hand") -> str:
-        """Tell that something is not carried over; returns the comment that marks it."""
+        """Warn that something is not carried over; return the comment that marks it."""
         self.report.append(Diagnostic("L609", f"not carried over: {what}", span, cure, "warning"))
         return f"NOT CARRIED OVER: {what}"
 
     def rest(self, reading: str) -> None:
-        """Remember that decks of others confirm a reading."""
+        """Record that decks of others confirm a reading."""
         if reading not in self.evidence:
             self.evidence.append(reading)
 
 
 def number(value: float) -> str:
-    """A number as a deck writes it, all its digits."""
+    """Number as a deck writes it, with all its digits."""
     return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
 
 
 def numbers(values: Iterable[float]) -> str:
-    """Values of one item."""
+    """Values of one item as a deck writes them, joined by commas."""
     return ",".join(map(number, values))
 
 
 def quoted(text: str) -> str:
-    """A text in quotes that it does not hold."""
+    """Text in quotes, of the kind that it does not contain."""
     bare = "".join(c for c in text if c.isprintable())
     return f'"{bare}"' if '"' not in bare else "'" + bare.replace("'", " ") + "'"

@@ -65,7 +65,7 @@ def _member(row: Row, last: int, kinds: int, before: Member | None, nodes: dict[
 
 
 def _between(before: Member, after: Member, nodes: dict[int, Node], draft: Draft) -> list[Member]:
-    """Members that are generated between two that are given."""
+    """Generate the members between two given ones."""
     members = []
     for id_ in range(before.id + 1, after.id):
         step = id_ - before.id

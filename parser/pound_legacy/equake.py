@@ -36,8 +36,8 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Appended:
-    """What follows the lines of EQUAKE: the file, and the number of the first line that may hold a
-    record.
+    """Record that may follow the lines of EQUAKE in the deck: the deck's file, and the number of the first
+    line that may hold the record.
     """
 
     file: File
@@ -46,7 +46,7 @@ class Appended:
 
 @dataclass(frozen=True, slots=True)
 class _Data:
-    """Where a record stands: its file, its first and last line (0: the whole file)."""
+    """Location of a record: its file, its first and last line (0: the whole file)."""
 
     file: File
     first: int = 0
@@ -62,7 +62,7 @@ class _Data:
 
 
 def record(options: Row, appended: Appended, separate: File | None, draft: Draft, notes: list[str]) -> str:
-    """Items of the file, its format and the part of it that acts.
+    """Text of the items of a RECORD card: the file, its format and the part of it that acts.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def record(options: Row, appended: Appended, separate: File | None, draft: Draft
 def _plain(
     v: dict[str, float], code: int, options: Row, draft: Draft, notes: list[str], items: list[str]
 ) -> float:
-    """Time at which a record without counters begins to act; adds the step."""
+    """Start time of a record without counters, which is zero; adds the step to `items`."""
     reading = {0: "one step DELTAT from number to number", 1: "pairs of time and acceleration", 6: "as 0"}[
         code
     ]
@@ -125,7 +125,7 @@ def _plain(
 
 
 def scale(options: Row, factor: float, draft: Draft) -> float:
-    """Factor on the numbers of the record that makes shares of gravity of them."""
+    """Factor that converts the numbers of the record into shares of gravity."""
     divisor = options.item(3).real("ASCALE")
     if divisor == 0.0:
         raise mistake(
@@ -137,7 +137,7 @@ def scale(options: Row, factor: float, draft: Draft) -> float:
 
 
 def _data(appended: Appended, separate: File | None, options: Row) -> _Data:
-    """Where the record stands: behind the line of EQUAKE, or in the file that the user names."""
+    """Location of the record: behind the line of EQUAKE, or in the file that the user names."""
     lines = appended.file.text.splitlines()
     first = last = 0
     for k in range(appended.first, len(lines) + 1):
@@ -156,7 +156,7 @@ def _data(appended: Appended, separate: File | None, options: Row) -> _Data:
 
 
 def _time_of_counter(counter: int, data: _Data, options: Row) -> float:
-    """Time of the line with a counter."""
+    """Time on the line of the record that has a counter."""
     name = options.span.file if data.first else data.file.name
     for k, raw in enumerate(data.rows(), data.first or 1):
         line = row(name, k, raw)

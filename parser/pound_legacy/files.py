@@ -32,7 +32,7 @@ def text_of(name: str) -> str:
 
 
 def recognised(name: str) -> bool:
-    """Whether a file is an old deck, by its first lines.
+    """Whether a file is an old deck, judged by its first lines.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def read(props: PropertySet, label: str) -> None:
 
 
 def _section(row: Row, pin: int) -> list[str]:
-    """Items of the section and of the ends."""
+    """Items of the cross-section and of the member's ends."""
     v = dict(zip(SECTION, row.reals(SECTION, 5)))
     items = [f"{name}={number(v[name])}" for name in ("E", "A", "I")]
     if v["AS"]:
@@ -71,7 +71,7 @@ def _section(row: Row, pin: int) -> list[str]:
 
 
 def _initial(props: PropertySet, code: int, notes: list[str]) -> str:
-    """Initial forces: the axial force (ICOND 1), the end moments (2), or both (3)."""
+    """Items of the initial forces: the axial force (ICOND 1), the end moments (2), or both (3)."""
     names = {1: INITIAL[:1], 2: INITIAL[1:], 3: INITIAL}.get(code)
     if names is None:
         raise mistake("L604", f"ICOND {code} is not known", props.rows.here, "0 to 3")
@@ -108,7 +108,7 @@ def _hinges(
 
 
 def _beam(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
-    """Yield moments of the one-component beam."""
+    """Kind of element and items of the yield moments of a one-component beam."""
     tension, compression, *moments = row.reals(BEAM, 4)
     notes.append(props.draft.doubt(row.span, f"the order of a beam's strengths is {' '.join(BEAM)}"))
     if tension or compression:
@@ -120,7 +120,7 @@ def _beam(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
 
 
 def _column(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
-    """Diagram of a concrete column, moments alike on both sides."""
+    """Kind of element and items of the interaction diagram of a concrete column, symmetric in moment."""
     crush, balance, mb, m1b, m2b, m0, tension = row.reals(COLUMN, 7)
     notes.append(props.draft.doubt(row.span, f"the order of a column's strengths is {' '.join(COLUMN)}"))
     axial = (-abs(crush), -abs(balance), -abs(balance) * 2 / 3, -abs(balance) / 3, 0.0, abs(tension))

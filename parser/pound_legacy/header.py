@@ -45,7 +45,7 @@ _GRAVITIES: Final = (  # limits, and the usual units
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """What the control lines say, by the names of their items, and their places."""
+    """Values of the control lines by the names of their items, and their places."""
 
     values: dict[str, float]
     places: dict[str, Span]
@@ -54,7 +54,7 @@ class Control:
         return self.values[name]
 
     def whole(self, name: str) -> int:
-        """A code or a count."""
+        """Value of a code or a count as a whole number."""
         return int(self.values[name])
 
     def place(self, name: str) -> Span:
@@ -95,7 +95,7 @@ def read(rows: Sequence[Row], here: Span) -> Control:
 
 
 def write(control: Control, draft: Draft) -> None:
-    """Add the cards that stand in no section."""
+    """Add the cards that belong to no section."""
     _fixed_format(control)
     units = next((u for low, high, u in _GRAVITIES if low <= control["GRAV"] <= high), "")
     if units:
@@ -141,7 +141,7 @@ def _geometry(control: Control, draft: Draft) -> None:
 
 
 def _unknown(control: Control, draft: Draft) -> None:
-    """Tell of items that change results and have no meaning that is known."""
+    """Warn of items that change results but whose meaning is not known."""
     for name in ("IPNF", "IZERO", "ORTHO", "IMODE", "WAVEX", "DXMAX", "D", "OMEGA", "F0"):
         if control[name]:
             note = draft.lose(control.place(name), f"{name} {number(control[name])}")

@@ -44,7 +44,7 @@ class Translation:
     report: tuple[Diagnostic, ...]
 
     def moved(self, diagnostics: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
-        """Diagnostics of the new deck, called `name`, at the lines of the old one."""
+        """Diagnostics of the new deck, called `name`, moved to the lines of the old one."""
         return [
             replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d
             for d in diagnostics
@@ -109,7 +109,7 @@ class _Section:
 def _outline(
     name: str, text: str, lines: list[str], draft: Draft
 ) -> tuple[Mapping[str, _Section], Control]:
-    """Control lines, and the others by section.
+    """Sections of the deck by name, and the values of its control lines.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def _excite(
     points: dict[int, nodes.Node],
     draft: Draft,
 ) -> None:
-    """Add what moves the structure."""
+    """Add ground motions or forces in time."""
     code = analysis.kind(control)
     if code not in (analysis.EARTHQUAKE, analysis.FORCES):
         return
@@ -226,7 +226,7 @@ def _excite(
 
 
 def _ground(draft: Draft, here: Span) -> Diagnostic:
-    """On what ground the deck was read."""
+    """Warning that states the evidence for how the deck was read."""
     text = "read as a deck of Ruaumoko-2D: but for what is marked, as one whose results are known"
     if draft.evidence:
         text += "; by decks of others: " + "; ".join(draft.evidence)
@@ -234,7 +234,7 @@ def _ground(draft: Draft, here: Span) -> Diagnostic:
 
 
 def _written(title: str, name: str, draft: Draft) -> tuple[str, tuple[Span | None, ...]]:
-    """Text of the new deck, and where its lines come from."""
+    """Text of the new deck, and for each line its place in the old one."""
     lines: list[tuple[str, Span | None]] = [
         (f"TITLE {_plain(title)}", None),
         (f"! Read from the Ruaumoko-2D deck {_plain(name)}.", None),
@@ -253,5 +253,5 @@ def _written(title: str, name: str, draft: Draft) -> tuple[str, tuple[Span | Non
 
 
 def _plain(text: str) -> str:
-    """A text of one line."""
+    """Text without line ends and other characters that cannot be printed."""
     return "".join(c for c in text if c.isprintable())

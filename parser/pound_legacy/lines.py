@@ -52,7 +52,7 @@ class Item:
         )
 
     def whole(self, name: str) -> int:
-        """Value of a whole item; ``1.0`` is one, too.
+        """Value of an item as a whole number; ``1.0`` is one, too.
 
         Raises
         ------
@@ -84,7 +84,7 @@ class Row:
 
     @property
     def word(self) -> str:
-        """First item in capitals, if it is no number, else empty."""
+        """First item in capitals; empty where it is a number."""
         first = self.items[0]
         return "" if first.numeric else first.text.upper()
 
@@ -104,7 +104,7 @@ class Row:
         return [self.item(k).real(name) for k, name in enumerate(names)]
 
     def wholes(self, names: Sequence[str], least: int = 0) -> list[int]:
-        """Whole values, likewise."""
+        """Values as of `reals`, as whole numbers."""
         self.need(names, least)
         return [self.item(k).whole(name) for k, name in enumerate(names)]
 
@@ -117,7 +117,7 @@ class Row:
 
 
 def row(file: str, number: int, raw: str) -> Row | None:
-    """Data line of a physical one; None where it has no data."""
+    """Parse a physical line as a data line; None where it has no data."""
     code = without_comment(raw)
     if not code or code.isspace():
         return None
@@ -154,7 +154,7 @@ class Rows:
         return self.at < len(self.rows)
 
     def peek(self) -> Row:
-        """The next line, which stays."""
+        """Return the next line without taking it."""
         return self.rows[self.at]
 
     def next(self, what: str) -> Row:

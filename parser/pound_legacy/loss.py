@@ -25,7 +25,7 @@ _COUNTING: Final = 4  #: the first code with RCYC
 
 
 def read(code: int, rule: Spec, rows: Rows, place: Span, draft: Draft, notes: list[str]) -> str:
-    """Items of the new deck.
+    """Text of the items of the loss of strength in the new deck.
 
     Parameters
     ----------

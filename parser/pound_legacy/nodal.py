@@ -16,7 +16,7 @@ LOADS: Final = ("N", "FX", "FY", "MZ")
 def _lines(
     rows: Rows, names: tuple[str, ...], nodes: dict[int, Node], draft: Draft
 ) -> list[tuple[Row, int, list[float]]]:
-    """Lines of a list: the node, and its values; mistakes are reported, and the line is left out."""
+    """Row, node and values of each line of a list; a line with a mistake is reported and left out."""
     lines: list[tuple[Row, int, list[float]]] = []
     for row in rows:
         try:
@@ -53,7 +53,7 @@ def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, No
 
 
 def loads(rows: Rows, nodes: dict[int, Node], draft: Draft) -> bool:
-    """Add the loads; whether there are any."""
+    """Add the loads; return whether there are any."""
     some = False
     for row, id_, values in _lines(rows, LOADS, nodes, draft):
         if any(values):
@@ -63,5 +63,5 @@ def loads(rows: Rows, nodes: dict[int, Node], draft: Draft) -> bool:
 
 
 def shape(rows: Rows, nodes: dict[int, Node], draft: Draft) -> list[tuple[Row, int, list[float]]]:
-    """Lines of SHAPE: what a force history is multiplied by at each node."""
+    """Row, node and values of each line of SHAPE: factors on the force history at the node."""
     return [line for line in _lines(rows, ("N", "SX", "SY", "SM"), nodes, draft) if any(line[2])]

@@ -60,7 +60,7 @@ def read(rows: Rows, last: int, draft: Draft) -> dict[int, Node]:
 
 
 def _rest(rows: Rows, draft: Draft) -> None:
-    """Tell of lines behind the last one that counts."""
+    """Report lines behind that of the last node."""
     if rows.more:
         text = "lines follow the last node that NNP counts"
         draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NNP, or take them out"))
@@ -85,7 +85,7 @@ def _node(row: Row, last: int, before: Node | None) -> Node:
 
 
 def _between(before: Node, after: Node, draft: Draft) -> list[Node]:
-    """Nodes that lie evenly between two that are given."""
+    """Generate the nodes that lie evenly between two given ones."""
     count = after.id - before.id
     what = f"nodes {before.id + 1} to {after.id - 1} lie evenly between {before.id} and {after.id}"
     if before.codes != after.codes or before.masters != after.masters:
@@ -119,7 +119,7 @@ def write(nodes: dict[int, Node], draft: Draft) -> None:
 
 
 def _slaved(node: Node, nodes: dict[int, Node], draft: Draft) -> tuple[str, list[str]]:
-    """Items of a node that follows another, and comments."""
+    """Items of a node that is slaved to another, and comments; both empty for others."""
     ways = [k for k in range(3) if node.codes[k] == _SLAVED]
     if not ways:
         return "", []

@@ -1,4 +1,4 @@
-"""What the reader of a property set is given."""
+"""Input of the readers of property sets."""
 
 from __future__ import annotations
 

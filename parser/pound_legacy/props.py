@@ -52,7 +52,7 @@ def read(
 
 
 def _kind(head: Row, expected: int) -> str:
-    """Type of the property set that a line begins."""
+    """Type of the property set on its first line; raise Mistake where it cannot be read."""
     if head.item(0).whole("the number of a property set") != expected or len(head.items) < 2:
         text = f"a line `{expected} TYPE` should begin property set {expected}"
         raise mistake(
@@ -70,7 +70,7 @@ def _kind(head: Row, expected: int) -> str:
 
 
 def _skip(rows: Rows) -> None:
-    """Go to the next line that begins a property set: a number and a word."""
+    """Skip lines up to one that begins a property set: a number and a word."""
     while rows.more and not _begins(rows.peek()):
         rows.next("a line")
 

@@ -19,7 +19,7 @@ _CONTROL_2D = 4  #: control lines of a plane deck
 
 
 def control_lines(text: str) -> list[Row]:
-    """Lines of control of an old deck, empty where the text is none."""
+    """Control lines of an old deck; empty where the text is not one."""
     head = text[:HEAD].splitlines()
     rows = (line for number, raw in enumerate(head[1:], 2) if (line := row("", number, raw)))
     control: list[Row] = []
@@ -37,7 +37,7 @@ def is_legacy(text: str) -> bool:
 
 
 def in_space(rows: list[Row]) -> bool:
-    """Whether control lines are those of a deck in space: it has a line of six numbers for the view."""
+    """Whether control lines are those of a 3-D deck, which has a line of six numbers for the view."""
     return len(rows) > _CONTROL_2D and len(rows[0].items) < 11
 
 

@@ -96,7 +96,7 @@ CERTAIN: Final = (0, 1, 2, 7, 52)  #: rules without parameters, and the one of a
 
 
 def known(code: int, place: Span, catalog: Catalog) -> Spec:
-    """A rule that can be carried over.
+    """Spec of a rule that can be carried over.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def known(code: int, place: Span, catalog: Catalog) -> Spec:
 
 
 def read(code: int, rows: Rows, ratio: float, draft: Draft, notes: list[str]) -> str:
-    """Items of the new deck of the next set of lines of a rule.
+    """Read the next set of lines of a rule; return its items in the new deck.
 
     Raises
     ------

@@ -57,7 +57,7 @@ def read(props: PropertySet, label: str) -> None:
 
 
 def _axes(props: PropertySet, stiff: list[float], row: Row, notes: list[str]) -> None:
-    """Tell how the axes of the components lie, and what a length does."""
+    """Warn how the directions of the components are read, and what a length of the spring does."""
     if any(length == 0.0 for length in props.lengths) and stiff[0] != stiff[1]:
         notes.append(props.draft.doubt(row.span, "a spring without length has x along global x"))
         if any(props.lengths):
@@ -77,7 +77,7 @@ def _yielding(
     row: Row,
     notes: list[str],
 ) -> str:
-    """Items of the components that yield."""
+    """Text of the items of the components that yield; empty where none does, or all is elastic."""
     rule = rules.known(code, row.items[1].span, props.catalog)
     strong = props.rows.next("the yield forces: " + " ".join(FORCES))
     forces = strong.reals(FORCES)
