@@ -84,7 +84,7 @@ class Project:
                 yield other
 
     def check(self, path: str) -> Found:
-        """Check the decks that a file belongs to; return its mistakes, and those of files where they changed."""
+        """Check the decks that a file belongs to; return its mistakes, and those of files that changed."""
         decks = {self.deck(p) for p in self.texts}
         own_deck = self.deck(path) if path in self.texts else ""
         changed = {deck for deck in decks if deck == own_deck or path in self._said.get(deck, {})}
