@@ -98,7 +98,7 @@ def _no_family(known: Catalog, word: str) -> str:
 
 
 def _ordered(known: Catalog) -> list[str]:
-    """Families in the order of the page, unlisted ones last."""
+    """Names of the families in the order of the page, those not in `_FAMILIES` last."""
     return [
         *(f for f in _FAMILIES if f in known.families()),
         *(f for f in known.families() if f not in _FAMILIES),
@@ -126,7 +126,7 @@ def _members(family: str, members: Iterable[Spec]) -> list[str]:
 
 
 def _with_items(family: str, members: Iterable[Spec]) -> list[str]:
-    """Members with the names of their items."""
+    """Lines that list the members of a family with the names of their items."""
     specs = list(members)
     wide = max(len(_coded(s)) for s in specs)
     lines = [f"{family}: {_family(family)[2]}"]
@@ -141,7 +141,7 @@ def _coded(spec: Spec) -> str:
 
 
 def _sheet(spec: Spec) -> list[str]:
-    """Lines on one Spec."""
+    """Lines that describe one Spec: usage, code, reference, example and items."""
     lines = [f"{spec.name}: {spec.title}", ""]
     lines += _wrapped("write      ", usage(spec))
     lines += [f"code       {spec.code}, in place of the name"] if spec.code is not None else []
@@ -153,7 +153,7 @@ def _sheet(spec: Spec) -> list[str]:
 
 
 def _items(fields: Sequence[Field]) -> list[str]:
-    """Table of items: what each takes and what it means, each wrapped within its own column."""
+    """Lines of a table of items; permitted values and meanings are wrapped within their columns."""
     rows = [_HEADS, *(_row(f) for f in fields)]
     wide = [max(len(row[i]) for row in rows) for i in range(4)]
     # long limits are wrapped: a column as wide as them would leave no room for the meaning
@@ -183,7 +183,7 @@ def _legend(fields: Sequence[Field]) -> str:
 
 
 def usage(spec: Spec) -> str:
-    """How a card of that Spec is written: items in order; in brackets what may be left out."""
+    """Usage of a card: its items in order, in brackets those that may be left out."""
     words = [_family(spec.family)[1].format(name=spec.name)]
     for f in spec.fields:
         word = f.name if f.positional else f"{f.name}="
@@ -196,7 +196,7 @@ def _row(f: Field) -> tuple[str, str, str, str, str]:
 
 
 def default(f: Field) -> str:
-    """What an item that is left out takes; ``must`` where it must stand."""
+    """Text of an item's default value; ``must`` where the item is required."""
     if f.default is REQUIRED:
         return "must"
     values = f.default if isinstance(f.default, tuple) else (f.default,)
@@ -206,13 +206,13 @@ def default(f: Field) -> str:
 
 
 def takes(f: Field) -> str:
-    """Permitted values of an item: choices, limits, number of values."""
+    """Text of an item's permitted values: choices, limits, number of values."""
     text = _one_value(f) + (", or range" if f.varies else "")
     return ", ".join(t for t in (_many(f), text) if t)
 
 
 def _many(f: Field) -> str:
-    """How many values an item has; empty of one."""
+    """Text of an item's number of values; empty for a single value."""
     least, most = f.count
     if most == 1:
         return ""

@@ -114,7 +114,7 @@ def _history(results: Results, name: str, folder: Path, kind: str, time: Array, 
 
 
 def _extremes(results: Results, name: str, folder: Path) -> Path:
-    """Smallest and largest values side by side, and the intervals that they are of."""
+    """Write the extremes of a history within intervals as CSV: bounds, smallest and largest values."""
     bounds, low, high = results.extreme(name)
     unit = results.history_units("time")[0]
     heads, columns = [_head("from", unit), _head("to", unit)], [bounds[:-1], bounds[1:]]
@@ -126,7 +126,7 @@ def _extremes(results: Results, name: str, folder: Path) -> Path:
 
 
 def _blocks(columns: Sequence[Array]) -> Iterator[list[float]]:
-    """Rows of columns, as Python numbers."""
+    """Yield the rows of columns as Python numbers."""
     for start in range(0, len(columns[0]), _BLOCK):
         yield from np.stack([column[start : start + _BLOCK] for column in columns], axis=1).tolist()
 
@@ -144,7 +144,7 @@ def _head(name: str, unit: str) -> str:
 
 
 def _cell(value: Any) -> Any:
-    """A value as a cell; a text that a spreadsheet would compute gets an apostrophe in front."""
+    """Value as a cell; a text that a spreadsheet would take for a formula gets an apostrophe in front."""
     if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) and not _number(value):
         return "'" + value
     return "" if isinstance(value, float) and math.isnan(value) else value

@@ -28,7 +28,7 @@ UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods 
 
 
 class SeparationError(Exception):
-    """A results file that does not hold what the rules need."""
+    """Raised where a results file does not hold what the rules need."""
 
 
 class SeparationRecord(NamedTuple):
@@ -95,7 +95,7 @@ def _check(results: Results) -> None:
 def _ddc(
     u1: float, u2: float, periods: tuple[float, float], damping: tuple[float, float]
 ) -> tuple[float, str]:
-    """Double difference combination of two peaks; a remark where a period or a damping [%] is unknown."""
+    """Double difference combination of two peaks [L]; a remark where a period or damping [%] is unknown."""
     rho = correlation(*periods, *(xi / 100.0 for xi in damping))
     return Peaks(u1, u2, rho).difference, UNKNOWN if math.isnan(rho) and u1 and u2 else ""
 
@@ -116,7 +116,7 @@ def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:
 
 
 def _mode(results: Results, node: int, direction: tuple[float, float]) -> tuple[float, float]:
-    """Period [T] and damping [%] of the longest mode that a node takes part in; NaN where there is none."""
+    """Period [T] and damping [%] of the longest mode that a node takes part in; NaN without one."""
     if not {"modes", "mode_shapes"} <= set(results.tables):
         return NAN, NAN
     shapes, modes = results.table("mode_shapes"), results.table("modes")

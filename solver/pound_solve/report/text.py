@@ -95,7 +95,7 @@ def _banner(results: Results) -> Iterator[str]:
 
 
 def _warning(results: Results) -> Iterator[str]:
-    """Framed warning above the report of an analysis that did not finish."""
+    """Lines of the framed warning above the report of an analysis that did not finish."""
     told = incomplete(results)
     if not told:
         return
@@ -108,7 +108,7 @@ def _warning(results: Results) -> Iterator[str]:
 
 
 def incomplete(results: Results) -> tuple[str, ...]:
-    """What a report says above an analysis that did not finish: that, why, and how far it came."""
+    """Sentences on an analysis that did not finish: that it did not, why, and how far it came."""
     if results.status == "done":
         return ()
     head = "THE ANALYSIS DID NOT COMPLETE"
@@ -158,7 +158,7 @@ class Shown(NamedTuple):
 
 
 def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]:
-    """Parts of a table of the file, in the shape in which it reads best; `limit` as of `render`."""
+    """Parts in which a report shows a table: those of its view, or as it is; `limit` as of `render`."""
     view = view_of(table.name, whole=limit == 0)
     if view is None:
         return [Shown("", table, *_excerpt(results, table, limit))]
@@ -169,7 +169,7 @@ def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]
 
 
 def _excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[NDArray[Any], str]:
-    """Rows of a table that a report shows, and a line on those left out; `limit` as of `render`."""
+    """First rows of a table, as many as a report shows, and a line on those left out; see `render`."""
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit
     if not most or len(rows) <= most:
@@ -202,7 +202,7 @@ def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
 
 
 def printed(units: Units, table: Table[Any], rows: Iterable[Row], note: str = "") -> list[str]:
-    """Lines of a table that no file holds, from its rows; see `block`."""
+    """Lines of a table that is not stored in a file, from its rows; see `block`."""
     records = np.array(list(rows), dtype=table.kinds)
     return [line.rstrip() for line in block(units, table, records, note)]
 
@@ -227,7 +227,7 @@ class Formatted(NamedTuple):
 
 
 def formatted(units: Units, table: Table[Any], rows: NDArray[Any]) -> Formatted:
-    """Cells of a table as a report shows them."""
+    """Format the cells of a table as a report shows them."""
     groups = _groups(table, rows)
     cells, heads, columns = {}, {}, []
     for c in table.columns:
@@ -245,7 +245,7 @@ def formatted(units: Units, table: Table[Any], rows: NDArray[Any]) -> Formatted:
 
 
 def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
-    """Lines of heads and rows; none where no column has anything to show."""
+    """Lines of the heads and rows of a table; none where no column has anything to show."""
     columns, heads, cells, blocks = formatted(units, table, rows)
     if not columns:
         return []
@@ -285,7 +285,7 @@ def _wrap(columns: Sequence[Column], heads: dict[str, str], cells: dict[str, lis
 def _panels(
     columns: Sequence[Column], heads: dict[str, str], cells: dict[str, list[str]]
 ) -> Iterator[list[Column]]:
-    """Columns in as few panels as fit the page; each begins with the first column."""
+    """Divide columns into as few panels as fit the page; each begins with the first column."""
     key = columns[0]
     start = used = len(_INDENT) + _width(heads[key.name], cells[key.name])
     panel = [key]
@@ -322,7 +322,7 @@ def _print(
 
 
 def _lines(row: Sequence[str]) -> list[list[str]]:
-    """Row of cells, some of several lines, as rows of one line each."""
+    """Split a row of cells, some of several lines, into rows of one line each."""
     if not any("\n" in cell for cell in row):
         return [list(row)]
     return [list(line) for line in itertools.zip_longest(*(cell.split("\n") for cell in row), fillvalue="")]
@@ -333,7 +333,7 @@ def _width(head: str, cells: Iterable[str]) -> int:
 
 
 def _format(column: Column, values: list[Any]) -> list[str]:
-    """Cells of one column, numbers with as many decimals each; ``-`` for no value."""
+    """Texts of the cells of one column, numbers with equally many decimals; ``-`` for no value."""
     if column.fmt == "text":
         plain = {v: _plain(v)[: column.clip or None] for v in set(values)}
         return [plain[v] for v in values]
@@ -344,7 +344,7 @@ def _format(column: Column, values: list[Any]) -> list[str]:
 
 
 def _decimals(fmt: str, values: list[float]) -> list[str]:
-    """Finite values in the format of a column of real numbers."""
+    """Texts of finite values in the format `fmt` of a column of real numbers."""
     if fmt == "time":
         return _times(values)
     if fmt == "count":
@@ -357,13 +357,13 @@ def _decimals(fmt: str, values: list[float]) -> list[str]:
 
 
 def _times(values: list[float]) -> list[str]:
-    """Times with as many decimals, from three to six, as any of them needs."""
+    """Texts of times with as many decimals, from three to six, as any of them needs."""
     needed = max((len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in values), default=0)
     return [_unsigned_zero(f"{v:.{max(needed, 3)}f}") for v in values]
 
 
 def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]:
-    """Values to a number of significant digits: fixed where that reads well, else with exponents.
+    """Texts of values to some significant digits: fixed-point where that reads well, else with exponents.
 
     The largest value decides on the decimals of all that are alike, unless `every` digit must show.
     """
@@ -376,7 +376,7 @@ def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]
 
 
 def _fixed(shapes: Sequence[tuple[int, int]], digits: int, every: bool) -> int | None:
-    """Decimals with which numbers read well without exponents; None where they do not."""
+    """Number of decimals with which values read well without exponents; None where they do not."""
     highest, lowest = max(e for _, e in shapes), min(e for _, e in shapes)
     alike = highest - lowest <= 3
     exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
@@ -387,13 +387,13 @@ def _fixed(shapes: Sequence[tuple[int, int]], digits: int, every: bool) -> int |
 
 
 def _shape(value: float, digits: int) -> tuple[int, int]:
-    """Significant digits of a value without trailing zeros, and its decimal exponent."""
+    """Number of significant digits of a value without trailing zeros, and its decimal exponent."""
     mantissa, exponent = f"{abs(value):.{digits - 1}E}".split("E")
     return len(mantissa.replace(".", "").rstrip("0")), int(exponent)
 
 
 def _unsigned_zero(text: str) -> str:
-    """The same number, but no minus before a zero."""
+    """Text of a number without the minus before a zero."""
     return text[1:] if text[0] == "-" and not text.strip("-0.") else text
 
 
@@ -405,7 +405,7 @@ def _plain(text: str) -> str:
 
 
 def _spelled(char: str) -> str:
-    """ASCII for one decomposed character; nothing for a combining accent."""
+    """ASCII text for one decomposed character; empty for a combining accent."""
     if char.isascii() or char in _SIGNS:
         return _SIGNS.get(char, char)
     if unicodedata.combining(char):

@@ -67,7 +67,7 @@ def _stroke(field: list[list[str]], start: tuple[int, int], end: tuple[int, int]
 
 
 def _foot(x0: float, x1: float, zero: int, width: int) -> str:
-    """Ends of the x axis, and its zero at a column where there is room."""
+    """Text below the x axis: both ends, and 0 at the column `zero` where there is room."""
     low, high = f"{x0:.4g}", f"{x1:.4g}"
     foot = low + " " * (width - len(low) - len(high)) + high
     if x0 < 0.0 < x1 and len(low) < zero < width - len(high) - 1:
@@ -130,7 +130,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
 
 
 def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:
-    """Least and largest value, moved apart where they are equal."""
+    """Least and largest value, moved apart where equal, and by a `margin` in shares of their range."""
     low, high = min(values), max(values)
     if low == high:
         low, high = low - 1.0, high + 1.0
@@ -163,7 +163,7 @@ def _path(points: Curve) -> str:
 
 
 def _between(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
-    """Whether b lies on the line from a to c, to half of a tenth of a pixel."""
+    """Whether b lies on the line from a to c, within 0.05 pixels."""
     dx, dy = c[0] - a[0], c[1] - a[1]
     length = math.hypot(dx, dy)
     if length == 0.0:

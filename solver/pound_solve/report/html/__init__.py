@@ -27,7 +27,7 @@ POLICY: Final = (
 
 
 class _Section(NamedTuple):
-    """One section of the page: name of its place, heading, and what stands below it."""
+    """One section of the page: its anchor, heading, and content."""
 
     place: str
     heading: str
@@ -64,14 +64,14 @@ def page(results: Results, *, limit: int | None = None, only: Collection[str] | 
 
 
 def _library() -> str:
-    """The library of the pictures for a browser."""
+    """Source text of plotly.js."""
     from plotly.offline import get_plotlyjs
 
     return str(get_plotlyjs())
 
 
 def _own(name: str) -> str:
-    """A file beside this module."""
+    """Text of a file beside this module."""
     return (files(__name__) / name).read_text("utf-8")
 
 
@@ -116,7 +116,7 @@ def _figure(place: str, picture: Picture) -> str:
 
 
 def _table(results: Results, table: Table[Any], number: str, limit: int | None) -> Iterator[str]:
-    """A table with its notes, in one part or several; nothing where it has nothing to show."""
+    """Yield the HTML of a table with its notes, in one part or several; nothing for an empty table."""
     parts = [line for part in shown(results, table, limit) for line in _part(results, part)]
     if not parts:
         return
@@ -127,7 +127,7 @@ def _table(results: Results, table: Table[Any], number: str, limit: int | None) 
 
 
 def _part(results: Results, part: Shown) -> Iterator[str]:
-    """A part of a table."""
+    """Yield the HTML of a part of a table."""
     columns, heads, cells, blocks = formatted(results.units, part.table, part.rows)
     if not columns:
         return

@@ -74,12 +74,12 @@ class Picture(NamedTuple):
     equal: bool = False
 
     def as_json(self) -> dict[str, Any]:
-        """What the program of the page needs."""
+        """Picture as data for the script of the page."""
         return {"x": _plain(self.x), "y": _plain(self.y), "traces": self.traces, "equal": self.equal}
 
 
 def pictures(results: Results) -> list[Picture]:
-    """All pictures that the results have something for."""
+    """Make all pictures for which the results hold data."""
     makers: tuple[Callable[[Results], Iterator[Picture]], ...] = (
         _structure, _profiles, _courses, _loops, _capacity,
     )  # fmt: skip
@@ -87,7 +87,7 @@ def pictures(results: Results) -> list[Picture]:
 
 
 def _structure(results: Results) -> Iterator[Picture]:
-    """Structure as it stands, and where its displacements are largest."""
+    """Picture of the structure, undeformed and at the instant of its largest displacement."""
     if not results.holds("nodes"):
         return
     s, note = DrawnStructure(results), ""
@@ -120,14 +120,14 @@ def _structure(results: Results) -> Iterator[Picture]:
 
 
 def _lines(name: str, ends: Sequence[tuple[int, int]], place: dict[int, Array], colour: str) -> Trace:
-    """Straight lines between nodes that have a place, as one curve with gaps."""
+    """Straight lines between nodes with known places, as one curve with gaps."""
     segments = [(place[i], place[j]) for i, j in ends if i in place and j in place]
     x, y = (_numbers(chain.from_iterable((i[k], j[k], math.nan) for i, j in segments)) for k in (0, 1))
     return {"name": name, "mode": "lines", "line": {"color": colour}, "x": x, "y": y, "hoverinfo": "skip"}
 
 
 def _profiles(results: Results) -> Iterator[Picture]:
-    """Peaks of the storeys over the height to both sides, two curves for each building."""
+    """Pictures of the largest and smallest values of the storeys over the height of each building."""
     if not (results.holds("storey_envelope") and results.holds("storey_extremes")):
         return
     table, length = results.table("storey_extremes"), results.units.length
@@ -149,7 +149,7 @@ def _profiles(results: Results) -> Iterator[Picture]:
 
 
 def _courses(results: Results) -> Iterator[Picture]:
-    """Histories over time."""
+    """Pictures of histories over time."""
     for name, component, title, axis in COURSES:
         if not results.holds(name) or name not in results.histories:
             continue
@@ -173,7 +173,7 @@ def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
 
 
 def _peaks(results: Results) -> Iterator[Trace]:
-    """Marks at the true peak of every collision."""
+    """Curve of marks at the true peak force of every collision."""
     if results.holds("collisions"):
         table = results.table("collisions")
         hard = table[np.isfinite(table["peak_force"])]
@@ -185,7 +185,7 @@ def _peaks(results: Results) -> Iterator[Trace]:
 
 
 def _loops(results: Results) -> Iterator[Picture]:
-    """Force against deformation of springs and hinges: moments, and forces."""
+    """Pictures of force against deformation of springs and hinges, one for each unit of force."""
     if not (results.holds("spring/force") and results.holds("spring/deformation")):
         return
     force, deformation = results.history("spring/force"), results.history("spring/deformation")
@@ -208,7 +208,7 @@ def _loops(results: Results) -> Iterator[Picture]:
 
 
 def _capacity(results: Results) -> Iterator[Picture]:
-    """Capacity curve of a pushover."""
+    """Picture of the capacity curve of a pushover."""
     if results.holds("capacity_curve"):
         table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
         curve = _curve("base shear", table["displacement"], table["base_shear"], True)
@@ -217,7 +217,7 @@ def _capacity(results: Results) -> Iterator[Picture]:
 
 
 def thinned(t: Array, values: Array) -> tuple[Array, Array]:
-    """A curve of many points by the smallest and the largest of every short interval, in their order."""
+    """Thin out a curve of many points: keep the smallest and the largest value of every short interval."""
     if len(t) <= MOST_POINTS:
         return t, values
     size = -(-2 * len(t) // MOST_POINTS)
@@ -230,10 +230,10 @@ def thinned(t: Array, values: Array) -> tuple[Array, Array]:
 
 
 def _numbers(values: Any) -> list[float | None]:
-    """Numbers to seven digits, which no screen tells from all; None for one that is missing."""
+    """Numbers rounded to seven digits, enough for any screen; None for one that is not finite."""
     return [float(f"{v:.7g}") if math.isfinite(v) else None for v in values]
 
 
 def _plain(text: str) -> str:
-    """A text that plotly.js takes for no markup."""
+    """Text escaped so that plotly.js takes none of it for markup."""
     return escape(text, quote=False)

@@ -108,7 +108,7 @@ def picture(results: Results, name: str, choice: Choice = ALL) -> Any:
 
 
 def _complete(results: Results, spec: Picture) -> None:
-    """Raise where the file has nothing of what a picture needs."""
+    """Raise `Nothing` where a table or history that a picture needs is missing or empty."""
     for need in spec.needs:
         if not results.holds(need):
             raise Nothing("history" if need in results.histories else TABLES[need].title.lower())

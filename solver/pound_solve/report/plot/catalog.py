@@ -13,7 +13,7 @@ from pound_solve.report.plot.schema import Picture
 
 
 def _found() -> list[Picture]:
-    """The objects `SPEC` of all modules, by place."""
+    """Objects `SPEC` of all modules, sorted by their places."""
     specs = (import_module(name).SPEC for name in modules_below(pictures))
     return sorted(specs, key=lambda spec: spec.place)
 

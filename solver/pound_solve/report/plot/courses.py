@@ -23,7 +23,7 @@ QUANTITY = {
 
 
 def worst(values: Array, most: int = style.LINES) -> list[int]:
-    """Columns of the largest absolute values, `most` of them, in their order."""
+    """Indices of the `most` columns with the largest absolute values, in the order of the columns."""
     order = np.argsort(-np.abs(values).max(axis=0, initial=0.0), kind="stable")[:most]
     return sorted(order.tolist())
 
@@ -53,7 +53,7 @@ def panel(axes: Any, results: Results, name: str, choice: Choice = ALL, last: bo
 def shade(
     axes: Any, results: Results, name: str, column: int, look: Mapping[str, Any], choice: Choice
 ) -> None:
-    """Shade what a quantity goes through between its samples, where its extremes tell that."""
+    """Shade the range of a quantity between its samples, where its extremes are stored as closely."""
     if name not in results.extremes:
         return
     bounds, low, high = results.extreme(name)
@@ -77,7 +77,7 @@ def motions(results: Results) -> tuple[str, ...]:
 
 
 def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any]:
-    """Collisions of a contact, by the time of closing; those that reach into `between`."""
+    """Rows of a contact's collisions, those that reach into `choice.between`, if given."""
     if "collisions" not in results.tables:
         return np.empty(0, dtype=[(c, float) for c in ("t_start", "t_end", "peak_force", "t_peak")])
     table = results.table("collisions")
@@ -89,7 +89,7 @@ def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any
 
 
 def with_peaks(t: Array, force: Array, collisions: NDArray[Any]) -> tuple[Array, Array]:
-    """Times and forces of a contact: the stored ones, and start, true peak and end of every collision."""
+    """Times and forces of a contact: stored samples, and start, true peak and end of every collision."""
     hard = collisions[np.isfinite(collisions["peak_force"])]
     ended, none = hard["t_end"][np.isfinite(hard["t_end"])], np.zeros(len(hard))
     at = np.concatenate([hard["t_start"], t, hard["t_peak"], ended])
@@ -101,7 +101,7 @@ def with_peaks(t: Array, force: Array, collisions: NDArray[Any]) -> tuple[Array,
 def force_curve(
     axes: Any, results: Results, column: int, look: Mapping[str, Any], choice: Choice = ALL
 ) -> None:
-    """Draw the force of one contact over time; a ring marks each true peak, a bar an impact in no time."""
+    """Draw the force of one contact over time: a ring for each true peak, a bar for an instant impact."""
     t, force = results.course("contact/force")
     rows = choice.span(results, t)
     name = results.labels("contact/force")[column]

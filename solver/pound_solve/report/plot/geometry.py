@@ -83,7 +83,7 @@ class DrawnStructure:
             axes.plot(*self.path(contacts=True, shift=shift), **look)
 
     def draw_supports(self, axes: Any) -> None:
-        """A triangle where a node is held both ways, or at the foot of the structure."""
+        """Draw a triangle at each node fixed along X and Y, or along one of them at the lowest level."""
         held = [
             xy for n, xy in self.place.items()
             if (both := {"X", "Y"} & set(self.fixed[n])) and (len(both) == 2 or xy[1] == self.low[1])
@@ -93,7 +93,7 @@ class DrawnStructure:
             axes.plot(*np.transpose(held), **look, clip_on=False, zorder=3)
 
     def draw_masses(self, axes: Any, width: float) -> None:
-        """A dot at every mass, its area in proportion, on axes of about a width in points."""
+        """Draw a dot at every mass, larger for larger masses, on axes of about `width` points."""
         heaviest = max(self.mass.values(), default=0.0)
         lengths = [np.hypot(*(self.place[j] - self.place[i])) for i, j in self.lines(contacts=False)]
         apart = width * float(np.quantile(lengths, 0.25)) / self.size if lengths else width
@@ -112,7 +112,7 @@ class DrawnStructure:
         return middle - half, middle + half
 
     def frame(self, axes: Any, room: float = 0.06) -> None:
-        """Equal scales, with room around the structure as a share of its size."""
+        """Set equal scales and limits with `room` around the structure, a share of its size."""
         (x0, y0), (x1, y1) = self.view(room)
         axes.set_xlim(x0, x1)
         axes.set_ylim(y0, y1)
@@ -129,7 +129,7 @@ class DrawnStructure:
         return max(4.0, float(width * scale)), max(2.6, float(height * scale))
 
     def buildings(self) -> dict[int, int]:
-        """Number of the connected part of every node, from 0: contacts do not connect."""
+        """Number of the building of every node, from 0: a part connected other than by contacts."""
         numbers = sorted(self.place)
         at = {n: k for k, n in enumerate(numbers)}
         pairs = [*self.lines(contacts=False)]
@@ -138,7 +138,7 @@ class DrawnStructure:
         return dict(zip(numbers, joined.tolist()))
 
     def feet(self, lowest: int, base: float) -> list[int]:
-        """Nodes at the base of the building that has a node [L]."""
+        """Nodes fixed along X at the level `base` [L] of the building that the node `lowest` belongs to."""
         of = self.buildings()
         supported = [n for n in self.place if of[n] == of[lowest] and "X" in self.fixed[n]]
         return [n for n in supported if abs(self.place[n][1] - base) <= 1e-3 * self.size]
@@ -150,7 +150,7 @@ def contact_name(element: Any) -> str:
 
 
 def largest(shifts: Array) -> tuple[int, float]:
-    """Row of the largest of displacements, shape (nt, n_nodes, 2), and its size, both ways together."""
+    """Row of the largest displacement in an array of shape (nt, n_nodes, 2), and its magnitude."""
     size = np.hypot(shifts[..., 0], shifts[..., 1]).max(axis=1)
     at = int(np.argmax(size))
     return at, float(size[at])
@@ -163,7 +163,7 @@ def displacements(results: Results, rows: slice | int = slice(None)) -> tuple[li
 
 
 def shifts(numbers: Iterable[int], moved: Array) -> dict[int, Array]:
-    """Displacement by node."""
+    """Displacements by node number."""
     return dict(zip(numbers, moved))
 
 

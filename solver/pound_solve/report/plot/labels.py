@@ -126,7 +126,7 @@ def _drawn(axes: Any) -> tuple[Array, Array]:
 
 
 def _overlap(box: Array, others: Array) -> Flags:
-    """Which boxes a box overlaps."""
+    """Whether a box overlaps each of other boxes, shape (n,)."""
     overlaps: Flags = (
         (others[:, 0] < box[2])
         & (others[:, 2] > box[0])
@@ -137,14 +137,14 @@ def _overlap(box: Array, others: Array) -> Flags:
 
 
 def _nearer(box: Array, anchor: Array, anchors: Array) -> bool:
-    """Whether the middle of a box is nearer to another point than to its own."""
+    """Whether the middle of a box is nearer to another of the `anchors` than to its own `anchor`."""
     middle = 0.5 * (box[:2] + box[2:])
     away = np.hypot(*(anchors - middle).T)
     return bool((away < np.hypot(*(anchor - middle)) - SAME).any())
 
 
 def _crossed(box: Array, lines: Array) -> Flags:
-    """Which pieces of lines a box touches, by the clipping of Liang and Barsky."""
+    """Whether a box touches each piece of lines, shape (n,), by the clipping of Liang and Barsky."""
     start, step = lines[:, :2], lines[:, 2:] - lines[:, :2]
     with np.errstate(divide="ignore", invalid="ignore"):
         a, b = (box[:2] - start) / step, (box[2:] - start) / step

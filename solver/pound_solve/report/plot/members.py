@@ -30,7 +30,7 @@ QUANTITIES: Final[Mapping[str, tuple[str, str, str]]] = {
 
 
 def _words(results: Results, kind: str) -> list[set[str]]:
-    """For each column of springs, contacts or members: the words that name it, in small letters."""
+    """For each column of springs, contacts or members: the words that may name it, in lower case."""
     elements = results.table("elements")
     names = {int(e["element"]): str(e["name"]) for e in elements}
     if kind == "spring":
@@ -50,7 +50,7 @@ def _words(results: Results, kind: str) -> list[set[str]]:
 
 
 def members(results: Results) -> list[int]:
-    """Elements between two nodes of which there are axial forces at both ends."""
+    """Numbers of the elements between two nodes that have axial forces at both ends."""
     two = {int(e["element"]) for e in results.table("elements") if e["j"]}
     return list(dict.fromkeys(e for e, quantity in _ends(results) if quantity == "axial I" and e in two))
 
@@ -86,7 +86,7 @@ def refuse(results: Results, choice: Choice, kinds: Sequence[str]) -> None:
 
 
 def _listed(results: Results, kind: str) -> str:
-    """Names of what there is of a kind."""
+    """Text of the names of all springs, contacts or members, the first of many."""
     if kind == "spring":
         names = list(results.labels("spring/force"))
     elif kind == "contact":
@@ -98,12 +98,12 @@ def _listed(results: Results, kind: str) -> str:
 
 
 def chosen_springs(results: Results, choice: Choice) -> list[int]:
-    """Columns of the springs and hinges that the choice names."""
+    """Indices of the columns of the springs and hinges that the choice names."""
     return _columns(results, choice, "spring")
 
 
 def chosen_contacts(results: Results, choice: Choice, refused: bool = True) -> list[int]:
-    """Columns of the contacts that the choice names; empty where it names none.
+    """Indices of the columns of the contacts that the choice names; empty where it names none.
 
     Raises
     ------
@@ -241,7 +241,7 @@ def _values(results: Results, choice: Choice) -> dict[tuple[int, str], Array]:
 
 
 def _extremes(results: Results, choice: Choice) -> dict[tuple[int, str], tuple[float, float]]:
-    """True extremes of the end forces, where the whole history is drawn."""
+    """True extremes of the end forces where the whole history is drawn; else empty."""
     if choice.given & {"time", "between"} or "member_envelope" not in results.tables:
         return {}
     table = results.table("member_envelope")
@@ -260,7 +260,7 @@ def _blocks(results: Results) -> dict[str, tuple[float, float]]:
 
 
 def _point_loads(results: Results) -> dict[int, list[tuple[float, Array]]]:
-    """Place and force of the point loads of every member, from the words of the table."""
+    """Places and forces of the point loads of every member, parsed from the texts of the table."""
     loads: dict[int, list[tuple[float, Array]]] = {}
     for row in results.table("member_loads") if "member_loads" in results.tables else ():
         load: dict[str, Any] = dict(re.findall(r"(\w+) ([-+.\deE]+)", str(row["load"])))

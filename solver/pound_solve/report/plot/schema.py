@@ -17,16 +17,16 @@ MOVING: Final = ("html", "gif", "mp4")  #: endings of one that moves
 
 
 class Nothing(Exception):
-    """There is nothing to draw; the message states what is missing."""
+    """Raised where there is nothing to draw; the message states what is missing."""
 
 
 class ChoiceError(Exception):
-    """The file has no such member, instant or time; the message states what there is."""
+    """Raised where the file has no such member, instant or time; the message states what there is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What of a run is drawn; pictures use what their `Picture.options` name.
+    """Selection of what is drawn of a run; a picture uses the attributes that its `Picture.options` name.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Choice:
         return {name for name in ("member", "time", "between") if getattr(self, name) not in (None, ())}
 
     def instant(self, results: Results) -> int:
-        """Number of the stored instant next to `time`.
+        """Index of the stored instant nearest to `time`.
 
         Raises
         ------
@@ -65,7 +65,7 @@ class Choice:
         return int(np.argmin(np.abs(t - self.time)))
 
     def span(self, results: Results, times: Array | None = None) -> slice:
-        """Those of some rising times, by default the stored ones, that are within `between`, or all.
+        """Slice of the instants within `between`, or of all; `times` ascend and default to the stored ones.
 
         Raises
         ------

@@ -53,7 +53,7 @@ def sheet(path: Path | None = None) -> Iterator[None]:
 
 
 def _settings(path: Path) -> Any:
-    """Settings of a style sheet: lines ``name: value``, comments after ``#``."""
+    """Read the settings of a style sheet: lines ``name: value``, comments after ``#``."""
     from matplotlib import RcParams, rcParams
 
     settings: Any = RcParams()
@@ -76,7 +76,7 @@ def _settings(path: Path) -> Any:
 
 
 def ready(folder: Path) -> None:
-    """Make the folder of pictures where it is missing, and see that there will be pictures.
+    """Make the folder of pictures where it is missing, and check that pictures can be drawn.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def ready(folder: Path) -> None:
 
 
 def figure(width: float = 7.0, height: float = 4.5, title: str = "") -> Any:
-    """An empty figure of a size in inches.
+    """Make an empty figure of a size in inches.
 
     Raises
     ------
@@ -107,19 +107,19 @@ def figure(width: float = 7.0, height: float = 4.5, title: str = "") -> Any:
 
 
 def wrapped(text: str, width: int) -> str:
-    """A text in lines of a number of characters."""
+    """Wrap a text into lines of at most `width` characters."""
     from textwrap import fill
 
     return fill(text, width)
 
 
 def short(name: str, most: int = LONGEST) -> str:
-    """A name that a legend has room for."""
+    """Shorten a name so that a legend has room for it."""
     return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 def grid(axes: Any, x: str = "", y: str = "") -> Any:
-    """Light lines behind the curves, and names of the axes."""
+    """Draw light grid lines behind the curves, and name the axes."""
     axes.grid(True)
     axes.set_axisbelow(True)
     axes.set_xlabel(x)
@@ -128,7 +128,7 @@ def grid(axes: Any, x: str = "", y: str = "") -> Any:
 
 
 def stroke(k: int) -> dict[str, Any]:
-    """Colour and stroke of the curve of a number, from 0; `LINES` of them differ."""
+    """Colour, line style and marker of curve number `k`, from 0; `LINES` of them differ."""
     from matplotlib import rcParams
 
     cycle = rcParams["axes.prop_cycle"].by_key()
@@ -140,7 +140,7 @@ def stroke(k: int) -> dict[str, Any]:
 
 
 def legend(axes: Any, handles: Sequence[Any] | None = None, title: str = "") -> None:
-    """Name the curves beside the axes, where nothing is drawn."""
+    """Add a legend beside the axes, where nothing is drawn."""
     named: dict[str, Any] = {"handles": handles} if handles is not None else {}
     count = len(handles if handles is not None else axes.get_legend_handles_labels()[1])
     axes.legend(
@@ -154,13 +154,13 @@ def legend(axes: Any, handles: Sequence[Any] | None = None, title: str = "") -> 
 
 
 def legend_below(picture: Any, all_axes: Sequence[Any]) -> None:
-    """Name the curves of all axes once, below them."""
+    """Add one legend for the curves of all axes below them."""
     named = {label: handle for axes in all_axes for handle, label in zip(*axes.get_legend_handles_labels())}
     picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=min(len(named), 4))
 
 
 def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tuple[Any, Sequence[Any]]:
-    """A figure of `count` axes in up to four columns."""
+    """Make a figure of `count` axes in up to four columns."""
     columns = min(4, max(1, round(count**0.5 + 0.2)))
     rows = -(-count // columns)
     picture = figure(each[0] * columns + 0.4, each[1] * rows + 0.5, title)
@@ -201,7 +201,7 @@ def text_box(text: Any) -> Any:
 
 
 def save(picture: Any, path: Path) -> None:
-    """Write a picture, whose file's ending names the format; equal numbers give equal bytes."""
+    """Write a picture in the format of the path's ending; equal numbers give equal bytes."""
     import matplotlib
 
     literal(picture)
@@ -242,7 +242,7 @@ def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate
 
 
 def literal(picture: Any) -> None:
-    """Have names of a deck drawn as they are: dollar signs mean formulas in numbers of log axes only."""
+    """Draw texts as they are, without formulas between dollar signs but for numbers of logarithmic axes."""
     from matplotlib.text import Text
 
     for text in picture.findobj(Text):

@@ -13,7 +13,7 @@ from pound_solve.report.plot import style
 
 
 class Curves(NamedTuple):
-    """Records of one case.
+    """Data of a picture: curves of an incremental analysis of one case.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Curves(NamedTuple):
 
 
 class Fragilities(NamedTuple):
-    """One fragility.
+    """Data of a picture: one fragility.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Fragilities(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Probability of contact of one case at one level.
+    """Data of a picture: probability of contact of one case at one level.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) ->
 
 @style.sheet()
 def fragilities(fits: Sequence[Fragilities], level: str, path: Path) -> None:
-    """Draw the curves with what was observed, and the median with its interval; see `incremental`."""
+    """Draw fragility curves, the observed shares, and medians with intervals; see `incremental`."""
     figure = style.figure(6.4, 4.2)
     axes = style.grid(figure.add_subplot(), level, "probability [-]")
     for k, fragility in enumerate(fits):
@@ -126,7 +126,7 @@ def fragilities(fits: Sequence[Fragilities], level: str, path: Path) -> None:
 
 @style.sheet()
 def separations(cases: Sequence[Contacts], gap: str, path: Path) -> None:
-    """Draw the probability of contact against the gap, with the gaps of the rules; see `incremental`."""
+    """Draw probabilities of contact against the gap, with the gaps of the rules; see `incremental`."""
     figure, all_axes = style.panels(len(cases), "", (4.2, 3.4))
     for n, (axes, case) in enumerate(zip(all_axes, cases)):
         style.grid(axes, gap, "" if n else "probability of contact [-]")

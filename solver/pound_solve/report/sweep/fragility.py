@@ -35,7 +35,7 @@ def _finite(x: float) -> float:
 
 
 def report(sweep: Sweep, asked: Asked, fits: Sequence[Fitted], at: Sequence[float]) -> Iterator[str]:
-    """The table of fragilities, and their probabilities at some levels, as the report prints tables."""
+    """Lines of the table of fragilities, and of their probabilities at some levels."""
     units, unit = units_of(sweep), unit_of(sweep, asked)
     sure = next((f.fragility.level for f in fits if f.fragility is not None), math.nan)
     yield f"Demand: {asked.quantity} {asked.label}".rstrip()
@@ -48,7 +48,7 @@ def report(sweep: Sweep, asked: Asked, fits: Sequence[Fitted], at: Sequence[floa
 
 
 def _base(sweep: Sweep, fits: Sequence[Fitted]) -> str:
-    """The runs that the fragilities rest on, in words."""
+    """Line of text on the runs that the fragilities are fitted to."""
     seen = {f.case: f.observed for f in fits}
     levels = sorted({x for observed in seen.values() for x, _, _ in observed})
     runs = sum(count for observed in seen.values() for _, _, count in observed)
@@ -59,14 +59,14 @@ def _base(sweep: Sweep, fits: Sequence[Fitted]) -> str:
 
 
 def _probable(fits: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:
-    """Probabilities at some levels."""
+    """One row for each fragility: its probabilities at some levels."""
     for f in fits:
         values = f.fragility.probability(at) if f.fragility else np.full(len(at), math.nan)
         yield f.case, f.limit, *np.round(values, DIGITS).tolist()
 
 
 def drawn(fits: Sequence[Fitted]) -> list[suites.Fragilities]:
-    """What a picture shows of the fragilities that could be fitted."""
+    """Data of the picture of all fragilities that could be fitted."""
     curves = []
     most = max((x for f in fits for x, _, _ in f.observed), default=0.0)
     at = np.linspace(0.0, most, POINTS)[1:]
@@ -83,7 +83,7 @@ def drawn(fits: Sequence[Fitted]) -> list[suites.Fragilities]:
 
 
 def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:
-    """The table of fragilities for the dimensions of the demand and a level of confidence."""
+    """Table of fragilities for a unit of the demand and a level of confidence."""
     sure = f"{100 * level:g} %"
     return Table(
         name="fragility",

@@ -37,7 +37,7 @@ LEVEL_NAMES: Final = MappingProxyType(
 
 
 def capacities(analysis: Analysis) -> Iterator[Row]:
-    """Where every record brings the structure down."""
+    """One row for each record: the levels between which the structure collapses."""
     for curve in analysis.curves:
         stands, falls = collapse(curve.points, analysis.rules)
         how = [end for end in ends(curve.points, analysis.rules) if end != STANDS]
@@ -48,14 +48,14 @@ def capacities(analysis: Analysis) -> Iterator[Row]:
 
 
 def rows_of_fractiles(analysis: Analysis) -> Iterator[Row]:
-    """Fractiles at some levels."""
+    """One row for each level: the fractiles of the demand."""
     at = levels(analysis)
     for level, values in zip(at, fractiles(analysis, at)):
         yield (level, *(x if math.isfinite(x) else math.nan for x in values))
 
 
 def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
-    """Both tables of every case, as the report prints tables.
+    """Lines of the tables of capacities and fractiles of every case.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
 
 
 def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
-    """What a picture of the analysis shows of every case."""
+    """Data of the picture of every case."""
     cases = []
     for case, records in by_case(curves(sweep, asked)).items():
         analysis = Analysis(records, rules)
@@ -89,7 +89,7 @@ def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
 
 
 def _line(curve: Curve, rules: Rules) -> tuple[Array, Array]:
-    """Demands and levels of a record that stands, from the origin on."""
+    """Demands and levels of a record from the origin up to the highest level that it stands."""
     levels, demands = np.array(standing(curve.points, rules)).T
     return demands, levels
 
@@ -121,7 +121,7 @@ CAPACITIES: Final = Table(
 
 
 def fractile_table(measure: str, unit: str) -> Table[Analysis]:
-    """The table of fractiles for a measure of the levels and the dimensions of the demand."""
+    """Table of fractiles for a measure of the levels and a unit of the demand."""
     names = [f"{100 * q:.0f} %" for q in FRACTILES]
     return Table(
         name="fractiles",

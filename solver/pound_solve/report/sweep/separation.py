@@ -22,7 +22,7 @@ POINTS: Final = 400  #: of a drawn curve
 
 
 def needs(groups: Sequence[Group]) -> Iterator[Row]:
-    """One row for each group: what the runs needed."""
+    """One row for each group: fractiles and lognormal fit of the gaps that its runs needed."""
     for g in groups:
         row: list[float] = [math.nan] * 3
         if len(g.needed) and not len(g.met):
@@ -39,7 +39,7 @@ def _finite(x: float) -> float:
 
 
 def _remark(g: Group) -> str:
-    """What is missing."""
+    """Text on what is not known of a group: gaps wider than those at which runs met, missing runs."""
     remarks = []
     if len(g.met):
         remarks.append(f"met at a gap of {g.met.min():.6g} or more: wider gaps are not known")
@@ -49,7 +49,7 @@ def _remark(g: Group) -> str:
 
 
 def probabilities(groups: Sequence[Group], options: Options) -> Iterator[Row]:
-    """Rows of every group: its rules, then the gaps that are asked for."""
+    """Rows of the probability of contact in each group: at the gaps of the rules, then at requested ones."""
     for g in groups:
         asked = [("", "", gap) for gap in options.gaps or _steps(g)]
         for name, source, gap in (*((r.name, r.source, x) for r, x in zip(RULES, g.rules)), *asked):
@@ -60,13 +60,13 @@ def probabilities(groups: Sequence[Group], options: Options) -> Iterator[Row]:
 
 
 def _steps(g: Group) -> list[float]:
-    """Equal steps of the gap up to the largest that was needed, or that is known."""
+    """Gaps in equal steps up to the widest that was needed or, where runs met, that is known."""
     most = float(g.met.min()) if len(g.met) else float(g.needed.max(initial=0.0))
     return np.linspace(0.0, most, STEPS + 1)[1:].tolist() if most > 0.0 else []
 
 
 def report(sweep: Sweep, groups: Sequence[Group], options: Options) -> Iterator[str]:
-    """Both tables, as the report prints tables; that of probabilities for all contacts together."""
+    """Lines of both tables; that of probabilities is for all contacts together."""
     units, level = units_of(sweep), measure(sweep)
     yield from printed(units, needed_table(level, options.level), needs(groups))
     yield ""
@@ -75,13 +75,13 @@ def report(sweep: Sweep, groups: Sequence[Group], options: Options) -> Iterator[
 
 
 def _together(groups: Sequence[Group]) -> list[Group]:
-    """Every case and level once, with all its contacts."""
+    """One group for every case and level: that of all its contacts."""
     several = {(g.case, g.level) for g in groups if g.contact == ANY}
     return [g for g in groups if g.contact == ANY or (g.case, g.level) not in several]
 
 
 def variables(sweep: Sweep, groups: Sequence[Group], options: Options) -> dict[str, Variable]:
-    """The table of probabilities as columns of a file."""
+    """Columns of the table of probabilities as variables of a file."""
     table, units = probability_table(measure(sweep), options.level), units_of(sweep)
     columns = zip(*probabilities(groups, options))
     return {
@@ -91,7 +91,7 @@ def variables(sweep: Sweep, groups: Sequence[Group], options: Options) -> dict[s
 
 
 def drawn(sweep: Sweep, groups: Sequence[Group], options: Options) -> list[suites.Contacts]:
-    """What a picture shows: every case and level with all its contacts together."""
+    """Data of the picture of every case and level, all its contacts together."""
     panels = []
     for g in _together(groups):
         rules: dict[float, list[str]] = {}
@@ -108,7 +108,7 @@ def drawn(sweep: Sweep, groups: Sequence[Group], options: Options) -> list[suite
 
 
 def _keys(measure: str) -> tuple[Column, ...]:
-    """Columns that tell a group."""
+    """Columns that identify a group."""
     return (
         Column("case", "case", doc="PARAMs that differ in the sweep"),
         Column("level", measure, "-", "short", doc="level of the records"),

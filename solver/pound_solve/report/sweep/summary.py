@@ -96,7 +96,7 @@ def _banner(sweep: Sweep, title: str) -> Iterator[str]:
 
 
 def _run(sweep: Sweep) -> Iterator[str]:
-    """Counts, decks, PARAMs, records, levels."""
+    """Lines of text on what was run: counts, decks, PARAMs, records, levels."""
     status = sweep["status"].tolist()
     counts = ", ".join(f"{status.count(end)} {end}" for end in dict.fromkeys(sorted(status)))
     yield from _line("runs", f"{len(status)}: {counts}")
@@ -114,7 +114,7 @@ def _line(word: str, told: str) -> list[str]:
 
 
 def _values(values: Sequence[Any]) -> str:
-    """Distinct values, or what they lie between."""
+    """Text of the distinct values or, of many, of their number and range."""
     distinct = list(dict.fromkeys(values))
     numbers = all(isinstance(v, float) for v in distinct)
     words = [f"{v:.6g}" for v in sorted(distinct)] if numbers else [str(v) for v in distinct]
@@ -137,7 +137,7 @@ def failures(sweep: Sweep) -> list[Row]:
 
 
 def _titles(sweep: Sweep) -> list[str]:
-    """What tells every run from the others."""
+    """Title of every run that identifies it: its case, record and level."""
     names = [name for name in ("record", *_levels(sweep)) if name in sweep.variables]
     return [
         ", ".join(filter(None, [case, *(_told(sweep[n][i], n) for n in names)]))
@@ -146,7 +146,7 @@ def _titles(sweep: Sweep) -> list[str]:
 
 
 def _levels(sweep: Sweep) -> list[str]:
-    """Variable of the levels, if there is one."""
+    """Name of the variable of the levels, in a list that is empty without one."""
     return [name for name in LEVELS if name in sweep.variables][:1]
 
 
@@ -155,7 +155,7 @@ def _told(value: Any, name: str) -> str:
 
 
 def _shown(sweep: Sweep) -> Iterator[tuple[str, Array]]:
-    """Name of every quantity that is shown, and the largest of its labels in each run, see `demand`."""
+    """Yield name and values of every quantity of `SHOWN`: the largest of its labels in each run."""
     for name in SHOWN:
         if name in sweep.variables:
             values = demands(sweep, Asked(name))
@@ -164,7 +164,7 @@ def _shown(sweep: Sweep) -> Iterator[tuple[str, Array]]:
 
 
 def _groups(sweep: Sweep) -> dict[str, Index]:
-    """Runs by case and level, or by case, or all: as finely as each group has several runs."""
+    """Group runs by case and level, else by case, else all: as finely as every group has several runs."""
     named = cases(sweep)
     levels = [""] * len(named)
     for name in _levels(sweep):
@@ -188,7 +188,7 @@ def fractiles(sweep: Sweep) -> Iterator[Row]:
 
 
 class _Worst(NamedTuple):
-    """Largest value of a quantity that is finite."""
+    """Largest finite value of a quantity, the index of its run, and its label."""
 
     name: str
     place: int
@@ -231,7 +231,7 @@ def _fractiles(sweep: Sweep, units: Units) -> list[str]:
 
 
 def _checks(sweep: Sweep, units: Units) -> Iterator[str]:
-    """The largest energy residual, and runs whose checks call for a look."""
+    """Lines of text on the largest energy residual, and on runs whose checks call for a look."""
     if "energy_residual" in sweep.variables:
         residuals = np.asarray(sweep["energy_residual"], np.float64)
         if not np.isnan(residuals).all():

@@ -39,5 +39,5 @@ ECHO: Final[Mapping[str, View]] = MappingProxyType(
 
 
 def view_of(name: str, whole: bool) -> View | None:
-    """View of a table in a report, in full or not; None: as it is stored."""
+    """Function that shapes a table for a report, in full or not; None: printed as it is stored."""
     return SHAPED.get(name) or (None if whole else ECHO.get(name))

@@ -14,32 +14,32 @@ FEW: Final = 1e-12  #: share of a range that a coordinate which does not change 
 
 
 def nodes(results: Results) -> list[Part]:
-    """Nodes that stand evenly."""
+    """Nodes, evenly spaced ones as ranges."""
     return [_ranges(results, "nodes")]
 
 
 def elements(results: Results) -> list[Part]:
-    """Elements from evenly numbered nodes to such nodes."""
+    """Elements, those between evenly numbered nodes as ranges."""
     return [_ranges(results, "elements")]
 
 
 def masses(results: Results) -> list[Part]:
-    """Nodes of equal masses."""
+    """Masses, nodes of equal masses in one row."""
     return [_equal(results, "masses")]
 
 
 def loads(results: Results) -> list[Part]:
-    """Nodes of equal loads."""
+    """Loads, nodes of equal loads in one row."""
     return [_equal(results, "loads")]
 
 
 def member_loads(results: Results) -> list[Part]:
-    """Elements of equal loads."""
+    """Loads on members, elements of equal loads in one row."""
     return [_equal(results, "member_loads")]
 
 
 def properties(results: Results) -> list[Part]:
-    """One row for each kind of item of a set: all items that are given, then those of default value."""
+    """One row for each property set and kind: the items that are given, then those of default value."""
     sets: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
     for r in results.table("properties"):
         unit = f" {r['unit']}" if r["unit"] else ""
@@ -51,7 +51,7 @@ def properties(results: Results) -> list[Part]:
 
 
 def _ranges(results: Results, name: str) -> Part:
-    """Rows of a table of the deck, those that step evenly in one."""
+    """Table of the deck with rows that step evenly merged into one."""
     columns, rows = _stored(results, name)
     ranges = []
     for first, last, count in stepping(rows):
@@ -60,14 +60,14 @@ def _ranges(results: Results, name: str) -> Part:
 
 
 def _stored(results: Results, name: str) -> tuple[list[Column], list[tuple[Any, ...]]]:
-    """Columns of a table that the file has, and their rows."""
+    """Columns of a table that are in the file, and its rows as tuples."""
     rows = results.table(name)
     columns = [c for c in TABLES[name].columns if c.name in (rows.dtype.names or ())]
     return columns, list(zip(*(rows[c.name].tolist() for c in columns)))
 
 
 def _cell(column: Column, first: Any, last: Any, count: int) -> str:
-    """Value of a column in a range of rows, or its first and last value."""
+    """Text of a column in a range of rows: its value, or its first and last value."""
     if column.fmt == "text":
         return str(first)
     if column.fmt == "int":
@@ -82,7 +82,7 @@ def _cell(column: Column, first: Any, last: Any, count: int) -> str:
 
 
 def _equal(results: Results, name: str) -> Part:
-    """Rows of a table of the deck, those of equal values in one, with the numbers of all."""
+    """Table of the deck with rows of equal values merged into one that lists their numbers."""
     (key, *columns), rows = _stored(results, name)
     groups: dict[tuple[Any, ...], list[int]] = {}
     for owner, *values in rows:

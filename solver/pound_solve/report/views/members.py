@@ -89,7 +89,7 @@ def ends(rows: Any) -> Iterator[tuple[int, str, tuple[str, ...]]]:
 
 
 def _same(one: Extremes, other: Extremes) -> bool:
-    """Whether extremes are the same but for the sign of the quantity."""
+    """Whether two extremes are equal, or equal with the sign of the quantity reversed."""
     return tuple(one) in (tuple(other), (-other[2], other[3], -other[0], other[1]))
 
 

@@ -40,7 +40,7 @@ def reactions(results: Results) -> list[Part]:
 
 
 def _beside(rows: Any, by: str, quantities: Sequence[tuple[str, str]], title: str) -> Part:
-    """Rows of one node in one row: the extremes of its quantities side by side."""
+    """Part with one row for each node: the extremes of its quantities side by side."""
     present = [(name, unit) for name, unit in quantities if (rows[by] == name).any()]
     columns, digits = [NODE], decimals(rows)
     for name, unit in present:

@@ -12,7 +12,7 @@ from pound_solve.results.schema import FORMATS, Column
 
 
 class Part(NamedTuple):
-    """Columns and rows, whose fields are the columns, and a line above them."""
+    """Columns, rows as a structured array whose fields are the columns, and a title line."""
 
     columns: tuple[Column, ...]
     rows: NDArray[Any]
@@ -20,7 +20,7 @@ class Part(NamedTuple):
 
 
 def part(columns: Sequence[Column], rows: Iterable[Sequence[Any]]) -> Part:
-    """Part of rows with one value for each column."""
+    """Make a part from rows with one value for each column."""
     kinds = [object if FORMATS[c.fmt] == "text" else FORMATS[c.fmt] for c in columns]
     kind = np.dtype([(c.name, k) for c, k in zip(columns, kinds)])
     return Part(tuple(columns), np.array([tuple(row) for row in rows], kind))

@@ -9,7 +9,7 @@ CLOSE = 1e-9  #: share of the larger of two numbers by which steps of one range 
 
 
 def numbers(values: Sequence[int]) -> str:
-    """Whole numbers in their order, three or more of equal distance, or two neighbours, as a range."""
+    """Text of whole numbers in their order; three or more in equal steps, or two in a row, as a range."""
     ranges, i = list[str](), 0
     while i < len(values):
         end = _run(values, i)
@@ -23,12 +23,12 @@ def numbers(values: Sequence[int]) -> str:
 
 
 def between(first: int, last: int, step: int) -> str:
-    """Range of whole numbers."""
+    """Text of a range of whole numbers."""
     return f"{first} to {last}" + (f" by {step}" if abs(step) != 1 else "")
 
 
 def _run(values: Sequence[int], start: int) -> int:
-    """Where numbers of equal distance from one on end."""
+    """End of the run of equal steps that begins at index `start`, exclusive."""
     end = min(start + 2, len(values))
     while end < len(values) and values[end] - values[end - 1] == values[start + 1] - values[start] != 0:
         end += 1
@@ -36,8 +36,8 @@ def _run(values: Sequence[int], start: int) -> int:
 
 
 def stepping(rows: Sequence[tuple[Cell, ...]]) -> list[tuple[tuple[Cell, ...], tuple[Cell, ...], int]]:
-    """First and last row and number of rows of each range: rows of which texts stay the same and numbers
-    step evenly.
+    """Group rows into ranges in which texts stay the same and numbers step evenly; return first row, last
+    row and number of rows of each.
 
     Two rows are a range only if the first column steps by one and at most one other real number changes.
     """
@@ -54,13 +54,13 @@ def stepping(rows: Sequence[tuple[Cell, ...]]) -> list[tuple[tuple[Cell, ...], t
 
 
 def _continues(rows: Sequence[tuple[Cell, ...]], start: int, at: int) -> bool:
-    """Whether row `at` goes on with the steps of the range that begins with row `start`."""
+    """Whether row `at` continues the steps of the range that begins with row `start`."""
     first, second, before, row = rows[start], rows[start + 1], rows[at - 1], rows[at]
     return first[0] != second[0] and all(map(_steps, first, second, before, row))
 
 
 def _steps(first: Cell, second: Cell, before: Cell, value: Cell) -> bool:
-    """Whether a value is as far from that before it as the second from the first; a text is the same."""
+    """Whether a number continues the step from `first` to `second` after `before`; a text is the same."""
     if isinstance(first, str) or isinstance(second, str):
         return first == second == value
     assert not isinstance(before, str) and not isinstance(value, str)

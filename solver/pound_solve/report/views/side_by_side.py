@@ -15,7 +15,7 @@ from pound_solve.results.schema import Column
 
 
 def storeys(results: Results) -> list[Part]:
-    """As stored, with instants that leave room for all columns."""
+    """Table of storeys as stored, with instants rounded to leave room for all columns."""
     stored, rows = TABLES["storey_envelope"].columns, results.table("storey_envelope").copy()
     instants = [c.name for c in stored if c.fmt == "time" and c.name in (rows.dtype.names or ())]
     last = max((latest(rows, name) for name in instants), default=0.0)

@@ -32,7 +32,7 @@ PAGE = Path(__file__).parents[1] / "animation.html"
 
 @dataclass(frozen=True, slots=True)
 class Film:
-    """What moves.
+    """Data of an animation: the structure and its displacements at the times of the frames.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Film:
 
 
 def film(results: Results, choice: Choice) -> Film:
-    """Take frames at equal times out of the stored instants."""
+    """Make the frames of the animation at equal intervals, interpolated between the stored instants."""
     s = DrawnStructure(results)
     numbers, u = displacements(results, choice.span(results))
     t = results.time[choice.span(results)]
@@ -117,7 +117,7 @@ class Stage:
         self.axes.set_title(" ")
 
     def show(self, k: int) -> None:
-        """Draw the frame of a number."""
+        """Draw frame `k`."""
         film, s = self.film, self.structure
         moved = dict(zip(film.nodes, film.moved[k]))
         self.members.set_data(*s.path(shift=moved))
@@ -132,7 +132,7 @@ class Stage:
 
 
 def caption(scene: Film, k: int) -> str:
-    """Time, magnification, and the contacts that are closed."""
+    """Text on a frame: its time, the magnification, and the contacts that are closed."""
     names = [name for name, closed in zip(scene.contacts, scene.closed[k]) if closed]
     when = (
         f"{scene.time[k]:.2f} {scene.structure.units.time}, "
@@ -161,7 +161,7 @@ def write(results: Results, choice: Choice, path: Path) -> None:
 
 
 def page(scene: Film) -> str:
-    """A page that needs nothing else: the drawing, its numbers and what plays it."""
+    """HTML page with the drawing, its data and the script that plays it, without other files."""
     s = scene.structure
     places = {n: k for k, n in enumerate(scene.nodes)}
     still = [n for n in s.place if n not in places]

@@ -30,8 +30,8 @@ def base_shear(results: Results, choice: Choice) -> Any:
 
 
 def moves(results: Results, quantity: str = "shear X") -> bool:
-    """Whether the quantity of a building is more than rounding beside the largest forces of contacts and
-    supports.
+    """Whether the largest value of a quantity at the base of buildings is more than rounding, compared with
+    the largest forces at bases, contacts and supports.
     """
     table = results.table("base_envelope")
     largest = {
@@ -70,7 +70,7 @@ def panel(
 
 
 def _peaks(results: Results, name: str, quantity: str, choice: Choice) -> Any:
-    """Times and values of the envelope, shape (2, n)."""
+    """Times and values of the peaks in the envelope, shape (2, n)."""
     table = results.table("base_envelope")
     envelope = table[(table["building"] == name) & (table["quantity"] == quantity)]
     times, values = (

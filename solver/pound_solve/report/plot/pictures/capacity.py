@@ -51,7 +51,7 @@ def curve(axes: Any, results: Results) -> None:
 
 
 def kinds(results: Results, events: NDArray[Any]) -> list[str]:
-    """What happens at each event, in words: a contact closes or opens, others by their branch."""
+    """Word for each event: a contact closes or opens, others are named by the branch that they enter."""
     contacts = {int(e["element"]) for e in results.table("elements") if e["kind"] == "CONTACT"}
     words = []
     for row in events:
@@ -63,7 +63,7 @@ def kinds(results: Results, events: NDArray[Any]) -> list[str]:
 
 
 def first_ones(words: list[str]) -> list[int]:
-    """Events of which the first has a name: each contact's, and the first of each kind."""
+    """Indices of the events that get a label: the first of each kind, and every closing of a contact."""
     seen: dict[str, int] = {}
     for k, word in enumerate(words):
         seen.setdefault(word, k)
@@ -72,7 +72,7 @@ def first_ones(words: list[str]) -> list[int]:
 
 
 def named(results: Results, row: Any) -> str:
-    """Name of the spring, hinge or contact of an event."""
+    """Name of the spring, hinge or contact that an event belongs to."""
     (e,) = (e for e in results.table("elements") if e["element"] == row["element"])
     return contact_name(e) if e["kind"] == "CONTACT" else f"{row['element']} {row['component']}"
 

@@ -40,7 +40,7 @@ def contact_force(results: Results, choice: Choice) -> Any:
 
 
 def _caption(results: Results, name: str, choice: Choice) -> str:
-    """How often a contact closed, and its largest force."""
+    """Text on a contact's number of collisions and its largest force."""
     collisions, units = courses.of_contact(results, name, choice), results.units
     times = {0: "not closed", 1: "closed once"}.get(len(collisions), f"closed {len(collisions)} times")
     peaks = collisions[np.isfinite(collisions["peak_force"])]

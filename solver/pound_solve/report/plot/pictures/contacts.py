@@ -55,7 +55,7 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
 
 
 def _peaks(results: Results, name: str) -> tuple[float, float, int]:
-    """True peaks of the force and of the overlap of a contact, and how often it closed."""
+    """True peaks of the force and of the overlap of a contact, and its number of collisions."""
     if "contact_summary" in results.tables:
         for row in results.table("contact_summary"):
             if row["contact"] == name:

@@ -52,7 +52,7 @@ def _title(results: Results, choice: Choice) -> str:
 
 
 def panel(axes: Any, s: geometry.DrawnStructure, members: list[Line], quantity: str) -> None:
-    """Draw one force along all members; the largest and the smallest of each bear their values."""
+    """Draw one force along some members, with the largest and smallest values of each as text."""
     s.frame(axes, 0.06 + SHARE)
     s.draw(axes, color="0.6", linewidth=0.8)
     low = min(float(line.low[quantity].min()) for line in members)
@@ -79,7 +79,7 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[Line], quantity: 
 
 
 def _outline(line: Line, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
-    """Points of a member's axis, and beside them those of its values, shape (2, n) each."""
+    """Points of a member's axis, and the points offset from them by the values, shape (2, n) each."""
     along = (line.j - line.i) / max(float(np.hypot(*(line.j - line.i))), 1e-300)
     left = np.array([-along[1], along[0]]) * (-1.0 if quantity == "M" else 1.0)
     base = line.i[:, None] + (line.j - line.i)[:, None] * line.x
@@ -87,7 +87,7 @@ def _outline(line: Line, values: Array, quantity: str, factor: float) -> tuple[A
 
 
 def _values(axes: Any, line: Line, quantity: str, factor: float, least: float) -> None:
-    """Name the largest and the smallest value of a member, if they differ and are not small."""
+    """Label the largest and the smallest value of a member, if they differ and are not small."""
     told: list[float] = []
     for values, at in (
         (line.high[quantity], int(np.argmax(line.high[quantity]))),
@@ -102,7 +102,7 @@ def _values(axes: Any, line: Line, quantity: str, factor: float, least: float) -
 
 
 def _text(value: float) -> str:
-    """Three digits, without an exponent."""
+    """Text of a value with three digits, without an exponent."""
     return f"{float(f'{value:.3g}'):g}"
 
 

@@ -16,7 +16,7 @@ COLOURS = {
 
 
 def energy(results: Results, choice: Choice) -> Any:
-    """Pile the energies up against what was there at the start and the work put in."""
+    """Draw the energies stacked over time, with the total of initial energy and work put in."""
     rows = choice.span(results)
     values = results.history("energy")
     by_name = dict(zip(ENERGIES, values.T))

@@ -14,7 +14,7 @@ from pound_solve.results import Results
 
 
 def envelopes(results: Results, choice: Choice) -> Any:
-    """Draw what there is of the two: drifts in the order of the deck, columns of nodes over the height."""
+    """Draw drifts in the order of the deck and nodes above each other over the height, as available."""
     drifts = results.holds("drift_envelope")
     columns = _columns(results)
     count = drifts + bool(columns)

@@ -71,13 +71,13 @@ def panel(
 
 
 def state(value: float, classes: tuple[tuple[float, str], ...]) -> str:
-    """Word for a value: that of the highest limit that it reaches (ductility: exceeds)."""
+    """Word for a value: that of the highest limit that it reaches, or for ductility exceeds."""
     reached = (word for least, word in classes if value > least or (value == least and classes is STATES))
     return next(reached, classes[-1][1])
 
 
 def place(s: DrawnStructure, element: int, component: str) -> Array:
-    """Where a spring or hinge is drawn [L]: at its end of a member, or in its middle."""
+    """Place at which a spring or hinge is drawn [L]: near its end of the member, or in the middle."""
     (e,) = s.elements[s.elements["element"] == element]
     i = s.place[int(e["i"])]
     if not e["j"]:

@@ -10,7 +10,7 @@ from pound_solve.results import Results
 
 
 def histories(results: Results, choice: Choice) -> Any:
-    """Draw what there is of the three, below each other."""
+    """Draw those of the three that the file has, below each other."""
     wanted = [h for h in courses.QUANTITY if h in results.histories]
     if not wanted:
         raise Nothing("ground motions, no drifts, no contacts")

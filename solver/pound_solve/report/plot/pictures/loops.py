@@ -57,7 +57,7 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
 
 
 def _yielded(results: Results) -> list[int]:
-    """Springs with the largest plastic work, in their order; the first ones where none has any."""
+    """Indices of the springs with the largest plastic work; of the first ones where none has any."""
     labels = results.labels("spring/force")
     work = dict.fromkeys(labels, 0.0)
     if "spring_envelope" in results.tables:

@@ -43,7 +43,7 @@ def study(results: Results, choice: Choice) -> Any:
 
 
 def _decades(axes: Any) -> None:
-    """Logarithmic axes over whole decades, which alone are numbered: numbers between them would touch."""
+    """Set logarithmic axes over whole decades with numbers at decades only, so that they do not touch."""
     for axis, limit in ((axes.xaxis, axes.set_xlim), (axes.yaxis, axes.set_ylim)):
         low, high = np.log10(axis.get_data_interval())
         limit(10.0 ** np.floor(low - ROOM), 10.0 ** np.ceil(high + ROOM))

@@ -49,7 +49,7 @@ def summary(results: Results, choice: Choice) -> Any:
 
 
 def _rows(results: Results) -> list[Any]:
-    """What draws each panel over time, of what the file has; without a history, the capacity curve."""
+    """Functions that draw the panels: histories that the file has, else the capacity curve or moments."""
     if not len(results.time):
         if results.holds("capacity_curve"):
             return [partial(capacity.curve, results=results)]
@@ -78,7 +78,7 @@ def _structure(axes: Any, results: Results) -> None:
 
 
 def _figures(results: Results) -> list[str]:
-    """Lines of the main figures, item and value; what is to be looked at stands before what is left out."""
+    """Lines of the main figures, cut to the room there is; checks that call for a look are kept longest."""
     lines = list[tuple[str, str]]()
     if "overview" in results.tables:
         lines += [(str(item), str(value)) for item, value in results.table("overview").tolist()]
