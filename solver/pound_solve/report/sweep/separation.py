@@ -49,7 +49,7 @@ def _remark(g: Group) -> str:
 
 
 def probabilities(groups: Sequence[Group], options: Options) -> Iterator[Row]:
-    """Rows of the probability of contact in each group: at the gaps of the rules, then at requested ones."""
+    """Rows of the probability of contact in each group: at gaps of the rules, then at requested ones."""
     for g in groups:
         asked = [("", "", gap) for gap in options.gaps or _steps(g)]
         for name, source, gap in (*((r.name, r.source, x) for r, x in zip(RULES, g.rules)), *asked):
