@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class RunRecord:
-    """What a run has so far.
+    """Data of a run so far.
 
     Attributes
     ----------

@@ -211,7 +211,7 @@ class SafeFile:
 
 
 def in_use(path: Path) -> bool | None:
-    """Whether a program writes the file; None where that cannot be told."""
+    """Whether a program has the file open for writing; None where there are no locks to tell."""
     if fcntl is None:
         return None
     with path.open("rb") as file:

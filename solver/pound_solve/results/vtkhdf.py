@@ -47,7 +47,7 @@ class Grid(NamedTuple):
 
 
 def write_vtkhdf(results: Results, path: str | Path) -> list[int]:
-    """Write the stored nodes, the elements between them and all that the histories tell of these.
+    """Write the stored nodes, the elements between them, and the histories of both.
 
     Data of points are ``displacement``, ``velocity`` and ``acceleration`` (vectors in the plane, [L],
     [L/T], [L/T^2]), ``rotation`` [rad] and ``node``.  Data of cells are ``element``, the forces of members

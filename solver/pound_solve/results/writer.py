@@ -205,7 +205,7 @@ class Writer:
             self._put("tables", name, data, attributes)
 
     def _put(self, group: str, name: str, data: NDArray[Any] | str, attributes: Mapping[str, Any]) -> None:
-        """Put an array or a text in a group, without a commit; it replaces one of that name."""
+        """Store an array or a text in a group, without a commit; it replaces one of that name."""
         place = self._file.require_group(group)
         if name in place:
             del place[name]
@@ -400,7 +400,7 @@ class Writer:
                 self._digests[f"history/{name}"].update(np.ascontiguousarray(arrays[name]).data)
 
     def restart(self, state: Mapping[str, NDArray[Any]], identity: Mapping[str, str]) -> None:
-        """Store the state that a later run can be taken up from, and the identity of what it belongs to; it
+        """Store the state that a later run can continue from, and the identity of what it belongs to; it
         replaces an earlier one.
         """
         with undisturbed():

@@ -20,7 +20,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 def remark(run: RunRecord) -> str:
-    """Tell which motion the energies are of."""
+    """Remark on the motion, total or relative to the ground, that the energies belong to."""
     if run.history.system.total:
         return "Changes since the start."
     return "Changes since the start, of the motion relative to the ground."

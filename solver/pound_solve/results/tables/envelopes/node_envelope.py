@@ -31,7 +31,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 def remark(run: RunRecord) -> str:
-    """Tell what the envelopes are taken from, and what motions are relative to."""
+    """Remark on the instants that the envelopes are taken from, and on what motions are relative to."""
     if run.history.system.total:
         return how_sampled(run) + "All are total."
     return how_sampled(run) + (

@@ -23,7 +23,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 def remark(run: RunRecord) -> str:
-    """Tell what the envelopes are taken from."""
+    """Remark on the instants that the envelopes are taken from."""
     return how_sampled(run)
 
 

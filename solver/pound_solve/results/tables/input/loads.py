@@ -14,7 +14,7 @@ def rows(run: RunRecord) -> list[Row]:
 
 
 def remark(run: RunRecord) -> str | None:
-    """Tell which loads are removed where the history starts."""
+    """Remark on the loads that are removed at the start of the history; None without any."""
     cards = [c for c in run.structure.model.loads if c["HELD"] == "NO" and c["NODES"]]
     if not cards:
         return None

@@ -13,7 +13,7 @@ from pound_solve.results.words import fields_of, text_of
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """Every item of every set; items that are left out and have no default are not shown."""
+    """One row for each item of each property set; items left out that have no default are not shown."""
     for label, card in run.model.props.items():
         for f in fields_of(card):
             given = f.name in card.spans

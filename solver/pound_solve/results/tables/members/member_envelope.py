@@ -18,7 +18,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 def remark(run: RunRecord) -> str:
-    """Tell what the envelopes are taken from, and state the sign convention."""
+    """Remark on the instants that the envelopes are taken from, and on the sign convention."""
     return how_sampled(run) + SIGNS
 
 

@@ -10,7 +10,7 @@ from pound_solve.results.schema import Row, Stage, Table
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """What was pushed, why it ended, and the capacity."""
+    """Rows on the load pattern and control, the end of the analysis, and the capacity."""
     pushed, units = run.pushover, run.model.units
     card, length, force = pushed.card, units.text("L"), units.text("F")
     top, end = max(pushed.curve, key=lambda p: abs(p.shear)), pushed.curve[-1]

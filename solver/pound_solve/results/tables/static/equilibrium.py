@@ -8,7 +8,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 
 def rows(run: RunRecord) -> list[Row]:
-    """What acts on the structure, and the sum."""
+    """Rows of the forces that act on the structure, and of their sum."""
     return run.static.balance
 
 

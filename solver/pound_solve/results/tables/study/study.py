@@ -27,7 +27,7 @@ def rows(study: StudyRecord) -> list[Row]:
 
 
 def remark(study: StudyRecord) -> str:
-    """Tell what the errors are measured against, and whether the times can be trusted."""
+    """Remark on the reference of the errors, and on whether the times can be trusted."""
     own_errors = ", ".join(
         f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e)
     )

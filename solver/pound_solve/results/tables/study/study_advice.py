@@ -19,7 +19,7 @@ def rows(study: StudyRecord) -> Iterator[Row]:
 
 
 def remark(study: StudyRecord) -> str:
-    """Give the advice in one sentence."""
+    """Remark with the advice in one sentence."""
     return study.sentence
 
 

@@ -42,7 +42,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 def remark(run: RunRecord) -> str:
-    """Tell whether peaks are exact."""
+    """Remark on whether peaks are exact."""
     return how_found(run) + " A closure that has not ended counts."
 
 

@@ -20,7 +20,7 @@ FEW = 2  #: kinds of damping or of contacts that are told one by one
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """What was run, and the largest values of the response."""
+    """Rows on the model and its analyses, and on the largest values of the response."""
     model = run.model
     size = f"{len(model.nodes)} nodes, {len(model.elements)} elements, {run.structure.n_free} unknowns"
     yield "structure", size
