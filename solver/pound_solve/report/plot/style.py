@@ -179,7 +179,7 @@ def patches(named: Sequence[tuple[str, str]]) -> list[Any]:
 
 
 def arrange(picture: Any) -> None:
-    """Give all axes their final places.
+    """Fix the final positions of all axes.
 
     The layout's last digits differ from run to run, and bytes would with them: they are rounded off.
     """
