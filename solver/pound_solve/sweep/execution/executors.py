@@ -32,7 +32,7 @@ class ExecutorError(Exception):
 
 
 class Engine(NamedTuple):
-    """How runs are carried out.
+    """Settings for carrying out runs: what makes the executors, and how many runs each is given.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Engine(NamedTuple):
 
 
 def engine(name: str, workers: int) -> Engine:
-    """The engine of a name.
+    """Make the engine that a name stands for.
 
     Parameters
     ----------

@@ -110,7 +110,7 @@ class Journal:
         write(path, memory.getbuffer(), path.with_suffix(f".{os.getpid()}.part"))
 
     def histories(self, identity: str) -> Path:
-        """File of the histories of a run."""
+        """Path of the file with the histories of a run."""
         return self.folder / f"{identity}.npz"
 
     def entries(self) -> dict[str, Entry]:

@@ -50,7 +50,7 @@ class Settings:
     Attributes
     ----------
     journal : Path or None
-        Where the process notes what a run has come to; None: whoever has asked for the run does.
+        Where the process enters the result of a run; None: the process that asked for the run does.
     seconds, memory : float or None
         CPU time [s] and memory [MB] that a run may take.
     histories : tuple of str

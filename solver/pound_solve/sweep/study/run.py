@@ -84,7 +84,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Run:
-    """One run.
+    """One run of a study.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class Run:
 
     @property
     def title(self) -> str:
-        """The run in words."""
+        """Text that names the run: deck, PARAMs, record and scale."""
         words = [Path(self.case.deck).name, *(f"{k}={v}" for k, v in self.case.params)]
         if self.shaking is not None:
             words += [self.shaking.record.name, f"x {self.shaking.scale:.6g}"]

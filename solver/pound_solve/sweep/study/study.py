@@ -47,7 +47,7 @@ Params = tuple[tuple[str, str], ...]
 
 
 class StudyError(Exception):
-    """A study has mistakes; the text tells all of them."""
+    """Raised where a study has mistakes; the text states all of them."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         super().__init__(render(diagnostics, files))
@@ -56,7 +56,7 @@ class StudyError(Exception):
 
 @dataclass(frozen=True)
 class Study:
-    """What is run, and how.
+    """A study: its runs, and how they are carried out.
 
     Attributes
     ----------
