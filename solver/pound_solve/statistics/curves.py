@@ -22,7 +22,7 @@ NEEDED: Final = "needed_gap"  #: demand that is infinite where something met: mo
 
 
 class Asked(NamedTuple):
-    """What counts as the demand.
+    """Quantity that is taken as the demand.
 
     Attributes
     ----------

@@ -47,7 +47,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Rules:
-    """How levels are chosen.
+    """Rules by which levels are chosen and collapse is judged.
 
     Attributes
     ----------

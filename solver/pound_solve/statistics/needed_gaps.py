@@ -24,7 +24,7 @@ NEEDS: Final = ("needed_gap", "given_gap", "peak_i", "peak_j", "correlation")
 
 
 class Options(NamedTuple):
-    """How separations are judged.
+    """Options of the statistics of separations.
 
     Attributes
     ----------
