@@ -11,7 +11,7 @@ from pound_deck.model import Card
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asks of a run.
+    """Options of a run that the user chooses.
 
     Attributes
     ----------

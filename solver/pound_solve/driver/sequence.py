@@ -40,11 +40,11 @@ class RunOutput(Protocol):
     """Receiver of the results of a run; `results.Writer` is one, which documents the calls."""
 
     def text(self, name: str, text: str) -> None:
-        """Take a text of the input."""
+        """Store a text of the input."""
         ...
 
     def tables(self, stage: Stage, record: RunRecord) -> None:
-        """Take the tables of a stage."""
+        """Store the tables of a stage."""
         ...
 
     def start_history(self, layout: Layout, packed: bool = False) -> None:
@@ -52,7 +52,7 @@ class RunOutput(Protocol):
         ...
 
     def append(self, block: Mapping[str, Array]) -> None:
-        """Take some instants of all histories."""
+        """Store the rows of all histories at some instants."""
         ...
 
     def stored(self, name: str) -> Array:
@@ -60,17 +60,17 @@ class RunOutput(Protocol):
         ...
 
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
-        """Take the close-ups of collisions."""
+        """Store the close-ups of collisions."""
         ...
 
     def extremes(
         self, layout: Layout, bounds: Array, low: Mapping[str, Array], high: Mapping[str, Array]
     ) -> None:
-        """Take the extremes within intervals."""
+        """Store the extremes of histories within intervals."""
         ...
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
-        """Take the state that a later run can continue from."""
+        """Store the state that a later run can continue from, and what it belongs to."""
         ...
 
 
