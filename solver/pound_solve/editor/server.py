@@ -48,7 +48,7 @@ class DeckServer(LanguageServer):
         self.edits: dict[str, int] = {}  # number of edits of a file: a check waits for the last one
 
     def open(self, uri: str) -> str:
-        """Take the editor's text of a document; returns its path."""
+        """Store the editor's text of a document in the project; return its path."""
         path = path_of(uri)
         self.project.put(path, self.workspace.get_text_document(uri).source)
         self.edits[path] = self.edits.get(path, 0) + 1
