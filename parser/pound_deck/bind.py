@@ -130,7 +130,7 @@ class Binder:
         return draft.cards() if draft.whole and len(self.report) == before else None
 
     def _fill(self, draft: _Draft, f: Field) -> Sequence[Field]:
-        """Give a field of a card its value; returns the fields of the laws that the value chooses."""
+        """Set the value of a field of a card; return the fields of the laws that the value chooses."""
         item = draft.given.get(f.name)
         try:
             value = self._default(f, draft) if item is None else self._value(f, item, draft)

@@ -23,7 +23,7 @@ OF_MAGNITUDE: Final = f"of a magnitude up to {GREAT:g}"
 
 
 class Kind(Enum):
-    """What a field holds."""
+    """Kind of value that a field holds."""
 
     REAL = "real"  #: a finite number or an expression; or one of ``Field.words``
     INT = "int"  #: a whole number or an expression with a whole value

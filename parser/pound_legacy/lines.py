@@ -158,7 +158,7 @@ class Rows:
         return self.rows[self.at]
 
     def next(self, what: str) -> Row:
-        """Take the next line.
+        """Take and return the next line.
 
         Raises
         ------

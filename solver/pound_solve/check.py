@@ -16,7 +16,7 @@ COLUMNS: Final = ("subject", "check", "value", "unit", "bound", "allowed", "verd
 
 
 class Subject(StrEnum):
-    """What a check is about."""
+    """Subject that a check is about."""
 
     EQUILIBRIUM = "equilibrium"  #: of forces at one instant
     ENERGY = "energy"  #: its balance over the history
@@ -38,7 +38,7 @@ class Verdict(StrEnum):
 
 
 class Bound(StrEnum):
-    """On which side of `Check.allowed` a value is good."""
+    """Side of `Check.allowed` on which a value is good."""
 
     MOST = "at most"
     LEAST = "at least"
