@@ -1,4 +1,4 @@
-"""What ``check --json`` and ``list --json`` print, for editors and scripts; schemas: manual/tools.md.
+"""Output of ``check --json`` and ``list --json``, for editors and scripts; schemas: manual/tools.md.
 
 A name or a meaning that changes gets a new `VERSION`; an entry that is added does not.
 """

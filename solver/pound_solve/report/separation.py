@@ -1,4 +1,4 @@
-r"""How far apart two buildings should stand: rules on the peak displacements of a run, at every contact.
+r"""Separation of two buildings by rules on the peak displacements of a run, at every contact.
 
 :math:`u_1, u_2` are the largest absolute displacements of the contact's nodes along its direction.
 

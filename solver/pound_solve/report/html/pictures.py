@@ -1,4 +1,4 @@
-"""What the pictures of the page show, as plain data for plotly.js: curves, axes, a line below."""
+"""Pictures of the page as plain data for plotly.js: curves, axes, a note below."""
 
 from __future__ import annotations
 

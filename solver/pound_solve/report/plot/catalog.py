@@ -1,4 +1,4 @@
-"""All pictures of a results file: found in the modules of `pictures`, none is listed."""
+"""All pictures of a results file, found by searching the modules of `pictures`; there is no list."""
 
 from __future__ import annotations
 

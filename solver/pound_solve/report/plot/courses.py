@@ -1,4 +1,4 @@
-"""Curves over time that several pictures draw: named beside the axes, ten at most, contact forces with
+"""Curves over time that several pictures draw: ten at most, named beside the axes; contact forces with
 their true peaks.
 """
 

@@ -1,4 +1,4 @@
-"""Springs, contacts and members by the words of a user; the lines of M, V and N along members.
+"""Choice of springs, contacts and members by the words of a user; M, V and N along members.
 
 Between the ends of a member, moments and forces follow from those at its ends and the loads between them:
 uniform loads (self weight among them) are what the end forces lack for equilibrium, point loads stand in

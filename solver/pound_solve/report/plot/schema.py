@@ -1,4 +1,4 @@
-"""What a picture is: the class that every module of `pictures` declares an object of, as `SPEC`."""
+"""Class of pictures; every module of `pictures` declares an object of it as `SPEC`."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What all pictures share: matplotlib (extra `plot`), imported here only, and how axes look in print.
+"""Base of all pictures: matplotlib (extra `plot`), imported here only, and the style of axes in print.
 
-The look stands in a style sheet, `pound.mplstyle`, which a user's own is laid over.
+The style is that of a style sheet, `pound.mplstyle`; one of the user may override it.
 """
 
 from __future__ import annotations

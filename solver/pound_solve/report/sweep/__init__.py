@@ -1,1 +1,1 @@
-"""Reports of sweeps in words, tables and what pictures show."""
+"""Reports of sweeps: texts, tables, and the data of pictures."""

@@ -1,5 +1,5 @@
-"""How the report prints tables that read better in another shape than they are stored in: one function for
-each, by the name of the table, from the results to the parts that are printed one below the other.
+"""Tables that the report prints in another shape than they are stored in: one function for each, by the
+name of the table, from the results to the parts that are printed one below the other.
 
 `ECHO` repeats the deck in groups; a report in full prints these tables as they are stored.
 """

@@ -1,4 +1,4 @@
-"""Picture `collisions`: when every contact was closed, and how hard it was hit."""
+"""Picture `collisions`: the times of all collisions and their peak forces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Picture `energy`: where the energy is."""
+"""Picture `energy`: the parts of the energy over time."""
 
 from __future__ import annotations
 
