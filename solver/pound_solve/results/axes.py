@@ -1,4 +1,4 @@
-"""What the numbers of a history's row belong to: axes, with a label for each place along them.
+"""Axes of a history's row, with a label for each place along them.
 
 A row of nodes has two axes, ``node`` and ``component``.  A row of members has one, because not every member
 has every component: its places are pairs, named by coordinates along it, ``member`` and ``component``.

@@ -1,4 +1,4 @@
-"""All tables, sections and histories: found in the modules of `tables` and `histories`, none is listed."""
+"""All tables, sections and histories, found by searching the modules of `tables` and `histories`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The form of a results file: what its writer and its reader agree on, beside the tables and histories."""
+"""Format of a results file, beside the tables and histories: definitions that writer and reader share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where results go: beside the older ones while the run goes on, into their place when it has ended.
+"""Placement of results: beside older ones during the run, and in their place when it has ended.
 
 A run writes ``model.partial.h5``.  When it has ended, its results file and its report are complete, and
 only then they take the names ``model.h5`` and ``model.rpt``.  What stood there before holds until then,

@@ -1,4 +1,4 @@
-"""Remarks that several tables make."""
+"""Remarks that several tables share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The file that HDF5 writes into: what it writes reaches the disk in whole transactions, or not at all.
+"""File object for HDF5 whose writes reach the disk in whole transactions, or not at all.
 
 HDF5 does not survive a write that fails: its own tables no longer agree, and closing the file ends the
 process.  Here no write of its fails.  Writes are kept in pages of memory until `SafeFile.commit`, which

@@ -1,4 +1,4 @@
-"""What a table and a history of a results file are: the classes that every declaration is an object of.
+"""Classes by which the tables and histories of a results file are declared.
 
 Units are dimensions of the deck's own units (``F``, ``L``, ``T``, ``rad``, ``%``; ``-`` a pure number,
 empty where units mean nothing); :meth:`pound_deck.model.Units.text` turns them into the deck's.

@@ -1,4 +1,4 @@
-"""What the tables of a study are made from; `assess.study.Study` is one."""
+"""Interface of the data that the tables of a study are made from; `assess.study.Study` has it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Output files that are whole or not there: they take their names when they are complete.
+"""Output files that are either complete or absent: they get their names when they are complete.
 
-An error of the disk bears the name of the file, which that of a write that finds no room lacks.
+An error names the file, which errors of writes to a full disk do not do by themselves.
 """
 
 from __future__ import annotations

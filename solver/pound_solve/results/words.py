@@ -1,4 +1,4 @@
-"""How values of the deck and names of its parts read in tables."""
+"""Texts of the deck's values and of the names of its parts in tables."""
 
 from __future__ import annotations
 

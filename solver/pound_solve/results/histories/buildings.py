@@ -1,4 +1,4 @@
-"""``/history/building``, ``/history/storey``: forces on the ground, and what the storeys go through."""
+"""``/history/building``, ``/history/storey``: forces on the ground, and the response of the storeys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``/history/ground`` and ``/history/force``: what drives the structure."""
+"""``/history/ground`` and ``/history/force``: ground accelerations and forces in time."""
 
 from __future__ import annotations
 
