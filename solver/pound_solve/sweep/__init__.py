@@ -1,4 +1,4 @@
-"""Suites of runs: one study file, one command, many runs that can be interrupted and taken up."""
+"""Suites of runs: one study file, one command, many runs that can be interrupted and continued."""
 
 from pound_solve.results.sweep_file import Sweep
 from pound_solve.sweep.session import run_study

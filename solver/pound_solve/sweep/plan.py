@@ -1,4 +1,4 @@
-"""What a sweep has before it: how many runs, which are skipped, what they will take."""
+"""Plan of a sweep: how many runs there are, which are skipped, how long they will take."""
 
 from __future__ import annotations
 

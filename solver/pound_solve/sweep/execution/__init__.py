@@ -1,1 +1,1 @@
-"""How the runs of a sweep are carried out: processes, limits, journal, and what survives a kill."""
+"""Execution of the runs of a sweep: processes, limits, and a journal that survives a kill."""

@@ -1,4 +1,4 @@
-"""The conduct of a study: hands runs out, takes what they have come to, survives what dies."""
+"""Conduct of a study: hands runs out, takes their results, and survives processes that die."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DIED: Final = "its process died: the system or the limit of time ended it, perha
 
 @dataclass
 class State:
-    """How far a sweep is.
+    """Progress of a sweep.
 
     Attributes
     ----------

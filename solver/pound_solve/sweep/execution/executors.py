@@ -1,4 +1,4 @@
-"""What carries runs out: processes of this machine, or the workers of a Dask scheduler.
+"""Executors of runs: processes of this machine, or the workers of a Dask scheduler.
 
 Both have the interface of `concurrent.futures.Executor`.
 """

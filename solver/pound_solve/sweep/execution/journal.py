@@ -1,4 +1,4 @@
-"""What a run has come to, and the journal in which every process notes its own.
+"""Results of runs, and the journal in which every process enters those of its own.
 
 A process appends one line to a file of its own when a run has ended, by one call of the system: whoever is
 killed loses at most the runs that have not ended.  A line that was cut short, by a full disk or the loss of

@@ -1,4 +1,4 @@
-"""What a process does with one run: prepare, analyse, keep its quantities; within limits.
+"""Work of a process on one run: prepare, analyse, keep the quantities; within limits.
 
 Runs of one case, a deck with its PARAMs, share its parsed deck, its assembled structure, its static state,
 its modes and the sums of forces that are recorded: the first run of a process makes them.
@@ -45,7 +45,7 @@ COLLECT: Final = 8
 
 @dataclass(frozen=True)
 class Settings:
-    """What all runs of a study have in common.
+    """Settings that all runs of a study have in common.
 
     Attributes
     ----------

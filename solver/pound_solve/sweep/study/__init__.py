@@ -1,1 +1,1 @@
-"""What a sweep is to run: the file of a study, its records, all of its runs, what is kept of each."""
+"""Study of a sweep: its file, its records, all of its runs, and the quantities kept of each."""

@@ -1,4 +1,4 @@
-"""The contacts of one run as pairs of bodies: what rules for their separation need."""
+"""Contacts of one run as pairs of bodies, with the data that rules for their separation need."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep keeps of every run: quantities, each a column of a table of the report."""
+"""Quantities that a sweep keeps of every run, each a column of a table of the report."""
 
 from __future__ import annotations
 
