@@ -1,4 +1,4 @@
-"""A law driven along a path: what ``pound-solve loop`` tabulates and draws.
+"""Response of a law that is driven along a path, as ``pound-solve loop`` tabulates and draws it.
 
 The specimen is a deck of one spring (or contact), so that its items are read, checked and built as in any
 other deck.
