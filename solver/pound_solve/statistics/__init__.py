@@ -1,1 +1,1 @@
-"""What many runs say together: curves over the level, fractiles, fragilities, separations."""
+"""Statistics of many runs: curves over the level, fractiles, fragilities, separations."""

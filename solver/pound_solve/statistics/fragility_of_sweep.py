@@ -1,4 +1,4 @@
-"""Fragilities of a sweep: which of its runs tell how likely a demand exceeds a limit, for every case."""
+"""Fragilities fitted to the runs of a sweep: how likely a demand exceeds a limit, for every case."""
 
 from __future__ import annotations
 
