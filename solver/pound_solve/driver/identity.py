@@ -1,4 +1,4 @@
-"""What a saved state belongs to: everything of a deck that the motion depends on, in words that compare."""
+"""Identity of a saved state: all parts of a deck that the motion depends on, as texts to be compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ground motions and forces in time of a deck, and the state that a history goes on from."""
+"""Ground motions and forces in time of a deck, and the state that a history continues from."""
 
 from __future__ import annotations
 

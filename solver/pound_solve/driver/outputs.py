@@ -1,4 +1,4 @@
-"""Whether a run would write over what it reads, or over files of others."""
+"""Checks that a run does not overwrite files that it reads, or files of other programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a request replaces in the deck: METHOD, DT and TOL of every HISTORY, and the ground motion.
+"""Replacement of items of the deck by a request: METHOD, DT, TOL of every HISTORY, and the ground motion.
 
 ``--set`` replaces PARAMs when the deck is read.
 """

@@ -1,4 +1,4 @@
-"""What the user asks of a run."""
+"""Request for a run: the deck, and the options that the user gives."""
 
 from __future__ import annotations
 
