@@ -1,4 +1,4 @@
-"""Which field of which Spec an item of a line is; half a line is as good as a whole one."""
+"""Fields and Specs that the items of a line belong to, also of a line that is only half typed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands at a place: unit, default, limits and meaning of an item, or what a word means."""
+"""Help on the item at a place: unit, default, limits and meaning of an item, or what a word means."""
 
 from __future__ import annotations
 

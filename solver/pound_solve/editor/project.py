@@ -1,4 +1,4 @@
-"""What the editor holds: its texts, the deck that each file belongs to, and what was last said of it."""
+"""Open files of the editor: their texts, the deck that each belongs to, and the mistakes last sent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A deck as an editor needs it: rows with their sections, PARAM values, units; mistakes break nothing."""
+"""Deck as an editor needs it, read in spite of mistakes: rows with sections, PARAM values, units."""
 
 from __future__ import annotations
 
