@@ -1,4 +1,4 @@
-"""What several verbs share: exit statuses, messages, the arguments of a deck, lists of numbers."""
+"""Functions that several verbs share: exit statuses, messages, arguments of a deck, lists of numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What verbs that carry out studies share: arguments, mistakes, the line of progress, what they print."""
+"""Functions shared by verbs that carry out studies: arguments, mistakes, progress line, output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``pound-solve import``: make a deck of this program of one of Ruaumoko-2D."""
+"""``pound-solve import``: translate a deck of Ruaumoko-2D into one of this program."""
 
 from __future__ import annotations
 
