@@ -1,4 +1,4 @@
-"""A check: a number that a run finds about itself, what it may be, and whether that is good enough.
+"""A check: a number that a run computes about itself, with its allowed range and a verdict.
 
 Methods, analyses and the driver make checks; the report, pictures and sweeps print the same objects.
 """

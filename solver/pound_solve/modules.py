@@ -1,4 +1,4 @@
-"""The modules of a package, found by their files: what is added needs no list."""
+"""Modules of a package, found by their files, so that new ones need no registration."""
 
 from __future__ import annotations
 
