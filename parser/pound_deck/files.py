@@ -1,4 +1,4 @@
-"""The one way in which files of a user are read."""
+"""Functions by which files of a user are opened and read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a line does not follow the grammar: one function for each kind of slip, the most certain first."""
+"""Explanation of syntax errors: one function for each kind of slip, the most certain first."""
 
 from __future__ import annotations
 

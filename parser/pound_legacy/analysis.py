@@ -1,4 +1,4 @@
-"""What the control lines ask for: DAMPING, ANALYSIS, OUTPUT, and the motion or the forces."""
+"""Sections that follow from the control lines: DAMPING, ANALYSIS, OUTPUT, and the motion or the forces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The deck that comes of an old one: its lines, how each was read, and what was wrong."""
+"""Draft of the new deck: its lines, how each was read, and what was wrong in the old one."""
 
 from __future__ import annotations
 

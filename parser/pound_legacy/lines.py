@@ -1,4 +1,4 @@
-"""Data lines of an old deck: blanks part the items, ``!`` starts a comment, blank lines are free."""
+"""Data lines of an old deck: blanks separate the items, ``!`` starts a comment, blank lines are skipped."""
 
 from __future__ import annotations
 
