@@ -150,7 +150,7 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
     NLEVEL says, at its `place` among the control lines.
     """
     listed: list[tuple[int, Row]] = []
-    count = 0  # with the items that are told as wrong: NLEVEL need not change where these are corrected
+    count = 0  # wrong items included: NLEVEL need not change where these are corrected
     for row in rows:
         for item in row.items:
             count += 1

@@ -69,7 +69,7 @@ def _read(model: Model, request: Request, context: LoadingContext) -> Iterator[t
         yield Path(name), None
     for card in (*model.equake, *model.forces):
         if card.values.get("FILE"):
-            with suppress(RecordError):  # told where it is read
+            with suppress(RecordError):  # reported where it is read
                 yield find(str(card["FILE"]), context.search_path), card.place("FILE")
     for card in model.analyses:
         path = Path(request.deck).parent / str(card.values.get("RESTART") or "")

@@ -196,7 +196,7 @@ def _damp_loaded(structure: Structure) -> None:
         state = static.solve(structure)
         loaded = static.after(structure.stressed(state.axial).displaced(state.u), state)
     except (InstabilityError, np.linalg.LinAlgError, ArithmeticError):
-        return  # the analysis tells it
+        return  # the analysis reports it
     remarks = add_damping(structure, loaded)
     structure.remarks += remarks
     if has_errors(remarks):

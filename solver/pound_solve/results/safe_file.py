@@ -144,11 +144,11 @@ class SafeFile:
         try:
             self._make_room(self._size + self._reserve + LENGTH)
         except NoRoomError:
-            self._reserve = 0  # what is left to be told may use it
+            self._reserve = 0  # for the message on how the run ended
             self.forget()
             raise
         self._lay(self._sealed, bytes(LENGTH))
-        for number in sorted(self._pages, reverse=True):  # the head, which tells of the rest, last
+        for number in sorted(self._pages, reverse=True):  # the head, which refers to the rest, last
             self._lay(number * PAGE, self._pages[number])
         self._sum_up(sorted(self._pages))
         self._pages.clear()

@@ -133,7 +133,7 @@ class Hunt:
         for group in self._groups():
             curve = self._curve(group)
             if curve.left_out or not curve.points:
-                continue  # a run failed: what it would have told is not known
+                continue  # a run failed: its demand, from which the next level follows, is not known
             level = next_level(curve.points, self.aim.rules)
             if level is not None:
                 yield group[0].at(level)

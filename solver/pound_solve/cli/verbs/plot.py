@@ -60,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
     if wrong := _wrong(args, choice):
         return common.complain(wrong, common.MISTAKES)
     if args.style:
-        opened(args.style).close()  # a pipe is told before the work
+        opened(args.style).close()  # a pipe is refused before the work
     try:
         with Results.open(args.results) as results:
             return _draw(results, args, choice)

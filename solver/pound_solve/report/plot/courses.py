@@ -58,7 +58,7 @@ def shade(
         return
     bounds, low, high = results.extreme(name)
     samples = np.diff(results.time).max(initial=0.0)
-    if np.diff(bounds).max(initial=0.0) > (1.0 + 1e-9) * samples:  # they are wider: samples tell more
+    if np.diff(bounds).max(initial=0.0) > (1.0 + 1e-9) * samples:  # wider than samples, which show more
         return
     inside = choice.span(results, bounds[:-1])
     n = len(bounds) - 1

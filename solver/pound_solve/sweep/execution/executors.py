@@ -152,7 +152,7 @@ class DaskExecutor(Executor):
             from distributed import Client
         except ImportError:
             raise ExecutorError('Dask is missing: pip install "pound-solve[cluster]"') from None
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by the sweep
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # the sweep itself reports lost runs
         try:
             self._client = Client(timeout=PATIENCE, set_as_default=False, **options)
         except OSError as err:

@@ -321,7 +321,7 @@ class _Reader:
         first = next((r for s in self.suites for r in s.records), None)
         motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
         if self.suites and not first:
-            return  # its records are told already
+            return  # the mistakes of its records are reported already
         try:
             ready = prepare(request_of(replace(case, params=combinations[0]), motion))
         except DeckError as err:
@@ -399,7 +399,7 @@ class _Reader:
                     self.document.found.append(Diagnostic(err.code, err.message, place, err.hint))
         for card in model.analyses:
             if card.values.get("RESTART"):
-                with suppress(OSError):  # the preparation of the deck tells why
+                with suppress(OSError):  # the preparation of the deck reports why
                     state = contents(Path(case.deck).parent / card["RESTART"])
                     sources["RESTART"] = sha256(state).hexdigest()
         return sources, digest_of(model.files)
