@@ -55,7 +55,7 @@ class Translation:
 
 
 def translate(
-    name: str, text: str, catalog: Catalog, records: Sequence[File] = (), own: str = "", run: bool = False
+    name: str, text: str, catalog: Catalog, records: Sequence[File] = (), shown: str = "", run: bool = False
 ) -> Translation:
     """Read an old deck.
 
@@ -68,7 +68,7 @@ def translate(
         Knows which hysteresis rules there are.
     records : sequence of File
         Files of records that do not follow in the deck: horizontal, vertical.
-    own : str
+    shown : str
         Name by which the new deck finds the old one, which holds the record.
     run : bool
         The new deck is run at once: readings by convention are errors.
@@ -83,7 +83,7 @@ def translate(
         sections, control = _outline(name, text, lines, draft)
     except Mistake as error:
         return Translation("", (), tuple([error.diagnostic] if error.diagnostic else []))
-    _translate(sections, control, (File(own or name, text), list(records)), catalog, draft)
+    _translate(sections, control, (File(shown or name, text), list(records)), catalog, draft)
     if run:
         draft.report[:] = [
             replace(d, severity="error", hint=_RUN) if d.code in ("L605", "L609") else d

@@ -342,6 +342,25 @@ def test_names_of_kernels_say_what_they_do_with_what(folder):
         assert not [x for x in functions if "_" not in x and x not in OF_ONE_WORD], place(path)
 
 
+SAYS_NOTHING = {"own", "found"}  #: names that variables and parameters had before they said what they hold
+
+
+def names_within(function):
+    """Parameters and variables of a function, and of those within it."""
+    yield from (x.arg for x in ast.walk(function) if isinstance(x, ast.arg))
+    for x in ast.walk(function):
+        if isinstance(x, ast.Name) and isinstance(x.ctx, ast.Store):
+            yield x.id
+
+
+def test_variables_say_what_they_hold():
+    for path in modules():
+        functions = [
+            x for x in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(x, ast.FunctionDef)
+        ]
+        assert not [f.name for f in functions if SAYS_NOTHING & set(names_within(f))], path
+
+
 def test_numerics_open_no_file_and_print_nothing():
     for path in SOLVER.rglob("*.py"):
         if place(path).startswith(NUMERICS) and path.name != "jit.py":

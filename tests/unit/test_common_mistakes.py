@@ -802,3 +802,17 @@ def test_no_error_is_meant():
 )
 def test_storeys_that_can_be_meant(changes):
     assert not told(STOREYS, changes)
+
+
+def test_frequencies_in_hz_are_compared_with_the_building_that_the_card_names():
+    """Not with its neighbour, which is far slower here."""
+    slow = ("12,13,15,16 240", "12,13,15,16 3000")
+    damping = ("RAYLEIGH XI=0.05 MODES=1,3", 'RAYLEIGH XI=0.05 OMEGA=1.9,6 BUILDING="building 2"')
+    said = [line for line in told(FRAMES, [slow, damping]) if "OMEGA=" in line]
+    assert said and "P373 OMEGA=1.9,6 is below the first mode, about 13.7 rad" in said[0]
+
+
+def test_two_mistakes_of_one_hinge_are_both_told():
+    changes = [("MI=200 MJ=200 LP=0.25", "MI=200 MJ=200 LP=2"), ("R=0.03 MI=200", "R=0.3 MI=200")]
+    said = [line for line in told(FRAMES, changes) if line.startswith("P355")]
+    assert len(said) == 2 and "the hinges of COL" in said[0] and "R=0.3" in said[1]

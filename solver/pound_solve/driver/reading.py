@@ -63,7 +63,7 @@ def read(request: Request) -> Deck:
     name = request.deck
     if os.path.realpath(name) in request.unsaved or not recognised(name):
         return Deck(*read_deck(name, catalog(), request.params, request.unsaved))
-    text, old = imported(name, own=Path(name).name, run=True)
+    text, old = imported(name, shown=Path(name).name, run=True)
     files = {name: text}
     if has_errors(old.report):
         return Deck(None, list(old.report), files, old)
@@ -73,7 +73,7 @@ def read(request: Request) -> Deck:
 
 
 def imported(
-    name: str, records: Sequence[File] = (), own: str = "", run: bool = False
+    name: str, records: Sequence[File] = (), shown: str = "", run: bool = False
 ) -> tuple[str, Translation]:
     """Text of an old deck, and its translation; see `translate`.
 
@@ -88,4 +88,4 @@ def imported(
         text = text_of(name)
     except Mistake as error:
         return "", Translation("", (), tuple([error.diagnostic] if error.diagnostic else []))
-    return text, translate(name, text, catalog(), records, own, run)
+    return text, translate(name, text, catalog(), records, shown, run)

@@ -63,18 +63,6 @@ def by_rows(a: Matrix) -> list[tuple[Index, Array]]:
     return [(j[p:q], x[p:q]) for p, q in zip(ends[:-1].tolist(), ends[1:].tolist())]
 
 
-def layers(a: Matrix) -> list[tuple[Index, Array]]:
-    """Columns and values of the first entry of every row, of the second, ...; zero where there is none."""
-    i, j, x = entries(a)
-    place = np.arange(len(i)) - np.searchsorted(i, i)
-    pairs = []
-    for k in range(place.max(initial=-1) + 1):
-        columns, values = np.zeros(a.shape[0], np.int64), np.zeros(a.shape[0])
-        columns[i[place == k]], values[i[place == k]] = j[place == k], x[place == k]
-        pairs.append((columns, values))
-    return pairs
-
-
 def at(a: Matrix, rows: Index, columns: Index) -> Array:
     """Values at the given rows and columns, shape (n,)."""
     if isinstance(a, np.ndarray):

@@ -54,13 +54,13 @@ def minimum_degree(near: Neighbours) -> list[int]:
     """Minimum-degree order: next is always the unknown coupled to the fewest remaining ones, which it
     couples.
     """
-    graph = [set(own) for own in near]
+    graph = [set(coupled) for coupled in near]
     left, order = set(range(len(graph))), []
     while left:
-        own = min(left, key=lambda x: (len(graph[x]), x))
-        left.remove(own)
-        order.append(own)
-        for other in graph[own]:
-            graph[other] |= graph[own]
-            graph[other] -= {own, other}
+        unknown = min(left, key=lambda x: (len(graph[x]), x))
+        left.remove(unknown)
+        order.append(unknown)
+        for other in graph[unknown]:
+            graph[other] |= graph[unknown]
+            graph[other] -= {unknown, other}
     return order

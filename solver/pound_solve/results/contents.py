@@ -37,13 +37,15 @@ _PARTS: Final[tuple[tuple[Section, tuple[Table[Any], ...]], ...]] = tuple(
 )
 
 #: Sections of the report: heading, names of the tables.  The number of a section is its place here.
-SECTIONS: Final = tuple((section.heading, tuple(t.name for t in own)) for section, own in _PARTS)
+SECTIONS: Final = tuple((section.heading, tuple(t.name for t in tables)) for section, tables in _PARTS)
 
 #: Every table by name, in the order of the report.
-TABLES: Final[Mapping[str, Table[Any]]] = MappingProxyType({t.name: t for _, own in _PARTS for t in own})
+TABLES: Final[Mapping[str, Table[Any]]] = MappingProxyType(
+    {t.name: t for _, tables in _PARTS for t in tables}
+)
 
 #: Tables that differ between two runs of the same deck.
-OF_THE_DAY: Final = frozenset(t.name for section, own in _PARTS if section.of_the_day for t in own)
+OF_THE_DAY: Final = frozenset(t.name for section, tables in _PARTS if section.of_the_day for t in tables)
 
 #: Every history by its path below ``/history``, ``time`` first.
 HISTORIES: Final[Mapping[str, History]] = MappingProxyType(

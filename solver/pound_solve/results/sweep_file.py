@@ -138,14 +138,14 @@ class Sweep:
 
         data = {
             name: (
-                (RUN, own.axis) if own.axis else RUN,
-                own.values,
-                {"units": own.unit, "long_name": own.doc},
+                (RUN, variable.axis) if variable.axis else RUN,
+                variable.values,
+                {"units": variable.unit, "long_name": variable.doc},
             )
-            for name, own in self.variables.items()
+            for name, variable in self.variables.items()
             if name != RUN
         }
-        coords = {RUN: self[RUN], **{axis: list(own) for axis, own in self.labels.items()}}
+        coords = {RUN: self[RUN], **{axis: list(labels) for axis, labels in self.labels.items()}}
         return Dataset(data, coords, dict(self.about))
 
     def history(self, run: int, name: str) -> tuple[NDArray[Any], NDArray[Any], tuple[str, ...]]:

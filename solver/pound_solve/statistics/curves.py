@@ -160,13 +160,13 @@ def _rows(sweep: Sweep, quantity: str) -> Iterator[Mapping[str, float]]:
     """Yield for every run the values of a quantity by their labels."""
     if quantity == COLLAPSE:
         return iter([{}] * len(sweep))
-    own = sweep.variables[quantity]
-    labels = sweep.labels[own.axis] if own.axis else ("",)
-    rows = own.values.reshape(len(sweep), len(labels))
+    variable = sweep.variables[quantity]
+    labels = sweep.labels[variable.axis] if variable.axis else ("",)
+    rows = variable.values.reshape(len(sweep), len(labels))
     there = np.ones(rows.shape, bool)
     if quantity == NEEDED:  # NaN of a deck that has not the contact means nothing
         there = ~np.isnan(sweep["given_gap"])
-    return ({n: float(x) for n, x, h in zip(labels, *own) if h} for own in zip(rows, there))
+    return ({n: float(x) for n, x, h in zip(labels, *row) if h} for row in zip(rows, there))
 
 
 def widest_known(sweep: Sweep) -> dict[str, float]:

@@ -14,8 +14,10 @@ def standing_alone(structure: Structure, nodes: Collection[int]) -> Structure:
     """The building that some nodes make up, without all that is not its own: other buildings, and contacts
     with them.  It has no damping.
     """
-    own, model = frozenset(nodes), structure.model
-    elements = {e.id: e for e in model.elements.values() if e.i in own and (e.j is None or e.j in own)}
+    inside, model = frozenset(nodes), structure.model
+    elements = {
+        e.id: e for e in model.elements.values() if e.i in inside and (e.j is None or e.j in inside)
+    }
 
     def kept(cards: Sequence[Card], item: str, these: Collection[int]) -> tuple[Card, ...]:
         pairs = [(c, tuple(x for x in c[item] if x in these)) for c in cards]
@@ -23,13 +25,13 @@ def standing_alone(structure: Structure, nodes: Collection[int]) -> Structure:
 
     part = replace(
         model,
-        nodes={n: x for n, x in model.nodes.items() if n in own},
+        nodes={n: x for n, x in model.nodes.items() if n in inside},
         elements=elements,
-        weights=kept(model.weights, "NODES", own),
-        loads=kept(model.loads, "NODES", own),
+        weights=kept(model.weights, "NODES", inside),
+        loads=kept(model.loads, "NODES", inside),
         member_loads=kept(model.member_loads, "ELEMENTS", elements),
-        buildings=kept(model.buildings, "NODES", own),
+        buildings=kept(model.buildings, "NODES", inside),
         damping=(),
     )
-    moved = [f for f in structure.dofs.moved if f[0] in own]
+    moved = [f for f in structure.dofs.moved if f[0] in inside]
     return assemble(part, moved, structure.self_weight)

@@ -82,7 +82,7 @@ def checks(
     if run.figures["events"] == 0 and not not_linear(system):
         return []
     witness = Witness(watch.recorder)
-    method = next(own.decision for own in reversed(system.decisions) if own.subject == "method")
+    method = next(made.decision for made in reversed(system.decisions) if made.subject == "method")
     try:
         twin = again(*changed(system, start), monitored, witness, method)
     except Stop as stop:
@@ -90,6 +90,6 @@ def checks(
             raise Stop("A506", float(start.times[-1]), INTERRUPTED, run) from None
         told = f"it stops then: {stop.code} at t = {stop.t:.6g}; {MAGNIFIED}"
         return [beyond(Subject.MAGNIFICATION, ABOUT, np.inf, tol, told)]
-    own, other = figures(system, run.peaks, watch), figures(system, twin.peaks, witness)
-    apart = np.abs(own.values - other.values) / np.where(own.scales > 0.0, own.scales, 1.0)
+    first, second = figures(system, run.peaks, watch), figures(system, twin.peaks, witness)
+    apart = np.abs(first.values - second.values) / np.where(first.scales > 0.0, first.scales, 1.0)
     return [at_most(Subject.MAGNIFICATION, ABOUT, apart.max(initial=0.0), tol, MAGNIFIED)]

@@ -91,19 +91,6 @@ def two_extremes(t: Array, value: Array, slope: Array) -> tuple[Flags, Array]:
     return twice, t[..., :-1] + at * width
 
 
-def cubic_extreme(u0: Array, u1: Array, v0: Array, v1: Array) -> tuple[Array, Array]:
-    """Return the place from 0 to 1, and the value, of the extreme of cubics with values `u` and slopes `v`
-    at 0 and 1, whose slopes there differ in sign; shape (n,) each.
-    """
-    rise = u1 - u0
-    b, c = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise  # slope: v0 + 2 b s + 3 c s^2
-    root = np.copysign(np.sqrt(b * b - 3.0 * c * v0), v0)
-    # of the two forms of the zero the one without cancellation
-    plain = b * v0 <= 0.0
-    s = np.where(plain, v0, -b - root) / np.where(plain, root - b, 3.0 * c)
-    return s, u0 + s * (v0 + s * (b + s * c))
-
-
 def first_rise(t: Array, g: Array, slope: Array, tol: Array, evaluate: Evaluate) -> Rise | None:
     """Return the first instant at which one of some functions rises through zero, or None.
 

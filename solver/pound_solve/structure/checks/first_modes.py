@@ -67,8 +67,12 @@ def frequencies_in_hertz(structure: Structure, parts: Sequence[tuple[Building, P
     """
     model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
-        omega, nodes = card.values.get("OMEGA"), card.values.get("NODES")
-        chosen = [part for b, part in parts if not nodes or set(nodes) & set(b.nodes)]
+        omega, nodes, name = (card.values.get(item) for item in ("OMEGA", "NODES", "BUILDING"))
+        chosen = [
+            part
+            for b, part in parts
+            if (not nodes or set(nodes) & set(b.nodes)) and (not name or name == b.name)
+        ]
         periods = [t for part in chosen if (t := part.period)]
         if not omega or not periods:
             continue

@@ -192,9 +192,7 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
     reported.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
-    for label, members in kinds(model).items():
-        for d in _long_hinges(model, label, members):
-            problems[label] = d
+    of_hinges = [d for label, members in kinds(model).items() for d in _long_hinges(model, label, members)]
     for spring in structure.laws:
         element = model.elements[spring.element]
         card = model.props[element.prop]
@@ -210,7 +208,7 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
             continue
         for d in doubts:
             problems.setdefault(card.label, d)
-    return list(problems.values())
+    return [*of_hinges, *problems.values()]
 
 
 def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[Diagnostic]:

@@ -33,18 +33,18 @@ def curve(axes: Any, results: Results) -> None:
     events = results.table("push_events")
     words = kinds(results, events)
     for n, kind in enumerate(dict.fromkeys(words)):
-        own = [word == kind for word in words]
+        of_kind = [word == kind for word in words]
         axes.plot(
-            events["displacement"][own], events["base_shear"][own], "o", markersize=4, zorder=3,
-            color=style.stroke(n + 1)["color"], label=f"{kind} ({sum(own)})",
+            events["displacement"][of_kind], events["base_shear"][of_kind], "o", markersize=4, zorder=3,
+            color=style.stroke(n + 1)["color"], label=f"{kind} ({sum(of_kind)})",
         )  # fmt: skip
     top = int(np.argmax(np.abs(y)))
     axes.plot(x[top], y[top], "D", color="0.1", fillstyle="none", label="largest base shear")
     labels.label(axes, (x[top], y[top]), f"{y[top]:.5g} {units.force}", far=True)
     for k in first_ones(words)[:MOST]:
-        own = events[k]
-        text = f"{named(results, own)}: {words[k]}"
-        labels.label(axes, (own["displacement"], own["base_shear"]), text, far=True)
+        event = events[k]
+        text = f"{named(results, event)}: {words[k]}"
+        labels.label(axes, (event["displacement"], event["base_shear"]), text, far=True)
     style.legend(axes, title="events (number)")
     told = [said[item] for item in ("pattern", "control", "end") if item in said]
     axes.set_title("; ".join(told))
