@@ -243,6 +243,29 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     assert check.value > 1e-2 and found.status == "done"
 
 
+@pytest.mark.parametrize("step", [0, 1])
+def test_iterations_that_use_a_factor_up_and_fail_end_in_parts(tmp_path, monkeypatch, step):
+    """Newton's iterations may update the factor more often than it bears and find no equilibrium: a new
+    factor does not help them, so the step is taken in parts.
+    """
+    tries = []
+
+    def fails(sim, rules, scheme, coefs, end, h, at):
+        if sim.run.step != step:
+            return locating.try_step(sim, rules, scheme, coefs, end, h, at)
+        tries.append(float(sim.run.time))
+        assert tries.count(tries[-1]) < 4, "the same step is tried again and again"
+        sim.run.updates = kernel.REFRESH + 1
+        return False
+
+    right = run(tmp_path, "NEWMARK DT=0.001", every=0.2).history("node/u")
+    monkeypatch.setattr(kernel, "try_step", fails)
+    with interpreted():
+        found = run(tmp_path, "NEWMARK DT=0.001", every=0.2)
+    assert found.status == "done" and len(tries) >= 6
+    assert np.abs(found.history("node/u") - right).max() < 1e-9 * np.abs(right).max()
+
+
 EQUAL_STRENGTHS = """UNITS kN m s
 GRAVITY 1
 NODES

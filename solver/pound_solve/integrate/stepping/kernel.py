@@ -289,8 +289,11 @@ def advance(
                 length, run.rest = run.rest, -1.0
             else:
                 last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
+                first, fresh = run.step, run.updates == 0
                 tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
-                if not tried and (run.step == last < steps[goal] - 1 or run.updates > REFRESH):
+                # Newton's iterations that fail may use a factor up, which a new one does not mend
+                used_up = run.updates > REFRESH and (run.step > first or not fresh)
+                if not tried and (run.step == last < steps[goal] - 1 or used_up):
                     continue
                 length = h if run.step < steps[goal] - 1 else goals.times[goal] - run.time
                 run.same_instant = 0
