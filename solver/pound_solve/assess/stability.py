@@ -99,16 +99,16 @@ class Found(NamedTuple):
 
 
 NOTHING: Final = Found(
-    np.zeros(0),
-    np.zeros(0),
-    np.zeros((0, 0)),
-    np.zeros((0, 0)),
-    np.zeros((0, 2)),
-    np.zeros(0),
-    "",
-    (),
-    "",
-    0.0,
+    t=np.zeros(0),
+    u=np.zeros(0),
+    v=np.zeros((0, 0)),
+    f=np.zeros((0, 0)),
+    swings=np.zeros((0, 2)),
+    blows=np.zeros(0),
+    stop="",
+    looks=(),
+    wrong="",
+    seconds=0.0,
 )
 
 
@@ -376,7 +376,7 @@ def forces(result: Found, right: Found, within: float) -> Offs:
 
 
 def blows(result: Found, right: Found) -> Array:
-    """Errors of the largest contact forces; forces as small as rounding have no error of note."""
+    """Errors of the largest contact forces, relative to at least `ROUNDING` of the force of a storey."""
     storey = STOREY * float(np.abs(right.u).max(initial=0.0))
     size = np.maximum(np.abs(right.blows), ROUNDING * storey)
     return parts(result.blows, right.blows, 0.05, size)
@@ -407,9 +407,10 @@ def turns(result: Found) -> Flags:
 
 
 def known(offs: Offs, nudged: Offs, t: Array, unseen: Flags) -> tuple[Offs, str]:
-    """Errors that count: those where the errors of the `nudged` deck are allowed ones, up to the first time
-    at which they are not, and of springs' forces not at times that are `unseen`; and a remark where that
-    is a part only.
+    """Errors that count, and a remark where these are a part only.
+
+    A series counts up to the first time at which the `nudged` deck is off by more than is allowed, a peak
+    where that is not, and forces of springs not at times that are `unseen`.
     """
     good = {x: off <= most for x, (off, most) in nudged.items()}
     series = [x for x in good if not x.startswith(PEAKS)]

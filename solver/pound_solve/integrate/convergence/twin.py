@@ -82,7 +82,7 @@ def checks(
     if run.figures["events"] == 0 and not not_linear(system):
         return []
     witness = Witness(watch.recorder)
-    method = next(made.decision for made in reversed(system.decisions) if made.subject == "method")
+    method = next(entry.decision for entry in reversed(system.decisions) if entry.subject == "method")
     try:
         twin = again(*changed(system, start), monitored, witness, method)
     except Stop as stop:

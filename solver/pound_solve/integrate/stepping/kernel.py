@@ -291,7 +291,7 @@ def advance(
                 last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
                 first, fresh = run.step, run.updates == 0
                 tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
-                # Newton's iterations that fail may use a factor up, which a new one does not mend
+                # iterations that fail from a new factor on would fail again: the step is taken in parts
                 used_up = run.updates > REFRESH and (run.step > first or not fresh)
                 if not tried and (run.step == last < steps[goal] - 1 or used_up):
                     continue
