@@ -34,7 +34,7 @@ class _Draft:
     spec : Spec
     span : Span
     label : str
-    given : mapping of str to Item
+    items : mapping of str to Item
         By the name of the field.
     numbers : sequence of int or None
         Those that a range in the first field generates; None without one.
@@ -52,7 +52,7 @@ class _Draft:
     spec: Spec
     span: Span
     label: str
-    given: Mapping[str, Item]
+    items: Mapping[str, Item]
     numbers: Sequence[int] | None
     matched: bool
     whole: bool
@@ -62,7 +62,7 @@ class _Draft:
 
     def cards(self) -> list[Card]:
         """Make the finished card, or one for each of the generated numbers."""
-        spans = {name: item.span for name, item in self.given.items()}
+        spans = {name: item.span for name, item in self.items.items()}
         every = [self.values]
         if self.numbers is not None:
             every = [
@@ -131,7 +131,7 @@ class Binder:
 
     def _fill(self, draft: _Draft, f: Field) -> Sequence[Field]:
         """Set the value of a field of a card; return the fields of the laws that the value chooses."""
-        item = draft.given.get(f.name)
+        item = draft.items.get(f.name)
         try:
             value = self._default(f, draft) if item is None else self._value(f, item, draft)
         except Mistake as error:

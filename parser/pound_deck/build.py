@@ -219,7 +219,7 @@ def units_of(row: Row | None, report: list[Diagnostic]) -> Units:
         report.append(Diagnostic("P238", message, row.span, hint))
         return Units()
     force, length, time = words
-    return Units(force, length, time, given=True)
+    return Units(force, length, time, stated=True)
 
 
 def _in_order(words: Iterable[str]) -> bool:
@@ -246,7 +246,7 @@ def _doubtful_gravity(
     if known is None or gravity is None:
         return
     other = next((u for u, g in _LENGTHS.items() if math.isclose(gravity, g, rel_tol=_ALIKE)), "")
-    if other and _LENGTHS[other] != known and (units.given or "UNITS" not in single):
+    if other and _LENGTHS[other] != known and (units.stated or "UNITS" not in single):
         message = (
             f"GRAVITY is {gravity:g}, that of {other.lower()}, but the unit of length is {units.length}"
         )

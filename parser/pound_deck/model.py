@@ -95,7 +95,7 @@ class Units:
     force: str = "kN"
     length: str = "m"
     time: str = "s"
-    given: bool = False
+    stated: bool = False
 
     def text(self, dimension: str) -> str:
         """Text of a dimension (``F/L`` ...) in the deck's units (``kN/m`` ...)."""

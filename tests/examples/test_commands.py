@@ -211,7 +211,7 @@ def at_the_desk(
 
     def moves(request: run.Request, *_: Any) -> NoReturn:
         """Motions that meet a spectrum take long, and are none of the deck's mistakes."""
-        assert not has_errors(reading.read(request).found)
+        assert not has_errors(reading.read(request).diagnostics)
         raise Started
 
     def opens(path: str | Path) -> NoReturn:

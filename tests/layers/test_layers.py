@@ -379,3 +379,16 @@ def test_no_module_keeps_mutable_state():
 def test_no_function_evaluates_text():
     for path in modules():
         assert not facts(path).called & {"eval", "exec"}, path
+
+
+def test_functions_fit_on_a_page():
+    """No function has more than sixty lines without its docstring, and none is called by a word that says
+    nothing; ruff holds their complexity and the number of their parameters.
+    """
+    for path in modules():
+        for x in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(x, ast.FunctionDef):
+                docstring = x.body[0] if ast.get_docstring(x) is not None else None
+                lines = docstring.end_lineno - docstring.lineno + 1 if docstring else 0
+                assert x.end_lineno - x.lineno + 1 - lines <= 60, f"{place(path)}: {x.name}"
+                assert x.name not in SAYS_NOTHING, f"{place(path)}: {x.name}"

@@ -17,7 +17,7 @@ from pound_solve.results.schema import Layout
 
 __all__ = ("DECK", "NODES", "TITLE", "UNITS", "block", "layout", "rows", "write")
 
-UNITS = Units("kN", "m", "s", given=True)
+UNITS = Units("kN", "m", "s", stated=True)
 TITLE = "Two 2-storey buildings, 20 axial elements per diaphragm – gap 8 mm, ξ = 5 %"
 DECK = "TITLE Zwei Gebäude\nUNITS kN m s\nNODES\n   1  0  0  FIX=XYR   ! Stütze\n"
 

@@ -10,7 +10,7 @@ import pytest
 from kernels import interpreted
 from pound_solve import run
 from pound_solve.integrate import condensed
-from pound_solve.integrate.stepping import locating
+from pound_solve.integrate.stepping import locating, parts
 from pound_solve.results import Results
 
 CROWD = """GRAVITY 1
@@ -55,7 +55,8 @@ def trials(
         return try_step(*arguments)
 
     with interpreted(), monkeypatch.context() as patch:
-        patch.setattr(locating, "try_step", counted)
+        for module in (locating, parts):
+            patch.setattr(module, "try_step", counted)
         with solved(folder, n, law, rule) as results:
             events = int(dict(results.table("run").tolist())["events"])
             return count, events, results.history("node/u")[:, :, 0]

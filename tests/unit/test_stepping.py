@@ -17,7 +17,7 @@ from pound_solve.integrate.convergence.compared import RESPONSES, Peak
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
 from pound_solve.integrate.protocol import Stop
-from pound_solve.integrate.stepping import kernel, locating
+from pound_solve.integrate.stepping import kernel, locating, parts
 from pound_solve.integrate.tracker import Collision, Peaks
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
@@ -252,7 +252,7 @@ def test_iterations_that_use_a_factor_up_and_fail_end_in_parts(tmp_path, monkeyp
 
     def fails(sim, rules, scheme, coefs, end, h, at):
         if sim.run.step != step:
-            return locating.try_step(sim, rules, scheme, coefs, end, h, at)
+            return parts.try_step(sim, rules, scheme, coefs, end, h, at)
         tries.append(float(sim.run.time))
         assert tries.count(tries[-1]) < 4, "the same step is tried again and again"
         sim.run.updates = kernel.REFRESH + 1
@@ -510,7 +510,7 @@ def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, mo
 
     monkeypatch.setattr(locating, "value_at_start", at_start)
     monkeypatch.setattr(within_step, "ALIKE", 1.0)  # else that counts as rounding
-    monkeypatch.setattr(locating, "SHORTEST", 1.0)
+    monkeypatch.setattr(parts, "SHORTEST", 1.0)
     with interpreted():
         told = bar(tmp_path, 0.05).message
     assert told.startswith("A503 at t = 0.703") and "at one instant" in told

@@ -33,7 +33,7 @@ class Peaks:
         Number of the contact, and how often it was pressed anew before.
     height : ndarray, shape (n_peaks,)
         The force [F].
-    own : ndarray of bool, shape (n_peaks,)
+    at_step : ndarray of bool, shape (n_peaks,)
         Whether the peak lies at an instant of the method.
     """
 
@@ -41,7 +41,7 @@ class Peaks:
     contact: Index
     collision: Index
     height: Array
-    own: Flags
+    at_step: Flags
 
     def at(self, chosen: Index | Flags) -> Peaks:
         """The chosen peaks."""
@@ -50,7 +50,7 @@ class Peaks:
             self.contact[chosen],
             self.collision[chosen],
             self.height[chosen],
-            self.own[chosen],
+            self.at_step[chosen],
         )
 
     def largest(self) -> Peaks:
@@ -169,7 +169,7 @@ class Closeups:
             peaks.at(inner),
             motion=Motion(t, *map(at, motion[1:])),
             height=np.maximum(high, high_before)[inner],
-            own=np.zeros(len(t), bool),
+            at_step=np.zeros(len(t), bool),
         )
         return joined_peaks([peaks.at(~inner), between])
 
@@ -179,7 +179,9 @@ class Closeups:
         if self._peaks:
             peaks = joined_peaks(self._peaks)
             # peaks at instants that are all there are no second time
-            kept.append(peaks.at(~peaks.own if self.every == 1 else np.ones(len(peaks.own), bool)).motion)
+            kept.append(
+                peaks.at(~peaks.at_step if self.every == 1 else np.ones(len(peaks.at_step), bool)).motion
+            )
         if kept:
             whole = _joined(kept)
             whole = _at(whole, np.argsort(whole.t, kind="stable"))
@@ -189,7 +191,7 @@ class Closeups:
 
 def joined_peaks(parts: Sequence[Peaks]) -> Peaks:
     """Concatenate several sets of peaks."""
-    rest = zip(*((p.contact, p.collision, p.height, p.own) for p in parts))
+    rest = zip(*((p.contact, p.collision, p.height, p.at_step) for p in parts))
     return Peaks(_joined([p.motion for p in parts]), *map(np.concatenate, rest))
 
 

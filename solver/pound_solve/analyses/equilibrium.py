@@ -39,7 +39,7 @@ class SupportReactions:
 
     def __init__(self, structure: Structure, axial: Array, nodes: Collection[int] | None = None) -> None:
         model = structure.model
-        self.own = frozenset(model.nodes if nodes is None else nodes)
+        self.nodes = frozenset(model.nodes if nodes is None else nodes)
         bare = assemble(replace(model, damping=()), fixed_dofs(structure), structure.self_weight)
         self.structure, self.n = bare.stressed(axial), bare.n_free
         self.laws = structure.laws  # with what damping has made of them
@@ -75,7 +75,7 @@ class SupportReactions:
         if nodes is not None:
             return -sum(reactions.get((node, d), 0.0) for node in nodes)
         total, _ = self._held(*self._at(u, states))
-        return float(total[d]) - sum(r for (n, at), r in reactions.items() if at == d and n in self.own)
+        return float(total[d]) - sum(r for (n, at), r in reactions.items() if at == d and n in self.nodes)
 
     def balance(self, u: Array, states: Sequence[State]) -> list[tuple[Any, ...]]:
         """Rows of the table ``equilibrium``: forces along x and y and moments about the origin."""
@@ -135,7 +135,7 @@ class SupportReactions:
         """0 for an element of the building that ends at the ground, 1 for one between nodes, else None."""
         element = self.structure.model.elements[number]
         if element.j is None:
-            return 0 if element.i in self.own else None
+            return 0 if element.i in self.nodes else None
         return 1
 
 

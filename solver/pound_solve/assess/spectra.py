@@ -99,7 +99,9 @@ def _of_motions(request: Request, deck: Deck | None = None) -> Source:
     stem = Path(request.deck).stem
     names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(base.motions, 1))
     series = {name: m.acceleration for name, m in zip(names, base.motions)}
-    return Source(base.model.units, series, [d for d in base.found if d.code.startswith("R")], base.files)
+    return Source(
+        base.model.units, series, [d for d in base.diagnostics if d.code.startswith("R")], base.files
+    )
 
 
 def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> Source:

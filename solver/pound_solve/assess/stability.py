@@ -80,7 +80,7 @@ REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
 REFUSED_AT: Final = re.compile(r"^.*?\.inp:\d+:\d+: error ")  #: in a file that is gone
 
 
-class Found(NamedTuple):
+class Findings(NamedTuple):
     """Outcome of a run: times, displacements, velocities, forces of springs; the largest deformations of
     springs, positive and negative, shape (n_springs, 2); the largest forces of contacts; the message of a
     stop or refusal; checks of the numbers with the verdict "look"; what is wrong with it; seconds.
@@ -98,7 +98,7 @@ class Found(NamedTuple):
     seconds: float
 
 
-NOTHING: Final = Found(
+NOTHING: Final = Findings(
     t=np.zeros(0),
     u=np.zeros(0),
     v=np.zeros((0, 0)),
@@ -138,7 +138,7 @@ class JudgedRun:
 
 
 def motion(results: Results) -> dict[str, Array]:
-    """Quantities of a run that are compared, by their names in `Found`."""
+    """Quantities of a run that are compared, by their names in `Findings`."""
     tables = {x: results.table(x) for x in ("spring_envelope", "contact_summary") if x in results.tables}
     quantities = {}
     if "node/u" in results.histories:
@@ -155,12 +155,12 @@ def motion(results: Results) -> dict[str, Array]:
     return quantities
 
 
-def solve(deck: str, files: Mapping[str, str]) -> Found:
+def solve(deck: str, files: Mapping[str, str]) -> Findings:
     """Run a deck in a temporary folder; every exception becomes part of the result."""
     began = time.perf_counter()
 
-    def found(**known: Any) -> Found:
-        return Found(**{**NOTHING._asdict(), **known, "seconds": time.perf_counter() - began})
+    def findings(**known: Any) -> Findings:
+        return Findings(**{**NOTHING._asdict(), **known, "seconds": time.perf_counter() - began})
 
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -172,19 +172,21 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
             results = run.solve(run.prepare(request), request.path(".h5"), None, began, request)
         except run.DeckError as err:
             text = str(err)
-            return found(stop=text) if REFUSED.search(text) else found(wrong=f"unclear refusal: {text}")
+            return (
+                findings(stop=text) if REFUSED.search(text) else findings(wrong=f"unclear refusal: {text}")
+            )
         except Exception as err:
-            return found(wrong=f"{type(err).__name__}: {err}")
+            return findings(wrong=f"{type(err).__name__}: {err}")
         with results:
             stop, moved = results.message, motion(results)
             # a response that no engineer would believe may be right, and excuses no error
             looks = tuple(c for c in looked(results.checks) if c.subject is not Subject.RESPONSE)
             bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if bad:
-            return found(**moved, wrong=f"NaN or infinite values in {', '.join(bad)}")
+            return findings(**moved, wrong=f"NaN or infinite values in {', '.join(bad)}")
         if stop and not CLEAR.match(stop):
-            return found(**moved, wrong=f"unclear stop: {stop}")
-        return found(**moved, stop=stop, looks=looks)
+            return findings(**moved, wrong=f"unclear stop: {stop}")
+        return findings(**moved, stop=stop, looks=looks)
 
 
 def serve(line: Connection) -> None:
@@ -200,10 +202,10 @@ class Runner:
     """Runs decks in a process of its own, which may die or be ended; each deck is run once."""
 
     def __init__(self, limit: float) -> None:
-        self.limit, self.kept = limit, dict[str, Found]()
+        self.limit, self.kept = limit, dict[str, Findings]()
         self.worker: tuple[BaseProcess, Connection] | None = None
 
-    def __call__(self, case: Case, deck: str, method: str) -> Found:
+    def __call__(self, case: Case, deck: str, method: str) -> Findings:
         """Run a deck with a method."""
         text = deck.replace(METHOD, method)
         if not self.limit:
@@ -212,7 +214,7 @@ class Runner:
             self.kept[text] = self._apart(text, case.files)
         return self.kept[text]
 
-    def _apart(self, text: str, files: Mapping[str, str]) -> Found:
+    def _apart(self, text: str, files: Mapping[str, str]) -> Findings:
         if self.worker is None:
             context = multiprocessing.get_context("spawn")
             here, there = context.Pipe()
@@ -225,7 +227,7 @@ class Runner:
         wrong = f"no end within {self.limit:g} s"
         try:
             if line.poll(self.limit):
-                answer: Found = line.recv()
+                answer: Findings = line.recv()
                 return answer
         except (EOFError, ConnectionError):
             process.join()
@@ -252,14 +254,14 @@ def written(method: str, step: float) -> str:
     return f"{method} DT={step!r}" if catalog().family("method")[method].field("DT") else method
 
 
-def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
+def reference(run: Runner, case: Case) -> tuple[Findings, str, float] | None:
     """Reference motion of a case, its method, and its possible error as a share; None where there is none.
 
     EXACT; where that stops or loses energy, NEWMARK with steps that are quartered until the motion changes
     no more.
     """
 
-    def holds(result: Found) -> bool:
+    def holds(result: Findings) -> bool:
         return not any(check.subject is Subject.ENERGY for check in result.looks)
 
     deck = case.like[0] or case.deck
@@ -326,13 +328,13 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
 
 
 def compared(
-    run: Runner, case: Case, method: str, result: Found, right: tuple[Found, str, float]
+    run: Runner, case: Case, method: str, result: Findings, right: tuple[Findings, str, float]
 ) -> tuple[Offs, str]:
     """Errors against a reference, restricted to what is `known` of it; and a remark on the restriction."""
     best, by, doubt = right
     within = allowed(case, method) + doubt
 
-    def errors(other: Found, factor: float) -> Offs:
+    def errors(other: Findings, factor: float) -> Offs:
         u = case.compared(best.t, case.like[1] * best.u)
         by_quantity = {"displacements": (shares(case.compared(other.t, factor * other.u), u), within)}
         if case.compared is every:
@@ -365,7 +367,7 @@ def allowed(case: Case, method: str) -> float:
     return AUTO_WITHIN if method == "AUTO" and not whole(case) else case.within
 
 
-def forces(result: Found, right: Found, within: float) -> Offs:
+def forces(result: Findings, right: Findings, within: float) -> Offs:
     """Errors of forces, where both runs have the same springs and contacts."""
     offs = {}
     if result.f.shape == right.f.shape:
@@ -375,14 +377,14 @@ def forces(result: Found, right: Found, within: float) -> Offs:
     return offs
 
 
-def blows(result: Found, right: Found) -> Array:
+def blows(result: Findings, right: Findings) -> Array:
     """Errors of the largest contact forces, relative to at least `ROUNDING` of the force of a storey."""
     storey = STOREY * float(np.abs(right.u).max(initial=0.0))
     size = np.maximum(np.abs(right.blows), ROUNDING * storey)
     return parts(result.blows, right.blows, 0.05, size)
 
 
-def promised(result: Found, right: Found, within: float) -> Offs:
+def promised(result: Findings, right: Findings, within: float) -> Offs:
     """Errors of the peaks whose accuracy AUTO promises (see `auto`)."""
     swings = np.abs(right.swings).max(axis=1, keepdims=True, initial=0.0)
     return {
@@ -400,7 +402,7 @@ def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Ar
     return np.asarray(np.abs(x - right) / np.where(size > 0.0, size, 1.0))
 
 
-def turns(result: Found) -> Flags:
+def turns(result: Findings) -> Flags:
     """Whether a body is almost at rest at each time, shape (n_times,): steps may miss reversals there."""
     speed = np.abs(result.v)
     return np.asarray((speed < BACK * speed.max(axis=0, initial=0.0)).any(axis=1))

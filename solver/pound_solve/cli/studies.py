@@ -29,9 +29,9 @@ def add_conduct(parser: argparse.ArgumentParser) -> None:
 def give_conduct(args: argparse.Namespace, document: Document) -> None:
     """Replace items of the study by the options of the command line."""
     if args.out:
-        document.given(("out",), str(args.out.absolute()), "--out", str(args.out))
+        document.set_item(("out",), str(args.out.absolute()), "--out", str(args.out))
     if args.workers is not None:
-        document.given(("workers",), args.workers, "--workers", str(args.workers))
+        document.set_item(("workers",), args.workers, "--workers", str(args.workers))
 
 
 def carried_out(study: str, work: Callable[[], int]) -> int:

@@ -62,7 +62,7 @@ class Ground:
 
     model: Model
     motions: tuple[Motion, ...]
-    found: tuple[Diagnostic, ...]
+    diagnostics: tuple[Diagnostic, ...]
     files: Mapping[str, str]
 
 
@@ -83,7 +83,7 @@ def ground(request: Request, deck: Deck | None = None) -> Ground:
         The deck cannot be read.
     """
     deck = deck or read(request)
-    model, remarks = deck.model, list(deck.found)
+    model, remarks = deck.model, list(deck.diagnostics)
     motions = [] if model is None else loading.motions(model, loading.context(model, request), remarks)
     remarks = deck.moved(remarks, request.deck)
     if model is None or has_errors(remarks):
@@ -103,7 +103,7 @@ def prepare(request: Request) -> Prepared:
     """
     deck = read(request)
     try:
-        ready = assembled(request, deck.model, deck.found, deck.files)
+        ready = assembled(request, deck.model, deck.diagnostics, deck.files)
     except DeckError as err:
         raise DeckError(deck.moved(err.diagnostics, request.deck), deck.files, err.later) from None
     return replace(ready, warnings=tuple(deck.moved(ready.warnings, request.deck)))

@@ -28,7 +28,7 @@ class Deck(NamedTuple):
     ----------
     model : Model or None
         None where there are mistakes.
-    found : list of Diagnostic
+    diagnostics : list of Diagnostic
     files : dict of str to str
         Texts by the names in spans.
     translation : Translation or None
@@ -36,7 +36,7 @@ class Deck(NamedTuple):
     """
 
     model: Model | None
-    found: list[Diagnostic]
+    diagnostics: list[Diagnostic]
     files: dict[str, str]
     translation: Translation | None = None
 
@@ -69,7 +69,7 @@ def read(request: Request) -> Deck:
         return Deck(None, list(old.report), files, old)
     model, diagnostics, more = read_text(old.text, catalog(), request.params, name + AS_READ)
     deck = Deck(model, diagnostics, more | files, old)
-    return deck._replace(found=[*old.report, *deck.moved(diagnostics, name)])
+    return deck._replace(diagnostics=[*old.report, *deck.moved(diagnostics, name)])
 
 
 def imported(

@@ -181,6 +181,29 @@ def to_tolerance(
             return outcome
 
 
+def with_rigid_contact(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: EnvelopeRecorder,
+) -> Outcome:
+    """Run the method of choice for a structure with rigid contacts, which only EXACT and TAYLOR take."""
+    refuse_rigid(system, start, "AUTO")
+    if not_linear(system):
+        return by_series(system, start, monitored, recorder)
+    if not has_series(system):
+        system.decisions.append(Decision("method", "EXACT", RIGID))
+        return exact.integrate(system, start, monitored, {}, recorder)
+    series = cost_of_series(system, start)
+    if series + loading() <= SERIES_FIRST:
+        if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
+            return outcome
+        series = np.inf
+    trial = ExactTrial(system, start, monitored, recorder, min(tolerances(options).values()), "")
+    return by_trial(trial, series) or by_series(system, start, monitored, recorder)
+
+
 def by_choice(
     system: ReducedSystem,
     start: Start,
@@ -189,28 +212,19 @@ def by_choice(
     recorder: EnvelopeRecorder,
 ) -> Outcome:
     """Choose a method, state why, and run it."""
-    rigid = rigid_contact(system) is not None
-    if rigid:
-        refuse_rigid(system, start, "AUTO")
-        if not_linear(system):
-            return by_series(system, start, monitored, recorder)
-        if not has_series(system):
-            system.decisions.append(Decision("method", "EXACT", RIGID))
-            return exact.integrate(system, start, monitored, {}, recorder)
     asked = system, start, monitored, recorder, options
-    series, reason = cost_of_series(system, start), not_in_series(system) or not_linear(system)
-    serves = provider().fast and not rigid and not not_linear(system)
+    if rigid_contact(system) is not None:
+        return with_rigid_contact(system, start, monitored, options, recorder)
+    curved = not_linear(system)
+    series, reason = cost_of_series(system, start), not_in_series(system) or curved
+    serves = provider().fast and not curved
     implicit = ToleranceRefinement(*asked, series) if serves else None
     at_once = SERIES_FIRST if implicit is None else max(SERIES_ALWAYS, implicit.cost_ahead())
     if series + loading() <= at_once:
         if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
             return outcome
         series = np.inf
-    trial = ExactTrial(
-        system, start, monitored, recorder, min(tolerances(options).values()), not_linear(system)
-    )
-    if rigid:
-        return by_trial(trial, series) or by_series(system, start, monitored, recorder)
+    trial = ExactTrial(system, start, monitored, recorder, min(tolerances(options).values()), curved)
     if series <= at_once:
         outcome = by_trial(trial, series) or by_few_series(system, start, monitored, recorder)
         if outcome is not None:

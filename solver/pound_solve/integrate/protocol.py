@@ -303,7 +303,7 @@ def light_string(system: ReducedSystem) -> int:
     """The first member whose string moves an unknown without mass across; 0 for none."""
     members = system.corotational
     across = used_rows(members.rows[ACROSS::QUANTITIES][:, np.flatnonzero(massless(system.mass))])
-    return next((c.element for c, is_light in zip(members.own, across) if is_light), 0)
+    return next((c.element for c, is_light in zip(members.members, across) if is_light), 0)
 
 
 def light(system: ReducedSystem) -> Flags:

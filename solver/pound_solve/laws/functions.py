@@ -140,7 +140,9 @@ def not_smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNum
 
 
 def missing(*_: Any) -> Any:
-    """Stand in for a function until `bound` gives another one."""
+    """Stand in for a function of a rule; what calls it is a template, whose copies `bound` gives the
+    rule's function instead.
+    """
     raise NotImplementedError
 
 
@@ -190,25 +192,25 @@ def row(length: int) -> Callable[[Array, int], Numbers]:
 
 # ---------------------------------------------------------------------- functions of rules
 
-own = missing  # given to every copy of the functions below, with its lengths
+function_of_rule = missing  # given to every copy of the functions below, with its lengths
 parameters = variables = 0
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Branch of a rule, see `Rule`."""
-    piece: Numbers = own(p[:parameters], at, m[:variables])
+    piece: Numbers = function_of_rule(p[:parameters], at, m[:variables])
     return piece
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Transition of a rule."""
-    to, now = own(p[:parameters], at, m[:variables], event, d, v)
+    to, now = function_of_rule(p[:parameters], at, m[:variables], event, d, v)
     return to, now + m[variables:]
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Recoverable energy of a rule."""
-    energy: float = own(p[:parameters], at, m[:variables], d, f)
+    energy: float = function_of_rule(p[:parameters], at, m[:variables], d, f)
     return energy
 
 
@@ -216,30 +218,32 @@ def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Curve of a rule."""
-    response: tuple[float, float, float, float] = own(p[:parameters], at, m[:variables], d0, d, v)
+    response: tuple[float, float, float, float] = function_of_rule(
+        p[:parameters], at, m[:variables], d0, d, v
+    )
     return response
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Power by the rule's own function."""
-    stated: float = own(p[:parameters], at, m[:variables], d, v)
+    stated: float = function_of_rule(p[:parameters], at, m[:variables], d, v)
     return stated
 
 
 def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Power computed from the curve of a rule."""
-    return rate_power(own, p[:parameters], at, m[:variables], d, v)
+    return rate_power(function_of_rule, p[:parameters], at, m[:variables], d, v)
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Powers of a rule."""
-    numbers: PowersNumbers = own(p[:parameters], at, m[:variables])
+    numbers: PowersNumbers = function_of_rule(p[:parameters], at, m[:variables])
     return numbers
 
 
 def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Smooth curve of a rule."""
-    numbers: SmoothNumbers = own(p[:parameters], at, m[:variables], d, f)
+    numbers: SmoothNumbers = function_of_rule(p[:parameters], at, m[:variables], d, f)
     return numbers
 
 
@@ -262,7 +266,9 @@ def functions(rule: Rule) -> tuple[Function, ...]:
     def adapted(template: Function, function: Function) -> Function:
         code = function.__code__
         name = f"{function.__module__}.{function.__qualname__}-{code.co_firstlineno}"
-        return bound(template, f"{name}-{rule.parameters}-{rule.variables}", own=function, **lengths)
+        return bound(
+            template, f"{name}-{rule.parameters}-{rule.variables}", function_of_rule=function, **lengths
+        )
 
     return (
         adapted(branch, rule.branch),

@@ -140,7 +140,7 @@ class Results:
         self.program_version: str = _plain(attrs["program_version"])
         self.title: str = _plain(attrs["title"])
         force, length, time = (_plain(u) for u in attrs["units"])
-        self.units = Units(force, length, time, given=True)
+        self.units = Units(force, length, time, stated=True)
         #: ``done``, ``stopped``, ``running``, or ``killed`` where it says so but nobody writes it any more
         self.status: str = _plain(attrs["status"])
         if self.status == "running" and in_use(self.path) is False:

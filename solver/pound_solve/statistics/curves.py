@@ -100,7 +100,7 @@ def fractiles_of(values: Array) -> Array:
 def units_of(sweep: Sweep) -> Units:
     """Force, length and time of the decks."""
     force, length, time = sweep.about["units"].split()
-    return Units(force, length, time, given=True)
+    return Units(force, length, time, stated=True)
 
 
 def unit_of(sweep: Sweep, asked: Asked) -> str:

@@ -288,14 +288,14 @@ def _best_median(data: Likelihood, beta: float) -> float:
 def _of_quantile(data: Likelihood, z: float, mu: float, level: float) -> Interval:
     """Interval of the intensity `z` dispersions above the median, whose fitted logarithm is `mu`."""
 
-    def given(q: float) -> float:
+    def at_quantile(q: float) -> float:
         def of(s: float) -> float:
             return data.of(q - z * math.exp(s), math.exp(s))
 
         return of(_highest(of, math.log(LEAST), math.log(MOST)))
 
-    start = mu if z == 0.0 else _highest(given, data.low - FAR, data.high + FAR)
-    return _exponentials(_ends(given, start, (data.low - FAR, data.high + FAR), _drop(data, level)))
+    start = mu if z == 0.0 else _highest(at_quantile, data.low - FAR, data.high + FAR)
+    return _exponentials(_ends(at_quantile, start, (data.low - FAR, data.high + FAR), _drop(data, level)))
 
 
 def _exponentials(ends: tuple[float, float]) -> Interval:

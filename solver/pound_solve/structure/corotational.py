@@ -204,15 +204,15 @@ class CorotationalMembers:
     """
 
     def __init__(self, members: Sequence[CorotationalMember], rows: Matrix) -> None:
-        self.own, self.rows = tuple(members), rows
+        self.members, self.rows = tuple(members), rows
         self.p = np.array([c.p for c in members]).reshape(len(members), 10)
 
     def __len__(self) -> int:
-        return len(self.own)
+        return len(self.members)
 
     def on(self, columns: list[int] | slice) -> CorotationalMembers:
         """The same members over some of the columns only, the others being at rest."""
-        return CorotationalMembers(self.own, self.rows[:, columns])
+        return CorotationalMembers(self.members, self.rows[:, columns])
 
     def quantities(self, u: Array) -> Array:
         """The six quantities of every member at displacements `u`, shape (n_members, 6)."""
@@ -270,11 +270,11 @@ class CorotationalMembers:
         """For each of some outputs (element, quantity): its member, and the factors of eta, rho and shear
         in it, shapes (n,) and (n, 3).
         """
-        place = {c.element: i for i, c in enumerate(self.own)}
+        place = {c.element: i for i, c in enumerate(self.members)}
         at = np.array([place.get(element, 0) for element, _ in outputs], np.intp)
         nothing = np.zeros(3)
         share = [
-            self.own[place[element]].forces.get(quantity, nothing) if element in place else nothing
+            self.members[place[element]].forces.get(quantity, nothing) if element in place else nothing
             for element, quantity in outputs
         ]
         return at, np.array(share).reshape(len(outputs), 3)

@@ -191,7 +191,7 @@ def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: 
     """
     document = Document.read(str(path))
     if workers:
-        document.given(("workers",), workers, "workers", str(workers))
+        document.set_item(("workers",), workers, "workers", str(workers))
     study = read(document)
     with locked(study.out):
         session = Session(study, engine(executor, study.workers), retry=retry)

@@ -33,7 +33,7 @@ def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep
         By identity.
     """
     outcomes = [entries.get(run.identity) or Entry(run.identity, MISSING) for run in study.runs]
-    units = Units(*study.units, given=True)
+    units = Units(*study.units, stated=True)
     place = {run.identity: k for k, run in enumerate(study.runs)}
     by_identity = {e.identity: e for e in outcomes}
     labels = _labels(place, journal.values(by_identity))

@@ -83,7 +83,7 @@ def _wrong(args: argparse.Namespace, choice: Choice) -> str:
             return f"the picture {name} is written as {', '.join(PICTURES[name].endings)}"
     if choice.between and not choice.between[0] < choice.between[1]:
         return "--between takes the first time, then the last"
-    for option in sorted(choice.given):
+    for option in sorted(choice.stated):
         users = [p.name for p in PICTURES.values() if option in p.options]
         if not set(users) & set(args.pictures):
             return f"--{option} belongs to the pictures {', '.join(users)}: name one of them"

@@ -71,19 +71,19 @@ def _document(args: argparse.Namespace) -> Document:
         document = Document.read(args.study)
     else:
         document = Document(str(Path(args.study).with_suffix("")), Path())
-        document.given(("deck",), args.study, "deck", args.study)
+        document.set_item(("deck",), args.study, "deck", args.study)
     for item in args.set:
         name, equals, value = item.partition("=")
         if not equals or not name.strip():
             raise argparse.ArgumentTypeError(f"--set {item}: write NAME=VALUE,VALUE,...")
         values = [v.strip() for v in value.split(",")]
-        document.given(("grid", name.strip()), values, f"--set {name.strip()}", value)
+        document.set_item(("grid", name.strip()), values, f"--set {name.strip()}", value)
     _give_motions(args, document)
     for name in ("method", "dt", "tol"):
         if getattr(args, name) is not None:
-            document.given((name,), getattr(args, name), f"--{name}", str(getattr(args, name)))
+            document.set_item((name,), getattr(args, name), f"--{name}", str(getattr(args, name)))
     if args.records:
-        document.given(
+        document.set_item(
             ("records",), [str(p.absolute()) for p in args.records], "--records", str(args.records[0])
         )
     studies.give_conduct(args, document)
@@ -103,18 +103,18 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
         return
     files = [m if known(m) else os.path.abspath(os.path.expanduser(m)) for m in args.motions]
     out.values["motions"] = [{}]
-    out.given(("motions", 0, "files"), files, "--motions", " ".join(args.motions))
+    out.set_item(("motions", 0, "files"), files, "--motions", " ".join(args.motions))
     for name, value in options.items():
         parsed = value
         if name in LISTS:
             words = value.split(",")
             parsed = common.numbers(words, f"--{name} takes numbers", argparse.ArgumentTypeError)
-        out.given(("motions", 0, name), parsed, f"--{name}", str(value))
+        out.set_item(("motions", 0, name), parsed, f"--{name}", str(value))
     for item in args.item:
         name, equals, value = item.partition("=")
         if not equals:
             raise argparse.ArgumentTypeError(f"--item {item}: write NAME=VALUE")
-        out.given(("motions", 0, name.strip().lower()), value.strip(), f"--item {name}", value)
+        out.set_item(("motions", 0, name.strip().lower()), value.strip(), f"--item {name}", value)
 
 
 def _swept(args: argparse.Namespace) -> int:

@@ -232,13 +232,6 @@ def law_arrays(
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
     parameters, internal = _law_numbers(laws, start)
     branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
-
-    def integers(values: Iterable[int]) -> Index:
-        return np.array(list(values), np.int64).reshape(count)
-
-    def zeros() -> Array:
-        return np.zeros(count)
-
     return state.Laws(
         rows=rows,
         inputs=np.ascontiguousarray(system.law_inputs),
@@ -246,11 +239,11 @@ def law_arrays(
         pair_places=places,
         pair_values=values,
         supports=np.ascontiguousarray(dense(system.structure.law_rows[:, system.structure.n_free :])),
-        rule=integers(rules.index(s.law.rule) for s in laws),
-        curved=integers(s.law.curved for s in laws),
-        contact=integers(s.role.collides for s in laws),
-        viscous=integers(s.role.viscous for s in laws),
-        coupled=np.flatnonzero([s.role is Role.FRICTION for s in laws]).astype(np.int64),
+        rule=_integers(rules.index(s.law.rule) for s in laws),
+        curved=_integers(s.law.curved for s in laws),
+        contact=_integers(s.role.collides for s in laws),
+        viscous=_integers(s.role.viscous for s in laws),
+        coupled=_integers(np.flatnonzero([s.role is Role.FRICTION for s in laws])),
         normal=np.ascontiguousarray(normal[0]),
         pressed_branches=np.ascontiguousarray(normal[1]),
         tangent_damping=np.array([s.beta for s in laws], float),
@@ -260,29 +253,34 @@ def law_arrays(
         branch=branch.astype(np.int64),
         entry_deformation=entry.astype(float),
         entry_work=work.astype(float),
-        stiffness=zeros(),
-        damping=zeros(),
-        offset=zeros(),
-        offset_rate=zeros(),
+        stiffness=np.zeros(count),
+        damping=np.zeros(count),
+        offset=np.zeros(count),
+        offset_rate=np.zeros(count),
         n_events=np.zeros(count, np.int64),
         events=np.zeros((count, EVENTS, 3)),
         limits_at_start=np.zeros((count, EVENTS)),
         limit_rates=np.zeros((count, EVENTS)),
         limit_rates_at_start=np.zeros((count, EVENTS)),
         now=state.LawMotion(d, v),
-        trial=state.LawMotion(zeros(), zeros()),
+        trial=state.LawMotion(np.zeros(count), np.zeros(count)),
         largest_deformation=np.maximum(np.abs(d), rounding / STILL),
         largest_rate=np.abs(v),
         largest_terms=np.maximum(np.abs(v), rounding / dt / STILL),
-        friction_force=zeros(),
+        friction_force=np.zeros(count),
         dashpot_loss=dashpot_losses,
-        peak_force=zeros(),
-        peak_time=zeros(),
-        impulse=zeros(),
+        peak_force=np.zeros(count),
+        peak_time=np.zeros(count),
+        impulse=np.zeros(count),
         saved=np.zeros(count, np.int64),
         saved_state=np.zeros((count, 3 + internal.shape[1])),
         members=member_arrays(system, layout, scheme),
     )
+
+
+def _integers(values: Iterable[int]) -> Index:
+    """Values as an array of integers, which may be empty."""
+    return np.array([*values], np.int64)
 
 
 def _law_numbers(laws: Sequence[LawSpring], start: Start) -> tuple[Array, Array]:

@@ -40,7 +40,8 @@ from pound_solve.integrate.kernels.state import (
     Step,
 )
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.stepping.locating import go_on, step_in_parts
+from pound_solve.integrate.stepping.changing import go_on
+from pound_solve.integrate.stepping.parts import step_in_parts
 from pound_solve.integrate.stepping.step import (
     REFRESH,
     accept_trial,
@@ -249,6 +250,47 @@ def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
     return DONE
 
 
+def take_steps(
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    begin: float,
+    h: float,
+    goal: float,
+    count: int,
+    most: int,
+) -> int:
+    """Take `most` plain steps of the `count` up to the time `goal`, or fewer and one that needs more than a
+    plain step: the rest of a step after joints have moved, or one that events cut.
+    """
+    run = sim.run
+    why, tried = NEWTON, False
+    if run.rest >= 0.0:
+        go_on(sim, rules)
+        length, run.rest = run.rest, -1.0
+    else:
+        last = min(count - 1, run.step + most)
+        first, fresh = run.step, run.updates == 0
+        tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
+        # iterations that fail from a new factor on would fail again: the step is taken in parts
+        used_up = run.updates > REFRESH and (run.step > first or not fresh)
+        if not tried and (run.step == last < count - 1 or used_up):
+            return DONE
+        length = h if run.step < count - 1 else goal - run.time
+        run.same_instant = 0
+        if not scheme.locate:
+            why = step_through(sim, rules, scheme, coefs, begin, length, tried)
+            tried = False
+    if why == NEWTON:  # cut at its events a step always has a solution
+        why = step_in_parts(sim, rules, scheme, coefs, begin, length, h, tried)
+    if why == DONE:
+        run.step += 1
+        run.steps += 1
+        store_motion(sim, rules, run.time)
+    return why
+
+
 def advance(
     sim: Simulation, rules: Tables, scheme: Scheme, goals: Goals, steps: Index, lengths: Array
 ) -> int:
@@ -283,30 +325,19 @@ def advance(
             why = renew_factor(sim, scheme, h)
             if why != DONE:
                 return why
-            why, tried = NEWTON, False
-            if run.rest >= 0.0:
-                go_on(sim, rules)
-                length, run.rest = run.rest, -1.0
-            else:
-                last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
-                first, fresh = run.step, run.updates == 0
-                tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
-                # iterations that fail from a new factor on would fail again: the step is taken in parts
-                used_up = run.updates > REFRESH and (run.step > first or not fresh)
-                if not tried and (run.step == last < steps[goal] - 1 or used_up):
-                    continue
-                length = h if run.step < steps[goal] - 1 else goals.times[goal] - run.time
-                run.same_instant = 0
-                if not scheme.locate:
-                    why = step_through(sim, rules, scheme, coefs, begin, length, tried)
-                    tried = False
-            if why == NEWTON:  # cut at its events a step always has a solution
-                why = step_in_parts(sim, rules, scheme, coefs, begin, length, h, tried)
+            why = take_steps(
+                sim,
+                rules,
+                scheme,
+                coefs,
+                begin,
+                h,
+                goals.times[goal],
+                steps[goal],
+                min(pause - run.steps, more),
+            )
             if why != DONE:
                 return why
-            run.step += 1
-            run.steps += 1
-            store_motion(sim, rules, run.time)
         run.time = goals.times[goal]
         why = end_goal(sim, rules, goals.sampled[goal])
         if why != DONE:

@@ -60,7 +60,7 @@ BRANCHES = BranchKind.OPEN.named(
 KU, KU_BEFORE, FOOT, DONE, SPENT, ENTERED = 10, 11, 12, 13, 14, 15
 
 
-def own(m: Numbers, s: float) -> Numbers:
+def variables_of_side(m: Numbers, s: float) -> Numbers:
     """Internal variables of a side."""
     return m[0:5] if s > 0.0 else m[5:10]
 
@@ -93,14 +93,14 @@ def residual(p: Numbers, s: float) -> float:
 
 def hardening(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
     """Slope and force at zero deformation of the hardening line."""
-    fy = own(m, s)[0]
+    fy = variables_of_side(m, s)[0]
     slope = p[3] * p[0] * fy / virgin(p, s)[0]
     return slope, fy - slope * fy / p[0]
 
 
 def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
     """Slope and force at zero deformation of the falling line."""
-    return virgin(p, s)[3], own(m, s)[1]
+    return virgin(p, s)[3], variables_of_side(m, s)[1]
 
 
 def share(energy: float, before: float, capacity: float, c: float) -> float:
@@ -136,7 +136,7 @@ def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, 
     energy, before, c = max(m[SPENT], 0.0), m[DONE], p[15]
     strength, cap = share(energy, before, p[11], c), share(energy, before, p[12], c)
     stiffness, reloading = share(energy, before, p[13], c), share(energy, before, p[14], c)
-    mine = own(m, s)
+    mine = variables_of_side(m, s)
     fy = max(mine[0] * (1.0 - strength), residual(p, s))
     m = renew(m, s, (fy, mine[1] * (1.0 - cap), *mine[2:5]))
     m = (*m[0:11], m[KU], d, before + energy, 0.0, d)

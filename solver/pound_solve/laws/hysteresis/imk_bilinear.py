@@ -38,13 +38,13 @@ from pound_solve.laws.hysteresis.imk import (
     falling,
     fields,
     hardening,
-    own,
     parameters,
     recoverable_energy,
     renew,
     residual,
     softened,
     ultimate,
+    variables_of_side,
     virgin,
 )
 from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
@@ -67,7 +67,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
     if kind == HARDENING:
         return hardening(p, s, m)
     if kind == LIMITED:
-        return 0.0, own(m, s)[2]
+        return 0.0, variables_of_side(m, s)[2]
     if kind == FALLING:
         return falling(p, s, m)
     return 0.0, residual(p, s)
@@ -75,7 +75,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
 
 def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
     """Line of the bound after `kind`, and (mirrored) deformation where it begins."""
-    least, limit = residual(p, s), own(m, s)[2]
+    least, limit = residual(p, s), variables_of_side(m, s)[2]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     end = (least - f2) / k2
     falls = max((f2 - f1) / (k1 - k2), (limit - f2) / k2)
@@ -95,7 +95,7 @@ def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
 
 def yields(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
     """Line of the bound that the elastic line from its foot meets, and where (mirrored)."""
-    ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), own(m, s)[2]
+    ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), variables_of_side(m, s)[2]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     low = foot + least / ku
     if k2 * low + f2 <= least:
@@ -119,7 +119,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     last = ultimate(p, s) if ultimate(p, s) > 0.0 else FAR
     if at < LEAST:
         ku, foot = m[KU], m[FOOT]
-        return linear(ku, -ku * foot, outward(s, min(own(m, s)[3], last)), inward(s, s * foot))
+        return linear(
+            ku, -ku * foot, outward(s, min(variables_of_side(m, s)[3], last)), inward(s, s * foot)
+        )
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
     to = min(following(p, s, m, kind)[1], last)
@@ -132,11 +134,11 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     kind = at if s > 0.0 else at - 1
     now = branch(p, at, m)
     m = advance(now, m, d)
-    mine = own(m, s)
+    mine = variables_of_side(m, s)
     if kind == ELASTIC and event == 1:
         m, _, fails = end_excursion(p, m, -s, d)
         meets, where = yields(p, -s, m)
-        m = renew(m, -s, (*own(m, -s)[0:3], where, float(meets)))
+        m = renew(m, -s, (*variables_of_side(m, -s)[0:3], where, float(meets)))
         return (FAILED if fails else pair(ELASTIC, -s)), m
     if kind == ELASTIC:
         then, where = int(mine[4]), mine[3]

@@ -56,13 +56,13 @@ from pound_solve.laws.hysteresis.imk import (
     falling,
     fields,
     hardening,
-    own,
     parameters,
     recoverable_energy,
     renew,
     residual,
     softened,
     ultimate,
+    variables_of_side,
     virgin,
 )
 from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
@@ -92,13 +92,13 @@ def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
 
 def peak(p: Numbers, s: float, m: Numbers) -> Point:
     """Largest deformation of a side, with the force of the backbone."""
-    d = own(m, s)[2]
+    d = variables_of_side(m, s)[2]
     return d, backbone(p, s, m, d)
 
 
 def local(s: float, m: Numbers) -> Point:
     """Last turning point of a side."""
-    mine = own(m, s)
+    mine = variables_of_side(m, s)
     return mine[3], mine[4]
 
 
@@ -214,7 +214,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
     """End an excursion at `d` and enter side `s`."""
     m, faster, fails = end_excursion(p, m, s, d)
-    mine = own(m, s)
+    mine = variables_of_side(m, s)
     m = renew(m, s, (*mine[0:2], mine[2] * (1.0 + faster), *mine[3:5]))
     to, f = peak(p, s, m)
     k, foot = p[0], s * d
@@ -247,7 +247,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return enter(p, m, -s, d)
     f = s * (now[0] * d + now[2])
     ku = softened(p, m, f)
-    mine = own(m, s)
+    mine = variables_of_side(m, s)
     m = renew(m, s, (*mine[0:2], max(mine[2], s * d), s * d, f))
     return pair(UNLOADING, s), (*m[0:10], ku, *m[11:16])
 

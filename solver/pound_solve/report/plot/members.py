@@ -242,7 +242,7 @@ def _values(results: Results, choice: Choice) -> dict[tuple[int, str], Array]:
 
 def _extremes(results: Results, choice: Choice) -> dict[tuple[int, str], tuple[float, float]]:
     """True extremes of the end forces where the whole history is drawn; else empty."""
-    if choice.given & {"time", "between"} or "member_envelope" not in results.tables:
+    if choice.stated & {"time", "between"} or "member_envelope" not in results.tables:
         return {}
     table = results.table("member_envelope")
     return {(int(r["element"]), str(r["quantity"])): (float(r["min"]), float(r["max"])) for r in table}

@@ -46,8 +46,8 @@ class Choice:
     style: Path | None = None
 
     @property
-    def given(self) -> set[str]:
-        """Names of the options that are given."""
+    def stated(self) -> set[str]:
+        """Names of the options that are stated."""
         return {name for name in ("member", "time", "between") if getattr(self, name) not in (None, ())}
 
     def instant(self, results: Results) -> int:

@@ -35,7 +35,7 @@ class Load(NamedTuple):
     item: str
 
 
-def given(model: Model) -> Iterator[Load]:
+def loads_on_nodes(model: Model) -> Iterator[Load]:
     """Loads on nodes from LOADS that stay and from MEMBER_LOADS, half of the latter at either end."""
     for c in model.loads:
         if c.spec.name == "LOADS" and c["HELD"] == "YES":  # not those that weights make
@@ -60,7 +60,7 @@ def unloaded(structure: Structure) -> list[Diagnostic]:
         return problems
     bent = {model.elements[g.element].i for g in structure.geometric}
     loaded = {n for c in (*model.loads, *model.forces) for n in c["NODES"]}
-    loaded |= {load.node for load in given(model)}
+    loaded |= {load.node for load in loads_on_nodes(model)}
     for e in model.elements.values():
         card = model.props[e.prop]
         if card.values.get("N0") or (structure.self_weight and card.values.get("WGT")):
@@ -82,7 +82,7 @@ def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
     """Loads of a building that are a small part of its weight, so that P-Delta has hardly an effect."""
     model = structure.model
     inside, weight = set(b.nodes), b.mass * model.gravity
-    loads = [load for load in given(model) if load.node in inside]
+    loads = [load for load in loads_on_nodes(model) if load.node in inside]
     press = -sum(load.y for load in loads)
     for e in (e for members in kinds(model).values() for e in members if e.i in inside):
         press += structure.self_weight * model.props[e.prop]["WGT"] * length(model, e)
@@ -102,7 +102,7 @@ def misloaded(structure: Structure) -> list[Diagnostic]:
     if not shaken(model):
         return problems
     loads = defaultdict[int, list[Load]](list)
-    for load in given(model):
+    for load in loads_on_nodes(model):
         loads[load.node].append(load)
     for b in buildings(structure):
         acting = [load for n in b.nodes for load in loads[n]]

@@ -68,40 +68,45 @@ def build(context: ElementContext) -> Parts:
 def _consistent(context: ElementContext, strengths: list[str]) -> None:
     """Raise where the items of hinges contradict each other."""
     p = context.prop
-    (rule,) = p.laws["RULE"]
     stiffness_items = [item for item in ("KH", "LP") if p[item] is not None]
+    companions = [*stiffness_items, *(["DUCTU"] if p["DUCTU"] is not None else [])]
+    (rule,) = p.laws["RULE"]
     if not strengths:
         if rule.impl is not None:
             raise ElementError(f"{rule.name} needs a yield moment: MI, MJ or both", "RULE")
-        idle = [*stiffness_items, *(["DUCTU"] if p["DUCTU"] is not None else [])]
-        if idle:
-            raise ElementError(f"{idle[0]} has no effect without a yield moment MI or MJ", idle[0])
+        if companions:
+            item = companions[0]
+            raise ElementError(f"{item} has no effect without a yield moment MI or MJ", item)
         return
+    first = strengths[0]
     if rule.impl is None:
-        raise ElementError(
-            f"{strengths[0]} has no effect with RULE=ELASTIC: name a rule that yields", strengths[0]
-        )
+        raise ElementError(f"{first} has no effect with RULE=ELASTIC: name a rule that yields", first)
     if not stiffness_items:
-        raise ElementError(
-            "a hinge needs its stiffness KH or its length LP, often half the depth of the section",
-            strengths[0],
-        )
+        what = "a hinge needs its stiffness KH or its length LP, often half the depth of the section"
+        raise ElementError(what, first)
     if len(stiffness_items) > 1:
         raise ElementError("KH and LP both give the stiffness of a hinge: keep one of them", "LP")
-    pinned = [(end, item) for d, end, item in ENDS if item in strengths and d in beam.pinned(p)]
-    if pinned:
-        ends = " and ".join(end for end, _ in pinned)
-        items = [item for _, item in pinned]
-        if len(items) == len(strengths):  # the rest of the hinges has no effect then
-            items += ["RULE", *stiffness_items, *(["DUCTU"] if p["DUCTU"] is not None else [])]
-        many = len(pinned) > 1
-        why = f"end{'s' * many} {ends} {'are' if many else 'is'} pinned, where no hinge yields"
-        if p["I"] == 0.0:
-            why = "I=0 is a bar without bending"
-        raise ElementError(f"{why}: leave out {', '.join(items)}", items[0])
+    _not_pinned(context, strengths, companions)
     wrong = [item for item in strengths if len(p[item]) == 2 and not p[item][0] >= 0.0 >= p[item][1]]
     if len(wrong) > 1:
         raise ElementError("MI and MJ are written positive, then negative: MI=200,-150", wrong[0])
+
+
+def _not_pinned(context: ElementContext, strengths: list[str], companions: list[str]) -> None:
+    """Raise where a pinned end has a yield moment; without any hinge its `companions` have no effect."""
+    p = context.prop
+    pinned = [(end, item) for d, end, item in ENDS if item in strengths and d in beam.pinned(p)]
+    if not pinned:
+        return
+    ends = " and ".join(end for end, _ in pinned)
+    items = [item for _, item in pinned]
+    if len(items) == len(strengths):
+        items += ["RULE", *companions]
+    many = len(pinned) > 1
+    why = f"end{'s' * many} {ends} {'are' if many else 'is'} pinned, where no hinge yields"
+    if p["I"] == 0.0:
+        why = "I=0 is a bar without bending"
+    raise ElementError(f"{why}: leave out {', '.join(items)}", items[0])
 
 
 SPEC = Spec(

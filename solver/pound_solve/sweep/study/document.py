@@ -76,7 +76,7 @@ class Document:
     places : dict of Span by path
     files : dict of str by name
         Texts that places point into.
-    found : list of Diagnostic
+    diagnostics : list of Diagnostic
     """
 
     name: str
@@ -84,7 +84,7 @@ class Document:
     values: dict[str, Any] = field(default_factory=dict)
     places: dict[Path_, Span] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
-    found: list[Diagnostic] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
 
     @classmethod
     def read(cls, path: str) -> Document:
@@ -93,7 +93,7 @@ class Document:
         document = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
         if deep := next((place for names, place in document.places.items() if len(names) > DEEPEST), None):
             message = f"a name of more than {DEEPEST} parts"
-            document.found.append(
+            document.diagnostics.append(
                 Diagnostic("S601", message, deep, "a study has tables of items, no deeper")
             )
             return document
@@ -117,9 +117,9 @@ class Document:
             line, column = (int(where[1]), int(where[2])) if where[1] else (len(lines), 1)
         said = _WHERE.sub("", message)
         hint = "a text stands in quotes, a list in brackets: gap = [0.01, 0.02]"
-        self.found.append(Diagnostic("S601", said, Span(self.name, line, column, column + 1), hint))
+        self.diagnostics.append(Diagnostic("S601", said, Span(self.name, line, column, column + 1), hint))
 
-    def given(self, path: Path_, value: object, option: str, text: str) -> None:
+    def set_item(self, path: Path_, value: object, option: str, text: str) -> None:
         """Replace an item of the file by one of the command line."""
         table: Any = self.values
         for name in path[:-1]:
@@ -138,8 +138,8 @@ class Document:
     def mistake(self, code: str, message: str, path: Path_ = (), hint: str = "") -> None:
         """Add a diagnostic at an item, unless it is there already."""
         diagnostic = Diagnostic(code, message, self.place(path), hint)
-        if diagnostic not in self.found:
-            self.found.append(diagnostic)
+        if diagnostic not in self.diagnostics:
+            self.diagnostics.append(diagnostic)
 
     def at(self, path: Path_) -> Any:
         """Value of an item; None where there is none."""

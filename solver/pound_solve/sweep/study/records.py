@@ -141,7 +141,7 @@ class Suite:
             self.document.mistake(err.code, err.message, path, err.hint)
             return
         except UnreadableError as err:
-            self.document.found += [replace(d, span=place) for d in err.diagnostics]
+            self.document.diagnostics += [replace(d, span=place) for d in err.diagnostics]
             return
         unit, told = card.values["UNIT"], motion.raw.unit
         if unit is not None and told and told != {"GAL": "CM/S2"}.get(unit, unit):

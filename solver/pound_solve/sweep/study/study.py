@@ -104,8 +104,8 @@ def read(document: Document, tables: Sequence[str] = ()) -> Study:
     StudyError
         It has mistakes: all that can be told at once.
     """
-    if document.found:  # it is no TOML
-        raise StudyError(document.found, document.files)
+    if document.diagnostics:  # it is no TOML
+        raise StudyError(document.diagnostics, document.files)
     return _Reader(document, tables).study()
 
 
@@ -172,7 +172,7 @@ class _Reader:
 
     def _stop_at_mistakes(self) -> None:
         """Raise StudyError where there are mistakes, sorted in the order of the study."""
-        mistakes = self.document.found
+        mistakes = self.document.diagnostics
         order = {name: k for k, name in enumerate(self.document.files)}
         mistakes.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
         if has_errors(mistakes):
@@ -292,15 +292,15 @@ class _Reader:
             return
         for deck in decks:
             read = read_deck(Request(deck, dict(combinations[0])))
-            self._told(read.found, read.files)
+            self._told(read.diagnostics, read.files)
             if read.model is not None:
                 self.models[deck] = read.model
 
     def _told(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         """Add the mistakes of a deck to the study's; that of a value is placed at the item that sets it."""
         for d in map(self._here, diagnostics):
-            if d.severity == "error" and d not in self.document.found:
-                self.document.found.append(d)
+            if d.severity == "error" and d not in self.document.diagnostics:
+                self.document.diagnostics.append(d)
         options = self._options()
         self.document.files.update({n: t for n, t in files.items() if n not in options})
 
@@ -386,7 +386,7 @@ class _Reader:
         deck = read_deck(request_of(case))
         model = deck.model
         if model is None:
-            self._told(deck.found, deck.files)
+            self._told(deck.diagnostics, deck.files)
             return {}, ""
         sources = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
         context = loading.context(model, request_of(case))
@@ -396,7 +396,7 @@ class _Reader:
                     sources[str(card["FILE"])] = load(find(str(card["FILE"]), context.search_path))[1]
                 except RecordError as err:
                     place = card.place("FILE")
-                    self.document.found.append(Diagnostic(err.code, err.message, place, err.hint))
+                    self.document.diagnostics.append(Diagnostic(err.code, err.message, place, err.hint))
         for card in model.analyses:
             if card.values.get("RESTART"):
                 with suppress(OSError):  # the preparation of the deck reports why

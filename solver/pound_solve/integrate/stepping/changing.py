@@ -1,0 +1,118 @@
+"""What happens at an event: laws leave their branches, the factor is updated, and the state is made
+consistent.
+"""
+
+from __future__ import annotations
+
+from pound_solve.integrate.events.protocol import LocatedEvent
+from pound_solve.integrate.kernels.consistency import lets_go, make_consistent, touches_massless
+from pound_solve.integrate.kernels.laws import (
+    couple_friction,
+    hold_friction_limits,
+    leave_branch,
+    linear_force,
+    linearise_law,
+)
+from pound_solve.integrate.kernels.recording import log_transition, store_motion, track_peaks
+from pound_solve.integrate.kernels.state import (
+    WHOLE,
+    Scheme,
+    Simulation,
+)
+from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
+from pound_solve.integrate.stepping.step import (
+    REFRESH,
+    update_factor,
+)
+from pound_solve.laws.functions import Tables
+from pound_solve.loading.excitation import INSTANT
+
+FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
+
+
+def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: int, event: int) -> None:
+    """Change the branch of law `i`, and update the factor for the nominal step `h`."""
+    linear, laws, run = sim.linear, sim.laws, sim.run
+    before, k, c = laws.branch[i], laws.stiffness[i], laws.damping[i]
+    if laws.normal[i] >= 0:
+        couple_friction(laws, rules, sim.step.now.acceleration, i)
+    d, v, f0 = laws.now.deformation[i], laws.now.rate[i], laws.offset[i]
+    note_rests(sim, rules, i, event)
+    leave_branch(laws, rules, i, event, d, v)
+    if laws.normal[i] < 0 and lets_go(linear, laws, i, k, f0, d):
+        run.fell = i
+    if laws.curved[i]:
+        linearise_law(laws, rules, i, d, v)
+    change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
+    if not linear.explicit and change != 0.0:
+        run.updates += 1
+        if run.updates > REFRESH or not update_factor(sim, i, change, WHOLE):
+            run.updates = REFRESH + 1
+    force = linear_force(laws, i, d, v)
+    if laws.contact[i] and touches_massless(linear, laws, i):
+        # the dashpot's is only known when the velocities are consistent
+        force -= laws.damping[i] * v
+    if before != laws.branch[i]:
+        log_transition(sim, i, before, run.time, force)
+    note_ties(sim, rules, i, k, f0)
+    run.events += 1
+    for j in laws.coupled:
+        before = laws.branch[j]
+        couple_friction(laws, rules, sim.step.now.acceleration, j)
+        if before != laws.branch[j]:
+            log_transition(sim, j, before, run.time, laws.friction_force[j])
+            run.updates = REFRESH + 1
+    hold_friction_limits(laws)
+
+
+def leaves_with(sim: Simulation, i: int) -> bool:
+    """Whether a law that is marked leaves its branch whatever the others do that have left at this instant.
+
+    A law that turns follows its acceleration, which changes where another one holds the same mass; their
+    unknowns are marked in `step.product`.
+    """
+    laws = sim.laws
+    if laws.events[i, laws.saved[i] - 1, 0] != 0.0:
+        return True
+    for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+        if not sim.linear.diagonal or sim.step.product[laws.rows.columns[q]] != 0.0:
+            return False
+    return True
+
+
+def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent) -> None:
+    """Let a law leave its branch, and those that are marked, and make the state consistent, unless a force
+    has fallen: joints must move first.
+    """
+    laws, step, run = sim.laws, sim.step, sim.run
+    first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
+    event = LocatedEvent(first, its_event, event.time)
+    laws.saved[event.law] = 1 + event.event_index
+    for j in range(len(step.product)):
+        step.product[j] = 0.0
+    for k in range(-1, len(laws.rule)):
+        i = event.law if k < 0 else k
+        room = len(sim.buffers.log) - run.logged > len(laws.coupled)
+        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_with(sim, i)):
+            continue
+        change_branch(sim, rules, scheme, h, i, laws.saved[i] - 1)
+        if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
+            run.longest_part = FIRST * h
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            step.product[laws.rows.columns[q]] = 1.0
+        laws.saved[i] = 0
+    if run.fell < 0:
+        go_on(sim, rules)
+
+
+def go_on(sim: Simulation, rules: Tables) -> None:
+    """Make the state consistent after a jump, and keep the motion for the envelopes.
+
+    Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant
+    itself counts as one before.
+    """
+    run = sim.run
+    make_consistent(sim)
+    track_peaks(sim, run.time, 0.0)
+    after = 4.0 * INSTANT * max(1.0, run.time) if run.time == run.jumped else 0.0
+    store_motion(sim, rules, run.time + after)

@@ -1,0 +1,184 @@
+"""Steps in parts that end on events: a part in which an event is passed is taken again, shorter, until it
+ends there; then the law changes its branch, the state is made consistent, and the rest of the step follows.
+"""
+
+from __future__ import annotations
+
+from pound_solve.integrate.events.protocol import LocatedEvent
+from pound_solve.integrate.events.within_step import first_event
+from pound_solve.integrate.kernels.recording import store_motion, track_peaks
+from pound_solve.integrate.kernels.state import (
+    CHATTER,
+    CROWD,
+    DONE,
+    FALL,
+    NEWTON,
+    PART,
+    PIVOT,
+    WHOLE,
+    Scheme,
+    Simulation,
+)
+from pound_solve.integrate.stepping.changing import change_branches
+from pound_solve.integrate.stepping.locating import locate_event
+from pound_solve.integrate.stepping.step import (
+    REFRESH,
+    accept_trial,
+    factorise_step,
+    start_again,
+    try_step,
+)
+from pound_solve.laws.functions import Tables
+from pound_solve.numerics.types import Array
+
+MOST_HALVINGS = 25
+SHORTEST = 3e-8  #: shortest part of a step, used where laws change to and fro
+
+
+def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int) -> int:
+    """Factorise A for a part of a step, which Newton's iterations may have halved."""
+    bad = factorise_step(sim, scheme, length, PART)
+    if bad < 0:
+        return DONE
+    if halvings > 0:
+        return NEWTON
+    sim.run.fault = bad
+    return PIVOT
+
+
+def solve_part(
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    piece_start: float,
+    part: float,
+    at: int,
+    tried: bool,
+) -> tuple[int, float, int]:
+    """Solve a part of a step at most as long as `part`, halved until Newton's iterations converge.
+
+    Returns
+    -------
+    why : int
+        DONE or what failed.
+    part : float
+        Length of the part that is solved.
+    at : int
+        Which factor it was solved with.
+    """
+    laws, run = sim.laws, sim.run
+    for halvings in range(MOST_HALVINGS + 1):
+        if at == PART:
+            if (
+                laws.curved.any()
+            ):  # what is tried from here on moves the tangents away from the factor at hand
+                run.updates = REFRESH + 1
+            why = factorise_part(sim, scheme, part, halvings)
+            if why != DONE:
+                return why, part, at
+        if tried or try_step(sim, rules, scheme, coefs, run.time + part - piece_start, part, at):
+            return DONE, part, at
+        run.updates = REFRESH + 1
+        start_again(laws, rules)
+        part, at = 0.5 * part, PART
+    return NEWTON, part, at
+
+
+def end_part_at_event(
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    begin: float,
+    part: float,
+    h: float,
+    event: LocatedEvent,
+) -> tuple[int, LocatedEvent]:
+    """Shorten a part from the local time `begin` to the first event in it, see `locate_event`."""
+    laws, run = sim.laws, sim.run
+    curved = laws.curved.any()
+    if curved:  # shorter trials move the tangents away from the factor at hand
+        run.updates = REFRESH + 1
+    why, event = locate_event(sim, rules, scheme, coefs, begin, part, h, event)
+    if why == DONE and event.time > 1e-9 * h:
+        run.same_instant = 0
+    elif why == DONE and event.time == 0.0 and curved:
+        start_again(laws, rules)  # else what follows takes forces and tangents of the last trial
+    return why, event
+
+
+def accept_part(sim: Simulation, rules: Tables, scheme: Scheme, part: float, at: int) -> None:
+    """Take the motion at the end of a part over."""
+    accept_trial(sim, rules, scheme, part, at)
+    sim.run.time += part
+    track_peaks(sim, sim.run.time, part)
+    if at == PART:
+        store_motion(sim, rules, sim.run.time)
+
+
+def pass_event(
+    sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent, left: float
+) -> int:
+    """Change branches at an event, after which `left` of the step is left; DONE, or why the step stops."""
+    laws, run = sim.laws, sim.run
+    change_branches(sim, rules, scheme, h, event)
+    run.fault = event.law
+    run.same_instant += 1
+    if run.same_instant > 100 + 8 * len(laws.rule):
+        return CHATTER
+    if run.same_instant > len(laws.rule):  # a law may turn to and fro: what follows is tried nearer by
+        run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST * h)
+    if run.fell >= 0:
+        run.rest = left
+        return FALL
+    return DONE
+
+
+def step_in_parts(
+    sim: Simulation,
+    rules: Tables,
+    scheme: Scheme,
+    coefs: Array,
+    piece_start: float,
+    length: float,
+    h: float,
+    tried: bool,
+) -> int:
+    """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
+    and `tried` says that the first trial is made.
+
+    A part is halved until Newton converges.  After the touch of a curved contact the parts grow from a
+    short one: forces like the fourth root of time begin there.  Where a force falls that holds a joint
+    without mass, the step stops, for Python to move the joint (see `integrate.release`).
+    """
+    laws, run = sim.laws, sim.run
+    left = length
+    at = WHOLE if abs(length - h) <= 1e-9 * h else PART
+    while left > 0.0:
+        if len(sim.buffers.log) - run.logged <= len(laws.coupled):
+            return CROWD
+        part = min(left, run.longest_part)
+        at = at if part == left else PART
+        why, part, at = solve_part(sim, rules, scheme, coefs, piece_start, part, at, tried)
+        if why != DONE:
+            return why
+        tried = False
+        event = first_event(laws, sim.step, part)
+        if event.law >= 0:
+            begin, at = run.time - piece_start, PART
+            why, event = end_part_at_event(sim, rules, scheme, coefs, begin, part, h, event)
+            if why != DONE:
+                return why
+            part = event.time
+        else:
+            run.longest_part *= 2.0
+        if part > 0.0:
+            accept_part(sim, rules, scheme, part, at)
+            left -= part
+        at = PART
+        if event.law >= 0:
+            why = pass_event(sim, rules, scheme, h, event, left)
+            if why != DONE:
+                return why
+    return DONE
