@@ -3,18 +3,14 @@ tests check that they are fresh.
 """
 
 import argparse
-from pathlib import Path
+from functools import partial
 
+import manual_pages
 from highlighters import kate, notepad, textmate
-from pound_deck.messages import messages_page
+from manual_pages import MANUAL
 from pound_solve.assess.law_test import AXES, has_loop, picture
 from pound_solve.catalog import specs
-from pound_solve.report.deck_reference import deck_page
-from pound_solve.results.page import results_page
-from pound_solve.sweep.study import quantities
 from verification import cases
-
-MANUAL = Path(__file__).parents[1] / "manual"
 
 
 def write(name: str, text: str) -> None:
@@ -27,32 +23,6 @@ def pictures() -> dict[str, str]:
     drawn = [s for s in specs() if s.family in AXES and has_loop(s)]
     kind = {"hysteresis": "loop", "contact": "contact"}
     return {f"{kind[s.family]}_{s.name.lower()}.svg": picture(s) for s in drawn}
-
-
-def messages() -> None:
-    """The page of messages."""
-    write("messages.md", messages_page())
-
-
-def reference() -> None:
-    """The deck reference."""
-    write("deck-reference.md", deck_page())
-
-
-def results() -> None:
-    """The tables of the results file, below a head that is written by hand."""
-    page = (MANUAL / "results.md").read_text(encoding="utf-8")
-    mark = "<!-- made by pound_solve.results.page.results_page"
-    head, line = page.split(mark)[0], mark + page.split(mark)[1].split("\n")[0]
-    write("results.md", f"{head}{line}\n\n{results_page()}")
-
-
-def sweep() -> None:
-    """The quantities of a sweep, in a page that is written by hand."""
-    page = (MANUAL / "sweep.md").read_text(encoding="utf-8")
-    before, rest = page.split("<!-- quantities -->\n")
-    after = rest.partition("<!-- end -->")[2]
-    write("sweep.md", f"{before}<!-- quantities -->\n{quantities.page()}<!-- end -->{after}")
 
 
 def verification() -> None:
@@ -86,8 +56,13 @@ def highlighting() -> None:
         write(name, text)
 
 
-PARTS = {
-    part.__name__: part for part in (messages, reference, results, sweep, loops, highlighting, verification)
+def renew(name: str) -> None:
+    """A page that holds a part made from the program's tables."""
+    write(manual_pages.PARTS[name][0], manual_pages.renewed(name))
+
+
+PARTS = {name: partial(renew, name) for name in manual_pages.PARTS} | {
+    part.__name__: part for part in (loops, highlighting, verification)
 }
 
 if __name__ == "__main__":

@@ -712,28 +712,3 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
 
 #: codes of warnings, which a card MEANT may name
 WARNINGS: Final = tuple(c for c, (title, _) in MESSAGES.items() if "warning)" in title and c[0] in "PR")
-
-
-def messages_page() -> str:
-    """Text of ``manual/messages.md``: every code with its meaning and cure."""
-    heads = {
-        "P1": "Source text",
-        "P2": "Cards and values",
-        "P3": "The model",
-        "R4": "Records",
-        "A5": "Stops of an analysis",
-        "S6": "Studies of many runs",
-        "L6": "Decks of Ruaumoko",
-    }
-    lines = [
-        "# Messages",
-        "",
-        "Every message names its place as `file:line:column` and shows the line with the place underlined.",
-        "An error stops the run before it starts; a warning (marked below) does not. If the deck means",
-        "what a warning doubts, name its code on a card: `MEANT P334,P359`. These are not told then.",
-        "This page is written from `MESSAGES` in `pound_deck/messages.py`.",
-    ]
-    for prefix, head in heads.items():
-        lines += ["", f"## {head}", "", "| Code | Title | Meaning and cure |", "|---|---|---|"]
-        lines += [f"| {c} | {t} | {m} |" for c, (t, m) in MESSAGES.items() if c.startswith(prefix)]
-    return "\n".join(lines) + "\n"

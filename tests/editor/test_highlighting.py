@@ -14,7 +14,7 @@ from pound_deck.expressions import Expression
 from pound_deck.sections import CARDS, NAMES
 from pound_deck.source import INCLUDE, Source, is_end, without_comment
 from pound_solve.catalog import catalog
-from pound_solve.report.deck_reference import vocabulary
+from pound_solve.report.listing import vocabulary
 from refresh_manual import editors
 
 ROOT = Path(__file__).parents[2]

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from output.sample_layouts import LAYOUTS, NODES
+from output.sample_rows import ROWS
 from pound_deck.model import Units
 from pound_solve import __version__
 from pound_solve.results import Writer
 from pound_solve.results.contents import HISTORIES, TABLES
-from pound_solve.results.histories.nodes import NODES
 from pound_solve.results.schema import Layout
 
 __all__ = ("DECK", "NODES", "TITLE", "UNITS", "block", "layout", "rows", "write")
@@ -24,12 +25,12 @@ DECK = "TITLE Zwei Gebäude\nUNITS kN m s\nNODES\n   1  0  0  FIX=XYR   ! Stütz
 
 def rows() -> dict[str, list[tuple[Any, ...]]]:
     """Rows of every table."""
-    return {name: list(table.sample) for name, table in TABLES.items()}
+    return {name: list(ROWS[name]) for name in TABLES}
 
 
 def layout() -> Layout:
     """Layout of every history."""
-    return {name: history.sample for name, history in HISTORIES.items() if name != "time"}
+    return {name: LAYOUTS[name] for name in HISTORIES if name != "time"}
 
 
 def block(start: int, count: int) -> dict[str, np.ndarray]:

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from output import sample
+from output.sample_layouts import LAYOUTS
+from output.sample_rows import ROWS
 from pound_solve import __version__
 from pound_solve.results import Results, ResultsError, Writer
 from pound_solve.results.contents import HISTORIES, TABLES
@@ -19,8 +21,9 @@ from pound_solve.results.writer import BLOCK
 
 
 def test_every_table_and_history_has_a_sample() -> None:
-    assert all(table.sample for table in TABLES.values())
-    assert all(history.sample.shape or name == "time" for name, history in HISTORIES.items())
+    """To add one: rows in `output/sample_rows.py`, a layout in `output/sample_layouts.py`."""
+    assert ROWS.keys() == TABLES.keys() and all(ROWS.values())
+    assert LAYOUTS.keys() == HISTORIES.keys() - {"time"} and all(x.shape for x in LAYOUTS.values())
 
 
 @pytest.mark.parametrize("name", TABLES)

@@ -11,7 +11,6 @@ import pytest
 from decks import structure_of
 from pound_solve.results import Results, tables
 from pound_solve.results.contents import HISTORIES, SECTIONS, TABLES
-from pound_solve.results.page import results_page
 from pound_solve.results.schema import FORMATS, Stage
 from pound_solve.results.tables.input import properties
 
@@ -42,11 +41,6 @@ def test_columns_are_sound() -> None:
             assert column.fmt in FORMATS
             assert column.title.isascii()
             assert re.fullmatch(r"deg|[-%FLT*/^\d1rad.]*", column.unit)
-
-
-def test_the_page_is_fresh() -> None:
-    """To renew it, replace all below its line `<!-- made by ... -->` by what `results_page` returns."""
-    assert PAGE.read_text(encoding="utf-8").endswith("\n" + results_page())
 
 
 def test_the_page_lists_what_a_file_holds(done: Results) -> None:

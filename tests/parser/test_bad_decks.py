@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pound_deck.diagnostics import caret, render, suggest
-from pound_deck.messages import MESSAGES, messages_page
+from pound_deck.messages import MESSAGES
 from pound_deck.reader import read_deck, read_text
 from pound_deck.source import MAX_BYTES, MAX_DEPTH, MAX_LINE
 
@@ -59,11 +59,6 @@ def test_all_mistakes_in_one_pass(catalog):
 def test_a_value_that_is_missing_is_named(catalog, deck):
     _, (d,), _ = read_deck(str(DECKS[0].parent / f"P209_{deck}.inp"), catalog)
     assert (d.message, d.span.end - d.span.column) == ("the value of KX is missing", len("KX="))
-
-
-def test_manual_page_is_fresh():
-    page = Path(__file__).parents[2] / "manual" / "messages.md"
-    assert page.read_text("utf-8") == messages_page(), "write it anew with messages_page()"
 
 
 # files that are no decks

@@ -4,14 +4,10 @@ import re
 import tomllib
 from pathlib import Path
 
-from pound_solve.sweep.study import quantities, study
+from pound_solve.sweep.study import study
 from pound_solve.sweep.study.records import FILES, LEVELS, OSCILLATOR
 
 PAGE = (Path(__file__).parents[2] / "manual/sweep.md").read_text("utf-8")
-
-
-def test_the_quantities_are_those_of_the_program():
-    assert f"<!-- quantities -->\n{quantities.page()}<!-- end -->" in PAGE, "refresh_manual.py sweep"
 
 
 def test_every_item_of_a_study_is_on_the_page_and_no_other():

@@ -17,7 +17,7 @@ from pound_solve.cli.progress import Progress
 from pound_solve.driver.run import DeckError
 from pound_solve.integrate.kernels.allocation import SAMPLES
 from pound_solve.interruption import Interruption
-from pound_solve.report.deck_reference import vocabulary
+from pound_solve.report.listing import vocabulary
 from pound_solve.results import Results, ResultsError
 from pound_solve.results.contents import SECTIONS
 from pound_solve.results.whole_file import partial

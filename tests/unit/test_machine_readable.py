@@ -10,7 +10,7 @@ from pound_deck.messages import MESSAGES
 from pound_deck.schema import REQUIRED, Kind
 from pound_deck.sections import NAMES
 from pound_solve.cli.main import main
-from pound_solve.report.deck_reference import vocabulary
+from pound_solve.report.listing import vocabulary
 
 ROOT = Path(__file__).parents[2]
 BAD = ROOT / "tests/parser/bad"

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import contract
+import manual_pages
 from decks import model_of, solved
 from kernels import interpreted
 from pound_solve import run
@@ -30,6 +31,17 @@ GUIDE, ARCHITECTURE, GLOSSARY = (
     (MANUAL / page).read_text("utf-8") for page in ("developer-guide.md", "architecture.md", "glossary.md")
 )
 PAGES = sorted([*MANUAL.glob("*.md"), ROOT / "README.md", *(ROOT / "examples").rglob("README.md")])
+
+# ---------------------------------------------------------------- parts that the program makes
+
+
+@pytest.mark.parametrize("name", manual_pages.PARTS)
+def test_parts_made_from_tables_of_the_program_are_fresh(name):
+    page, _ = manual_pages.PARTS[name]
+    assert (MANUAL / page).read_text("utf-8") == manual_pages.renewed(name), (
+        f"tests/refresh_manual.py {name}"
+    )
+
 
 # ---------------------------------------------------------------- links
 

@@ -9,7 +9,7 @@ from pound_deck.sections import FAMILIES, NAMES, SECTIONS
 from pound_solve.editor.fields import fields
 from pound_solve.editor.names import Mention, at, definitions, mentions, words_of
 from pound_solve.editor.reading import Reading
-from pound_solve.report.deck_reference import default, takes, usage
+from pound_solve.report.listing import default, takes, usage
 
 
 def hover(reading: Reading, place: Span) -> tuple[str, Span] | None:

@@ -12,7 +12,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.messages import MESSAGES
 from pound_deck.schema import REQUIRED, Field, Spec
 from pound_deck.sections import CARDS, FAMILIES, NAMES
-from pound_solve.report.deck_reference import takes, usage, vocabulary
+from pound_solve.report.listing import takes, usage, vocabulary
 from pound_solve.version import __version__
 
 VERSION: Final = 1

@@ -152,8 +152,4 @@ TABLE = Table(
     "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
     "building is that of the longest mode in which the node has a tenth of the largest component, or "
     "--periods.",
-    sample=(
-        ("floor 1", 0.1213, 0.0911, 0.873, 0.555, 5.0, 5.31, 0.2124, 0.1517, 0.1488, 0.1402, 0.3, FREE),
-        ("901", 0.0312, 0.0, 0.873, NAN, 5.0, NAN, 0.0312, 0.0312, 0.0312, NAN, 0.008, MET),
-    ),
 )

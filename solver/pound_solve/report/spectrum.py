@@ -84,5 +84,4 @@ TABLE = Table(
         Column("sa", "SA", "L/T^2", "num", doc="largest absolute acceleration"),
     ),
     rows=rows,
-    sample=(("elcentro 180 X", 5.0, 0.5, 0.0456, 0.559, 0.573, 7.2, 7.23),),
 )

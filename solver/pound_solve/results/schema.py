@@ -135,8 +135,6 @@ class Table(Generic[Record]):
         in units of the deck, percentages as percent.  None leaves the table out.
     remark : callable
         Makes a remark on this run's table from the same record; the report prints it below the note.
-    sample : tuple of rows
-        Made-up rows for the tests.
     note : str
         A sentence or two on how to read the table.
     group : str
@@ -152,7 +150,6 @@ class Table(Generic[Record]):
     stages: tuple[Stage, ...]
     columns: tuple[Column, ...]
     rows: Callable[[Record], Iterable[Row] | None]
-    sample: tuple[Row, ...]
     remark: Callable[[Record], str | None] = no_remark
     note: str = ""
     group: str = ""
@@ -198,8 +195,6 @@ class History:
         Makes the layout from what is recorded.  A history with an empty row is not stored.
     values : callable
         Makes the rows, shape (n_times, \\*row), from a block of samples.
-    sample : HistoryLayout
-        A made-up layout for the tests.
     closeup : bool
         Whether close-ups of collisions have it, too.
     extremes : bool
@@ -215,7 +210,6 @@ class History:
     doc: str
     layout: Callable[[RecordedItems], HistoryLayout]
     values: Callable[[SampleBlock], Array]
-    sample: HistoryLayout
     closeup: bool = False
     extremes: bool = False
     axes: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

@@ -29,7 +29,7 @@ def execute(args: argparse.Namespace) -> int:
 
         print(json.dumps(vocabulary_of_decks(), indent=1))
         return common.DONE
-    from pound_solve.report.deck_reference import listing
+    from pound_solve.report.listing import listing
 
     try:
         print(listing(args.family, args.name))

@@ -106,7 +106,6 @@ def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:
         rows=rows,
         note="Lognormal, most likely parameters; intervals by profile likelihood. The dispersion is that "
         "of the records alone: it knows no uncertainty of the model.",
-        sample=(("gap=0.02", 0.01, "capacities", 20, 0.61, 0.5, 0.74, 0.42, 0.32, 0.62, ""),),
     )
 
 
@@ -123,5 +122,4 @@ def probability_table(unit: str, at: Sequence[float]) -> Table[Sequence[Fitted]]
             *(Column(f"p{n}", f"at\n{x:g}", "-", "short", doc="probability") for n, x in enumerate(at)),
         ),
         rows=lambda fits: _probable(fits, at),
-        sample=(("gap=0.02", 0.01, *(0.5 for _ in at)),),
     )

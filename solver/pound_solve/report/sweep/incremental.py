@@ -116,7 +116,6 @@ CAPACITIES: Final = Table(
     rows=capacities,
     note="A record collapses the structure where its run stops, where the demand reaches the limit, or "
     "where the curve has gone flat.",
-    sample=(("elcentro.at2", 12, 0.9, 0.95, "stopped"), ("kobe.at2", 12, 1.2, math.nan, STANDS)),
 )
 
 
@@ -139,5 +138,4 @@ def fractile_table(measure: str, unit: str) -> Table[Analysis]:
         ),
         rows=rows_of_fractiles,
         note="Nothing stands where so many records have collapsed, or a record was not run so far.",
-        sample=((0.5, 0.004, 0.006, 0.01), (1.0, 0.009, 0.02, math.nan)),
     )

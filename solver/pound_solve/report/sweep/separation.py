@@ -142,7 +142,6 @@ def needed_table(measure: str, level: float) -> Table[Sequence[Group]]:
         rows=needs,
         note="The gap that a run needs is its largest closure. The lognormal distribution takes runs that "
         "met for ones that needed more than their gap.",
-        sample=(("", 0.4, ANY, 8, 0, 0.02, 0.03, 0.04, 0.05, 0.031, 0.025, 0.037, 0.3, ""),),
     )
 
 
@@ -169,8 +168,4 @@ def probability_table(measure: str, level: float) -> Table[Sequence[Group]]:
         rows=lambda groups: probabilities(groups, Options()),
         note="Rules take the mean peaks of the runs of a case and level in which nothing met. The interval "
         "is that of Clopper and Pearson.",
-        sample=(
-            ("", 0.4, ANY, "SRSS", "(u1^2 + u2^2)^1/2", 0.04, 1, 8, 0.125, 0.003, 0.527, 0.18),
-            ("", 0.4, ANY, "", "", 0.02, 7, 8, 0.875, 0.47, 0.997, 0.9),
-        ),
     )

@@ -5,7 +5,6 @@ Nothing in it depends on the day, the machine or the order in which runs ended.
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -259,7 +258,6 @@ FAILURES: Final = Table(
         Column("reason", doc="why"),
     ),
     rows=failures,
-    sample=((17, "gap=0.02, elcentro.at2, scale 2", "stopped", "A502 at t = 4.1 s: no equilibrium"),),
 )
 FRACTILE_TABLE: Final = Table(
     name="fractiles_of_runs",
@@ -275,7 +273,6 @@ FRACTILE_TABLE: Final = Table(
         ),
     ),
     rows=fractiles,
-    sample=(("gap=0.02, pga 0.4", 8, 0.01, 0.02, math.inf),),
 )
 WORST: Final = Table(
     name="worst_runs",
@@ -290,7 +287,6 @@ WORST: Final = Table(
         Column("title", "case, record, level", doc="what tells the run from others"),
     ),
     rows=worst,
-    sample=(("contact_force", "1234.5 kN", "floor 1", 17, "gap=0.02, elcentro.at2, scale 2"),),
 )
 DOUBTS: Final = Table(
     name="doubts",
@@ -299,7 +295,4 @@ DOUBTS: Final = Table(
     stages=(),
     columns=(_RUN_COLUMN, Column("doubt", "check", doc="check and its verdict")),
     rows=lambda rows: rows,
-    sample=(
-        (17, "largest energy residual over the largest energy: 0.02, at most 0.01; energy is lost or made"),
-    ),
 )

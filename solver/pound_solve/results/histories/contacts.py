@@ -35,7 +35,6 @@ GAP = History(
     doc="gap, negative while in contact",
     layout=lambda items: HistoryLayout((len(items.contacts),), {"labels": labels(items), "unit": "L"}),
     values=gaps,
-    sample=HistoryLayout((2,), {"labels": ["901", "902"], "unit": "L"}),
     axes=MappingProxyType({"contact": "labels"}),
     closeup=True,
 )
@@ -46,7 +45,6 @@ FORCE = History(
     doc="contact force, positive in compression",
     layout=lambda items: HistoryLayout((len(items.contacts),), {"labels": labels(items), "unit": "F"}),
     values=lambda block: block.force[list(block.items.contacts)].T,
-    sample=HistoryLayout((2,), {"labels": ["901", "902"], "unit": "F"}),
     axes=MappingProxyType({"contact": "labels"}),
     closeup=True,
 )

@@ -32,7 +32,6 @@ DRIFT = History(
     doc="drifts in the order of the deck",
     layout=layout,
     values=values,
-    sample=HistoryLayout((1,), {"labels": ["B1 storey 1"], "unit": "L"}),
     axes=MappingProxyType({"drift_name": "labels"}),
     closeup=True,
 )

@@ -18,6 +18,5 @@ ENERGY = History(
     doc=f"cumulative energies: {', '.join(ENERGIES)}",
     layout=lambda items: LAYOUT,
     values=lambda block: block.energy,
-    sample=LAYOUT,
     axes=MappingProxyType({"part": "labels"}),
 )

@@ -55,7 +55,6 @@ GROUND = History(
     doc="ground accelerations, scaled",
     layout=ground_layout,
     values=ground,
-    sample=HistoryLayout((1,), {"labels": ["elcentro"], "unit": "L/T^2"}),
     axes=MappingProxyType({"motion": "labels"}),
 )
 FORCE = History(
@@ -65,6 +64,5 @@ FORCE = History(
     doc="histories of FORCES, in the order of the deck",
     layout=force_layout,
     values=forces,
-    sample=HistoryLayout((1,), {"labels": ["1 SINE"]}),
     axes=MappingProxyType({"load": "labels"}),
 )

@@ -31,14 +31,6 @@ FORCE = History(
     doc="forces and moments of the members",
     layout=layout,
     values=lambda block: block.members.T,
-    sample=HistoryLayout(
-        (3,),
-        {
-            "element": [101, 101, 102],
-            "quantity": ["axial", "moment I", "axial"],
-            "unit": ["F", "F*L", "F"],
-        },
-    ),
     axes=MappingProxyType({"member": "element", "component": "quantity"}),
     closeup=True,
     extremes=True,

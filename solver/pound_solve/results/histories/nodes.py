@@ -32,41 +32,22 @@ def values(quantity: str, block: SampleBlock) -> Array:
 
 
 AXES = MappingProxyType({"node": "nodes", "component": "labels"})
-NODES = (1, 2, 3, 4, 100, 101, 102, 300, 301, 302)  #: of the sample
 
-DISPLACEMENT = History(
-    name="node/u",
-    place=10,
-    row="nodes x 3",
-    doc="displacement in X, Y and rotation",
-    layout=partial(recorded, ""),
-    values=partial(values, "u"),
-    sample=layout(NODES, ""),
-    axes=AXES,
-    closeup=True,
-    extremes=True,
-)
-VELOCITY = History(
-    name="node/v",
-    place=20,
-    row="nodes x 3",
-    doc="velocity in X, Y and of rotation",
-    layout=partial(recorded, "/T"),
-    values=partial(values, "v"),
-    sample=layout(NODES, "/T"),
-    axes=AXES,
-    closeup=True,
-    extremes=True,
-)
-ACCELERATION = History(
-    name="node/a",
-    place=30,
-    row="nodes x 3",
-    doc="acceleration in X, Y and of rotation",
-    layout=partial(recorded, "/T^2"),
-    values=partial(values, "a"),
-    sample=layout(NODES, "/T^2"),
-    axes=AXES,
-    closeup=True,
-    extremes=True,
-)
+
+def _motion(place: int, quantity: str, per: str, doc: str) -> History:
+    return History(
+        name=f"node/{quantity}",
+        place=place,
+        row="nodes x 3",
+        doc=doc,
+        layout=partial(recorded, per),
+        values=partial(values, quantity),
+        axes=AXES,
+        closeup=True,
+        extremes=True,
+    )
+
+
+DISPLACEMENT = _motion(10, "u", "", "displacement in X, Y and rotation")
+VELOCITY = _motion(20, "v", "/T", "velocity in X, Y and of rotation")
+ACCELERATION = _motion(30, "a", "/T^2", "acceleration in X, Y and of rotation")

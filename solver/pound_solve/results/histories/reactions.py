@@ -39,7 +39,6 @@ HISTORY = History(
     doc="forces of the supports on the structure: X, Y and moment",
     layout=recorded,
     values=values,
-    sample=layout((1, 4)),
     axes=MappingProxyType({"support": "nodes", "action": "labels"}),
     closeup=True,
     extremes=True,

@@ -36,7 +36,6 @@ FORCE = History(
     doc="forces and moments of the springs",
     layout=lambda items: layout(items, {"F": "F", "F*L": "F*L"}),
     values=lambda block: block.force[list(block.items.springs)].T,
-    sample=HistoryLayout((0,), {"labels": [], "unit": "F"}),
     axes=AXES,
 )
 DEFORMATION = History(
@@ -46,7 +45,6 @@ DEFORMATION = History(
     doc="deformations of the springs",
     layout=lambda items: layout(items, {"F": "L", "F*L": "rad"}),
     values=lambda block: block.deformation[list(block.items.springs)].T,
-    sample=HistoryLayout((2,), {"element": [11, 12], "quantity": ["X", "R"], "unit": ["L", "rad"]}),
     axes=AXES,
     closeup=True,
 )

@@ -13,6 +13,5 @@ HISTORY = History(
     doc="the time axis that all histories share",
     layout=lambda items: LAYOUT,
     values=lambda block: block.t,
-    sample=LAYOUT,
     closeup=True,
 )

@@ -165,9 +165,3 @@ def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]
 def doubts(rows: Mapping[str, list[Fields]]) -> str:
     """Text of the checks of one run whose verdict calls for a look."""
     return "; ".join(map(str, looked(map(Check.of, rows.get("checks", ())))))
-
-
-def page() -> str:
-    """Table of all quantities for the manual."""
-    rows = (f"| `{q.name}` | {q.axis or 'none'} | `{q.unit}` | {q.doc} |" for q in QUANTITIES)
-    return "\n".join(["| quantity | labels | unit | meaning |", "|---|---|---|---|", *rows, ""])

@@ -38,13 +38,4 @@ TABLE = Table(
     ),
     rows=rows,
     remark=remark,
-    sample=(
-        ("input", 64.0721, 100.0),
-        ("kinetic", 0.00021, 0.000327756),
-        ("strain", 0.113, 0.1763),
-        ("damping", 32.3011, 50.413),
-        ("hysteretic", 28.4378, 44.384),
-        ("contact", 3.2214, 5.0278),
-        ("residual", -1.2e-11, -1.9e-11),
-    ),
 )

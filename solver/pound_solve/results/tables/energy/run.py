@@ -23,10 +23,4 @@ TABLE = Table(
         VALUE,
     ),
     rows=rows,
-    sample=(
-        ("method", "exact steps between events"),
-        ("steps", "5000"),
-        ("events", "31"),
-        ("regimes", "4"),
-    ),
 )

@@ -44,9 +44,4 @@ TABLE = Table(
     "support's own mass are part of them; mass-proportional and modal damping act between the masses and "
     "the ground and pass by the supports.",
     group="quantity",
-    sample=(
-        (1, "force X", "kN", 152.393, 6.458, -256.958, 4.866),
-        (1, "moment", "kN*m", 671.988, 2.948, -422.91, 5.17),
-        (4, "force X", "kN", 169.329, 3.85, -206.171, 8.436),
-    ),
 )

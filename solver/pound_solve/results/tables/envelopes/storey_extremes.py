@@ -43,9 +43,4 @@ TABLE = Table(
     remark=remark,
     note="The quantities are those of the table of storeys, positive along x.",
     group="quantity",
-    sample=(
-        ("A", 1, "drift ratio", "-", 0.00745, 2.726, -0.0061, 5.06),
-        ("A", 1, "shear", "kN", 1152.39, 6.458, -1256.96, 4.866),
-        ("A", 1, "floor acceleration", "m/s^2", 3.251, 1.988, -2.81, 3.554),
-    ),
 )

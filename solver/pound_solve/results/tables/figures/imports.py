@@ -61,8 +61,4 @@ TABLE = Table(
         Column("which", doc="names of the program's own modules"),
     ),
     rows=rows,
-    sample=(
-        ("pound_solve", 3, "app, cli, course"),
-        ("numba", 0, "not imported"),
-    ),
 )

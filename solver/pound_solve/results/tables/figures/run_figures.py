@@ -37,9 +37,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="Only this last section differs between two runs of the same deck.",
-    sample=(
-        ("wall time", "0.412 s"),
-        ("peak memory", "81 MB"),
-        ("numpy", "2.4.6"),
-    ),
 )

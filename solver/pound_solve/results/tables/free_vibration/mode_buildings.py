@@ -27,5 +27,4 @@ TABLE = Table(
     rows=rows,
     note="Shares below 0.1 % are left out. With open contacts buildings vibrate apart: only modes of equal "
     "periods are then shared.",
-    sample=((1, "A", 100.0), (2, "B", 99.82), (2, "A", 0.18)),
 )

@@ -35,5 +35,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="The force at each node is the given force times the history.",
-    sample=(("1 SINE", "300", 12.5, 0.0, -3.0, 1.0, 0.1, 2.5),),
 )

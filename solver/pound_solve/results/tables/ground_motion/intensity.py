@@ -72,5 +72,4 @@ TABLE = Table(
         "Measures of the whole motion, from start to end, scaled; its peaks stand in the table above. T1 "
         "is the period of the first mode of MODAL that has 1 % of the mass in the direction of the motion."
     ),
-    sample=(("1 elcentro_1940_ew_270_peer", "X", 1.2345, 12.1, 24.07, 12.46, 1.1, 0.8723, 3.456),),
 )

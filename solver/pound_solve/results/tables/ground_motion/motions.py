@@ -70,23 +70,4 @@ TABLE = Table(
         "shorter. Velocity and displacement are integrals of the record as it stands, without "
         "baseline correction. The checksum is shortened to its first 12 characters."
     ),
-    sample=(
-        (
-            "elcentro_1940_ew_270_peer",
-            "X",
-            "all",
-            "PEER",
-            5372,
-            0.01,
-            -1.0,
-            2.10137,
-            11.44,
-            0.312904,
-            0.242387,
-            0.0,
-            53.71,
-            math.nan,
-            "9b0c5a1f3e77aa019b0c5a1f3e77aa019b0c5a1f3e77aa019b0c5a1f3e77aa01",
-        ),
-    ),
 )

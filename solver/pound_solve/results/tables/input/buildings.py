@@ -33,8 +33,4 @@ TABLE = Table(
     rows=rows,
     note="A building is what elements and slaving connect; contacts do not. A floor is a level of nodes "
     "with mass above the lowest support.",
-    sample=(
-        ("A", 1, 12, 84.2, 0.0, 10.5, 3),
-        ("building 2", 21, 8, 51.6, 0.0, 7.0, 2),
-    ),
 )

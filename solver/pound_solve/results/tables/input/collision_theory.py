@@ -58,8 +58,4 @@ TABLE = Table(
     rows=rows,
     remark=remark,
     note="The theory is that of uniform elastic bars that meet end to end.",
-    sample=(
-        ("floor 1", 0.42324, 0.52664, 0.040318, 8129.57, 31.0066, "the equations of the paper fail"),
-        ("903", math.nan, math.nan, math.nan, math.nan, math.nan, "rigid: no theory"),
-    ),
 )

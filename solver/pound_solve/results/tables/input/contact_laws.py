@@ -62,21 +62,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="e is the coefficient of restitution.",
-    sample=(
-        ("901", "KELVIN_VOIGT", "15050400 kN/m", 412.33, 0.1364, 0.65, 0.65, 40.7886, 0.0, 0.008, ""),
-        (
-            "902",
-            "HERTZDAMP",
-            "1.505E+07 kN/m^1.5",
-            math.nan,
-            0.6661,
-            0.65,
-            0.6483,
-            40.7886,
-            0.0,
-            0.008,
-            "c varies",
-        ),
-        ("903", "LINEAR", "15050400 kN/m", 0.0, 0.0, math.nan, 1.0, 40.7886, 180.0, 0.01, ""),
-    ),
 )

@@ -26,5 +26,4 @@ TABLE = Table(
         Column("description", doc="coefficients, and what they multiply"),
     ),
     rows=rows,
-    sample=(("all", "RAYLEIGH", "alpha 0.52360 1/s on the mass, beta 0.0014 s on the initial stiffness"),),
 )

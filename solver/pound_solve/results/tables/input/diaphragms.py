@@ -76,10 +76,4 @@ TABLE = Table(
     rows=rows,
     remark=remark,
     note="Found behind the nodes of the contact, or given by DIAPHRAGMS on its card.",
-    sample=(
-        ("floor 1", "I", 163.1, 1881300.0, 17516.8, 0.018622, 0.65217, 0.4641, 0.49782),
-        ("floor 1", "J", 305.81, 752520.0, 15170.0, 0.040318, 0.34783, 0.24752, 0.2655),
-        ("903", "I", 163.1, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan),
-        ("903", "J", math.inf, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan),
-    ),
 )

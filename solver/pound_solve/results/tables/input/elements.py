@@ -34,11 +34,4 @@ TABLE = Table(
         Column("length", "length", "L", "num", doc="distance between the nodes"),
     ),
     rows=rows,
-    sample=(
-        (11, "left column", "COL1", "SPRING", 1, 100, 3.5),
-        (12, "", "COL1", "SPRING", 1, 0, math.nan),
-        (101, "", "SLAB1", "FRAME", 100, 101, 1.0),
-        (102, "", "SLAB1", "FRAME", 101, 102, 1.0),
-        (901, "pounding 1", "POUND", "CONTACT", 120, 300, 0.1),
-    ),
 )

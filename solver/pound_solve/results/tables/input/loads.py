@@ -35,8 +35,4 @@ TABLE = Table(
     ),
     rows=rows,
     remark=remark,
-    sample=(
-        (100, 0.0, -800.0, 0.0),
-        (101, 0.0, -80.0, 12.5),
-    ),
 )

@@ -30,9 +30,4 @@ TABLE = Table(
         Column("mr", "R", "F*L*T^2", "num", doc="rotational inertia"),
     ),
     rows=rows,
-    sample=(
-        (100, 81.577, 81.577, 0.0),
-        (101, 8.15773, 8.15773, 0.0),
-        (300, 163.155, 163.155, 1.25),
-    ),
 )

@@ -30,5 +30,4 @@ TABLE = Table(
         Column("load", doc="the load in words"),
     ),
     rows=rows,
-    sample=((101, "WY -12 kN/m, PX 3 kN, AT 0.5"),),
 )

@@ -30,12 +30,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="X and Y are translations, R is the rotation (positive counter-clockwise).",
-    sample=(
-        (1, 0.0, 0.0, "XYR", "", 0),
-        (2, 0.0, 3.5, "YR", "", 0),
-        (3, 0.0, 7.0, "YR", "", 0),
-        (4, 0.0, 0.0, "XYR", "", 0),
-        (100, 20.0, 3.5, "YR", "", 0),
-        (302, 20.1, 7.0, "Y", "X", 301),
-    ),
 )

@@ -61,16 +61,4 @@ TABLE = Table(
         Column("meaning", doc="meaning of the option"),
     ),
     rows=rows,
-    sample=(
-        ("analysis", "STATIC, MODAL 4, HISTORY", "", "dead loads, then 4 modes, then time history"),
-        ("units", "kN m s", "", "force, length, time; nothing is converted"),
-        ("gravity", "9.80665 m/s^2", "*", "weights are divided by it to give masses"),
-        ("mass", "LUMPED", "*", "half of a member's mass at each of its ends"),
-        ("method", "AUTO", "*", "the program chooses the time integration, see the problem size"),
-        ("duration", "10 s", "", "end of the time history"),
-        ("tolerance", "1E-6", "*", "error allowed in displacement over its peak, at each step"),
-        ("output interval", "0.002 s", "", "spacing of the stored histories; events are stored besides"),
-        ("PARAM n", "20", "", "number of elements in a diaphragm (--set)"),
-        ("PARAM gap", "0.008", "", "parameter of the deck"),
-    ),
 )

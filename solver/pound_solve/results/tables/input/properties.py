@@ -50,13 +50,4 @@ TABLE = Table(
     ),
     rows=rows,
     group="property",
-    sample=(
-        ("COL1", "SPRING", "KX", "210000", "kN/m", ""),
-        ("COL1", "SPRING", "ANGLE", "0", "deg", "*"),
-        ("COL1", "ELASTO_PLASTIC", "FX", "1200", "kN", ""),
-        ("SLAB1", "FRAME", "E", "2.5084E+07", "kN/m^2", ""),
-        ("SLAB1", "FRAME", "A", "1.5", "m^2", ""),
-        ("POUND", "HERTZDAMP", "K", "15050400", "kN/m^1.5", ""),
-        ("POUND", "HERTZDAMP", "E", "0.65", "-", ""),
-    ),
 )

@@ -50,9 +50,4 @@ TABLE = Table(
         "An index of 1 is failure; above about 0.4 a member is beyond economic repair. The "
         "row 'all' is the mean weighted by plastic work."
     ),
-    sample=(
-        (11, "X", 8.0, 5.4412, 0.68015, 0.0845, 0.76465, 0.97778),
-        (12, "R", 8.0, 1.61, 0.20125, 0.0229, 0.22415, 0.02222),
-        (0, "", math.nan, math.nan, math.nan, math.nan, 0.75264, 1.0),
-    ),
 )

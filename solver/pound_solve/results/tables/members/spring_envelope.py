@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from pound_solve.results.columns import ELEMENT
@@ -63,9 +62,4 @@ TABLE = Table(
     ),
     rows=rows,
     remark=how_found,
-    sample=(
-        (11, "X", "ELASTO_PLASTIC", "kN", 1200.0, -1200.0, "m", 0.0234417, -0.0310928, 14, 5.4412, 93.2213),
-        (12, "X", "LINEAR", "kN", 843.19, -799.02, "m", 0.0041, -0.0039, math.nan, math.nan, 0.0),
-        (12, "R", "TAKEDA", "kN*m", 310.2, -288.8, "rad", 0.0031, -0.0022, 3, 1.61, 2.118),
-    ),
 )

@@ -42,8 +42,4 @@ TABLE = Table(
         "both yield forces: for an elastic, perfectly plastic spring, the sum of all plastic "
         "deformations."
     ),
-    sample=(
-        (11, "X", "m", -0.0151234, -0.0112213, 0.0776844, 18.0332),
-        (12, "R", "rad", 0.0012, 0.0007, 0.0071, 3.6872),
-    ),
 )

@@ -31,10 +31,4 @@ TABLE = Table(
     rows=rows,
     note="Displacements and base shears include those of the static state.",
     limit=500,
-    sample=(
-        (0.0, 0.0, 0.0, 0),
-        (0.01, 281.818, 310.0, 0),
-        (0.02, 516.667, 620.0, 0),
-        (0.03, 715.385, 930.0, 1),
-    ),
 )

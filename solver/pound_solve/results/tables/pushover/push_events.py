@@ -49,5 +49,4 @@ TABLE = Table(
     ),
     rows=rows,
     limit=1000,
-    sample=((1, 0.031, 712.5, 2.1, 11, "hinge I", "elastic", "yielding +"),),
 )

@@ -30,9 +30,4 @@ TABLE = Table(
     ),
     rows=rows,
     note=("For a load factor of one. Forces on slaved degrees of freedom stand at their masters."),
-    sample=(
-        (100, "X", 0.365826, -0.25072),
-        (101, "X", 0.43958, -0.535894),
-        (102, "X", 0.457234, -0.0100317),
-    ),
 )

@@ -37,5 +37,4 @@ TABLE = Table(
         VALUE,
     ),
     rows=rows,
-    sample=(("end", "the target displacement is reached"),),
 )

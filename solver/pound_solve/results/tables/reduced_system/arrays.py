@@ -79,8 +79,4 @@ TABLE = Table(
     rows=rows,
     remark=remark,
     note="Work arrays of a method, which are of the same order, are not counted.",
-    sample=(
-        ("structure", "stiffness, mass, damping", 768, 6144),
-        ("contacts", "closures of 0", 0, 0),
-    ),
 )

@@ -38,21 +38,4 @@ TABLE = Table(
         Column("why", doc="reason"),
     ),
     rows=rows,
-    sample=(
-        (
-            "directions",
-            "X only",
-            "all loads, motions and contacts act in X; Y and R are held or follow statics",
-        ),
-        (
-            "integrator",
-            "exact steps between events",
-            (
-                "between two events the structure is linear: the matrix exponential gives the "
-                "state at any time, so that closing and opening of contacts are found as roots "
-                "and not as steps"
-            ),
-        ),
-        ("left out", "geometric stiffness", "P-DELTA is not asked for"),
-    ),
 )

@@ -42,9 +42,4 @@ TABLE = Table(
         VALUE,
     ),
     rows=rows,
-    sample=(
-        ("degrees of freedom", "84"),
-        ("after condensation", "44"),
-        ("contacts", "3"),
-    ),
 )

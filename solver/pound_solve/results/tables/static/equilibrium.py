@@ -25,8 +25,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="All that acts on the structure, moments about the origin of the coordinates.",
-    sample=(
-        ("loads", 0.0, 654.584, 0.0),
-        ("sum", 0.0, 1e-12, 0.0),
-    ),
 )

@@ -25,8 +25,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="Forces of the supports on the structure.",
-    sample=(
-        (1, 1.30817, 981.882, -27.3291),
-        (2, -0.864524, 755.801, -3.9308),
-    ),
 )

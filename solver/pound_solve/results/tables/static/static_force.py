@@ -32,10 +32,4 @@ TABLE = Table(
     ),
     rows=rows,
     remark=remark,
-    sample=(
-        (101, "axial", 635.352, "kN"),
-        (101, "shear I", -333.606, "kN"),
-        (101, "moment I", -113.282, "kN*m"),
-        (102, "axial", 612.831, "kN"),
-    ),
 )

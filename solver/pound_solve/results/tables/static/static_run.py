@@ -28,5 +28,4 @@ TABLE = Table(
         VALUE,
     ),
     rows=rows,
-    sample=(("changes of springs and contacts", "3"),),
 )

@@ -79,10 +79,4 @@ TABLE = Table(
         "the largest extreme of that kind."
     ),
     group="method",
-    sample=(
-        ("EXACT", "", 0.05312, 0, 24, 0.0, 1.1e-15, 3e-16, math.nan, 8, 1.03e-15),
-        ("NEWMARK", "DT=0.005", 0.0305, 1120, 24, 0.014454, 0.017786, 0.025733, math.nan, 8, 0.0188),
-        ("NEWMARK", "DT=0.0025", 0.0417, 2080, 24, 0.004533, 0.0051073, 0.0069075, 2.1245, 8, 0.00526),
-        ("CENTRAL", "DT=0.005", math.nan, 0, 0, math.nan, math.nan, math.nan, math.nan, 0, math.nan),
-    ),
 )

@@ -38,9 +38,4 @@ TABLE = Table(
     ),
     rows=rows,
     remark=remark,
-    sample=(
-        (0.01, "NEWMARK", "DT=0.0025", 0.0417, 0.0069, 0.0099),
-        (0.001, "EXACT", "", 0.05312, 1.1e-15, 3.3e-15),
-        (1e-06, "", "", math.nan, math.nan, math.nan),
-    ),
 )

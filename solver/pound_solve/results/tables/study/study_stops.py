@@ -22,5 +22,4 @@ TABLE = Table(
         Column("why", doc="reason"),
     ),
     rows=rows,
-    sample=(("CENTRAL", "DT=0.005", "A502 at t = 0 s: above the stability limit 0.004684"),),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from enum import StrEnum
 
-from pound_solve.check import Bound, Subject, Verdict, at_least, at_most
+from pound_solve.check import Bound, Subject, Verdict
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -39,10 +39,5 @@ TABLE = Table(
         Column("remark", doc="what to do about it, or how to read it"),
     ),
     rows=rows,
-    sample=(
-        at_most(Subject.ENERGY, "energy residual over input", 1.9e-13, 1e-9, "").row(),
-        at_most(Subject.ROUNDING, "residual of the modes", 3.1e-9, 1e-10, "digits are lost").row(),
-        at_least(Subject.STEPS, "steps in a period", 23.5, 10.0, "").row(),
-    ),
     group="check",  # a check has its own number of digits
 )

@@ -156,11 +156,4 @@ TABLE = Table(
     stages=(Stage.INPUT, Stage.MODAL, Stage.PEAKS),
     columns=(ITEM, VALUE),
     rows=rows,
-    sample=(
-        ("structure", "18 nodes, 22 elements, 36 unknowns"),
-        ("analyses", "STATIC, HISTORY"),
-        ("longest period of building 1", "0.9242 s"),
-        ("contact law", "KELVIN_VOIGT, 5e+05 kN/m, restitution 0.65"),
-        ("largest drift ratio", "1.13 %, B2 storey 1"),
-    ),
 )

@@ -54,8 +54,4 @@ TABLE = Table(
     note="Displacements and accelerations of a floor are the means of its nodes, weighted by mass, along "
     "x; those of the base are the means of the feet. The shear is the sum of the forces of all elements "
     "that cross the storey.",
-    sample=(
-        ("A", 1, 3.5, 3.5, 42.1, 0.00745, 2.726, 0.0002, 1256.96, 4.866, 9671.99, 2.948, 3.251, 1.988),
-        ("A", 2, 7.0, 3.5, 42.1, 0.0042, 8.606, -0.0001, 856.31, 4.87, 4671.2, 2.95, 4.833, 3.554),
-    ),
 )

@@ -30,8 +30,4 @@ TABLE = Table(
         Column("warning", doc="what may be wrong, and what would be right"),
     ),
     rows=rows,
-    sample=(
-        ("P336", "model.inp:31", "contacts of WALL are pressed at rest: GAP is -0.002"),
-        ("R404", "model.inp:44", "the peak is 4.1 g"),
-    ),
 )

@@ -88,8 +88,4 @@ TABLE = Table(
     ),
     rows=rows,
     note="Of a member the end that is worse off. All springs and hinges are in the section on members.",
-    sample=(
-        (11, "hinge I", "TAKEDA", 11.22, 8.31, 0.0217, 3, 20.91, 0.853, "beyond repair"),
-        (12, "X", "BILINEAR", 2.1, math.nan, math.nan, 1, 3.2, math.nan, ""),
-    ),
 )

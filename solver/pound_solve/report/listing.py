@@ -1,7 +1,4 @@
-"""Reference of the deck, for ``pound-solve list`` and for the manual's page; both are made from the Specs.
-
-``python -m pound_solve.report.deck_reference`` prints the page ``manual/deck-reference.md``.
-"""
+"""What a deck may hold, as text made from the Specs, for ``pound-solve list``, editors and the manual."""
 
 from __future__ import annotations
 
@@ -94,10 +91,10 @@ def _no_family(known: Catalog, word: str) -> str:
             f"list {f} {word.upper()}" for f in owners
         )
     near = suggest(word, known.families()).lower()
-    return f"no family {word}: " + (near or "there are " + ", ".join(_ordered(known)))
+    return f"no family {word}: " + (near or "there are " + ", ".join(ordered_families(known)))
 
 
-def _ordered(known: Catalog) -> list[str]:
+def ordered_families(known: Catalog) -> list[str]:
     """Names of the families in the order of the page, those not in `_FAMILIES` last."""
     return [
         *(f for f in _FAMILIES if f in known.families()),
@@ -105,13 +102,14 @@ def _ordered(known: Catalog) -> list[str]:
     ]
 
 
-def _family(name: str) -> tuple[str, str, str]:
+def family_in_words(name: str) -> tuple[str, str, str]:
+    """Heading of a family, start of its line in a deck, and where that line stands."""
     return _FAMILIES.get(name, (name.capitalize(), "{name}", ""))
 
 
 def _overview(known: Catalog) -> list[str]:
     lines = []
-    for family in _ordered(known):
+    for family in ordered_families(known):
         lines += [*_members(family, known.family(family).values()), ""]
     return [*lines, "pound-solve list FAMILY NAME shows the items of one of them."]
 
@@ -120,7 +118,7 @@ def _members(family: str, members: Iterable[Spec]) -> list[str]:
     rows = [(_coded(s), s.title) for s in members]
     wide = max(len(name) for name, _ in rows)
     return [
-        f"{family}: {_family(family)[2]}",
+        f"{family}: {family_in_words(family)[2]}",
         *(f"   {name.ljust(wide)}   {title}" for name, title in rows),
     ]
 
@@ -129,7 +127,7 @@ def _with_items(family: str, members: Iterable[Spec]) -> list[str]:
     """Lines that list the members of a family with the names of their items."""
     specs = list(members)
     wide = max(len(_coded(s)) for s in specs)
-    lines = [f"{family}: {_family(family)[2]}"]
+    lines = [f"{family}: {family_in_words(family)[2]}"]
     for s in specs:
         items = f" ({' '.join(f.name for f in s.fields)})" if s.fields else ""
         lines += _wrapped(f"   {_coded(s).ljust(wide)}   ", s.title + items)
@@ -154,7 +152,7 @@ def _sheet(spec: Spec) -> list[str]:
 
 def _items(fields: Sequence[Field]) -> list[str]:
     """Lines of a table of items; permitted values and meanings are wrapped within their columns."""
-    rows = [_HEADS, *(_row(f) for f in fields)]
+    rows = [_HEADS, *(item_row(f) for f in fields)]
     wide = [max(len(row[i]) for row in rows) for i in range(4)]
     # long limits are wrapped: a column as wide as them would leave no room for the meaning
     wide[3] = min(wide[3], 24)
@@ -184,14 +182,15 @@ def _legend(fields: Sequence[Field]) -> str:
 
 def usage(spec: Spec) -> str:
     """Usage of a card: its items in order, in brackets those that may be left out."""
-    words = [_family(spec.family)[1].format(name=spec.name)]
+    words = [family_in_words(spec.family)[1].format(name=spec.name)]
     for f in spec.fields:
         word = f.name if f.positional else f"{f.name}="
         words.append(word if f.default is REQUIRED else f"[{word}]")
     return " ".join(w for w in words if w)
 
 
-def _row(f: Field) -> tuple[str, str, str, str, str]:
+def item_row(f: Field) -> tuple[str, str, str, str, str]:
+    """Cells that describe an item, one for each of `_HEADS`."""
     return f.name, f.unit, default(f), takes(f), f.doc
 
 
@@ -238,130 +237,3 @@ def _limits(f: Field) -> str:
     bounds = ((">", f.above), (">=", f.lo), ("<", f.below), ("<=", f.hi))
     text = ", ".join(f"{sign} {limit:g}" for sign, limit in bounds if limit is not None)
     return number + text if text else ""
-
-
-def deck_page() -> str:
-    """Text of ``manual/deck-reference.md``."""
-    known = vocabulary()
-    lines = [_RULES.strip(), ""]
-    for family in _ordered(known):
-        heading, _, where = _family(family)
-        lines += [f"## {heading}", ""]
-        if family == "section":
-            lines += [_SECTIONS.strip(), ""]
-        elif where:
-            lines += [f"{where[0].upper()}{where[1:]}.", ""]
-        for spec in known.family(family).values():
-            lines += [*_chapter(spec), ""]
-    return "\n".join(lines).rstrip() + "\n"
-
-
-def _chapter(spec: Spec) -> list[str]:
-    lines = [
-        f"### {spec.name}",
-        "",
-        f"{spec.title[0].upper()}{spec.title[1:]}.",
-        "",
-        "```",
-        usage(spec),
-        "```",
-    ]
-    facts = [f"Old code: {spec.code}."] if spec.code is not None else []
-    facts += [f"Reference: {spec.reference}."] if spec.reference else []
-    lines += ["", " ".join(facts)] if facts else []
-    if not spec.fields:
-        return [*lines, "", "No items."]
-    lines += ["", "| item | unit | default | takes | meaning |", "|---|---|---|---|---|"]
-    for f in spec.fields:
-        name, unit, default, choice, doc = (cell.replace("|", r"\|") for cell in _row(f))
-        lines.append(f"| `{name}` | {f'`{unit}`' if unit else ''} | {default} | {choice} | {doc} |")
-    return lines
-
-
-_RULES: Final = r"""
-# Deck reference
-
-Everything that a deck may hold. The first part says how a deck is written; the rest is made from the
-program's own tables by `python -m pound_solve.report.deck_reference`, so it is what the program reads. On a
-terminal, `pound-solve list` prints the same tables. New to decks? Start with the [tutorial](tutorial.md).
-
-## Lines
-
-- A deck is a text file. One line is one card. Upper and lower case are the same, except in texts.
-- `!` starts a comment, anywhere outside quotes. Blank lines are free.
-- A line that ends in `&` goes on in the next one.
-- A section's name stands alone on its line; the lines below belong to it until the next section's name.
-  Sections stand in any order, may stand more than once, and may refer to what comes later.
-- A line that says `END` ends the file.
-
-These cards stand anywhere, once each but for the last two:
-
-| card | meaning | left out |
-|---|---|---|
-| `TITLE text` | heading of the report | no title |
-| `UNITS force length time` | names of the units | `kN m s` |
-| `GRAVITY g` | acceleration of gravity; mass = weight / gravity | by the unit of length |
-| `MASS LUMPED` or `MASS CONSISTENT` | mass of FRAME members that have a weight | `LUMPED` |
-| `GEOMETRY word` | `PDELTA`, `PDELTA_MEMBER`, `PDELTA_VARYING` or `LARGE` displacements | `SMALL` |
-| `MEANT codes` | [warnings](messages.md) not to be told, such as `P334,P359`: the deck means it so | none |
-| `PARAM name = value` | a name for a number or a text; several on a line are fine | |
-| `INCLUDE "file"` | reads another file here; its name counts from the folder of this one | |
-
-Any consistent set of units will do. Nothing is converted: `UNITS` only puts the names into the report,
-and chooses the value of gravity: 9.81 for m, 9810 for mm, 981 for cm, 32.174 for ft, 386.09 for in, with
-s.
-
-## Items
-
-- Items are separated by blanks. The first ones are read by position, all others as `NAME=value`, in any
-  order. An item by position may be written by name too: `NODE=1 X=0 Y=3.5`. After the first named item
-  all are named.
-- Several values of one item are joined by commas without blanks: `FX=200,-150`.
-- An option is a word. Where Ruaumoko has a code for it, that number is read as well; the tables give it
-  in brackets.
-- A text that is more than one word stands in quotes, single or double.
-- What is left out takes its default. The report prints every default that was taken and marks it with
-  `*`.
-
-## Numbers and expressions
-
-- Numbers: `3500`, `0.05`, `3.5E6`, `1D-3`.
-- Wherever a number may stand, an expression may: `+ - * /`, `^` or `**`, brackets, `pi`, PARAM names, and
-  the functions `sqrt sin cos tan asin acos atan exp log log10 abs min max floor ceil round int`. Angles
-  are in radians, `log` is the natural logarithm, `round` takes halves away from zero, `int` cuts towards
-  zero. Powers go from the right and before a sign: `-2^2` is -4.
-- Blanks separate items, so an expression holds none outside brackets: `w/2` or `(w / 2)`. `1 -2` are two
-  items.
-- `pound-solve model.inp --set n=5 --set record="other.at2"` replaces the value of a PARAM of the deck.
-
-## Ranges and lists
-
-- `11 TO 15` means 11, 12, 13, 14, 15, and `11 TO 15 BY 2` means 11, 13, 15. The ends may be expressions.
-- A list of nodes or elements may hold both: `1,5,11 TO 15 BY 2`.
-- A range whose end is one below its start, such as `11 TO 10+n` with n = 0, is empty. Others ascend.
-- In NODES and ELEMENTS a range in the first place writes one card for each of its numbers. The items
-  marked "or range" may then be ranges too: coordinates are spaced evenly from end to end, node numbers
-  step along evenly. So `11 TO 15  0 TO 8  3.5` makes five nodes 2 apart at height 3.5.
-
-## Directions and signs
-
-X points to the right, Y upwards, rotations R are anticlockwise. Forces, displacements and accelerations
-follow them. End forces of a FRAME member act on the member along its own axes (x from I to J, y to its
-left); its axial force is positive in tension. Moments of its hinges (`hinge I`, `hinge J`) are positive
-where it sags, with tension on the right of the line from I to J. A spring's deformation is the displacement
-of J less that of I. A contact closes as I moves towards J, and its force is positive in compression.
-
-The tables give units in dimensions: `F` force, `L` length, `T` time, `-` a pure number. "must" means that
-there is no default.
-"""
-
-_SECTIONS: Final = """
-PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold lines of several kinds, each in a chapter of its own
-below: [elements](#elements), [damping](#damping), [ground motions](#ground-motions), [forces in
-time](#forces-in-time) and [analyses](#analyses). A line of PROPS starts with a label of your choice, the
-others with their kind. An item that takes "one of" a family (`RULE`, `LAW`, `FORMAT`, `METHOD`) brings
-the items of the chosen member into its line. The other sections have one kind of line each:
-"""
-
-if __name__ == "__main__":
-    print(deck_page(), end="")
