@@ -358,7 +358,9 @@ def test_variables_say_what_they_hold():
         functions = [
             x for x in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(x, ast.FunctionDef)
         ]
-        assert not [f.name for f in functions if SAYS_NOTHING & set(names_within(f))], path
+        for f in functions:
+            names = SAYS_NOTHING & set(names_within(f))
+            assert not names, f"{place(path)}: {names} in {f.name} say nothing"
 
 
 def test_numerics_open_no_file_and_print_nothing():

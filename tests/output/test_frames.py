@@ -163,7 +163,7 @@ def test_every_axis_of_a_history_has_a_scale_of_its_length(tmp_path: Path) -> No
 def test_histories_of_one_group_share_their_axes(tmp_path: Path) -> None:
     with (
         Writer(tmp_path / "out.h5", title="t", units=sample.UNITS, program_version="0") as writer,
-        pytest.raises(ValueError, match="differ in their axis 'contact'"),
+        pytest.raises(ValueError, match="other labels on the axis 'contact'"),
     ):
         own = {name: ((1,), {"labels": [name], "unit": "F"}) for name in ("contact/gap", "contact/force")}
         writer.start_history(own)

@@ -161,6 +161,15 @@ def test_another_method_has_its_own_defaults_beside_what_the_deck_says(deck, wri
         assert row["value"] == tol
 
 
+def test_an_item_of_the_deck_that_a_requested_method_does_not_take_is_refused(deck, capsys):
+    deck.write_text(DECK.replace("HISTORY 3", "HISTORY 3 METHOD=LAGUERRE TOL=1E-11"))
+    assert main(["check", str(deck)]) == 0
+    assert main(["check", str(deck), "--method", "AUTO"]) == 2
+    told = capsys.readouterr().err
+    assert "error P217: TOL of AUTO is 1e-11, but must be at least 1e-09" in told and "give --tol" in told
+    assert main(["check", str(deck), "--method", "AUTO", "--tol", "1E-6"]) == 0
+
+
 @pytest.mark.parametrize("number", [{"dt": math.nan}, {"dt": 0}, {"dt": -1.0}, {"tol": math.inf}])
 def test_numbers_of_python_have_the_deck_s_limits(deck, number):
     with pytest.raises(DeckError, match=f"P217: {next(iter(number)).upper()} is"):

@@ -165,6 +165,7 @@ def test_protocols() -> None:
         (["GUESS"], "no law GUESS: there are hysteresis: BILINEAR"),
         (["BILINAER"], "did you mean BILINEAR?"),
         (["contact", "TAKEDA"], "no law TAKEDA: there are contact: "),
+        (["FLUID"], "FLUID is of the family damper: only"),
         (["ELASTIC"], "straight line"),
         (["TAKEDA", "ALF=1"], "loop:7:36: error P211"),
         (["TAKEDA", "ALFA=9"], "must be at least 0 and at most 1"),

@@ -120,7 +120,7 @@ def test_the_empty_range_of_the_page(n: int, weights: int):
     "words, said",
     [
         (("contacts",), "did you mean contact?"),
-        (("KELVIN_VOIGT",), "list contact KELVIN_VOIGT"),
+        (("KELVIN_VOIGT", "K"), "list contact KELVIN_VOIGT"),
         (("modal",), "list damping MODAL or list analysis MODAL"),
         (("zzz",), "there are section, element"),
         (("contact", "kelvin"), "did you mean KELVIN_VOIGT?"),
@@ -132,6 +132,10 @@ def test_an_unknown_name_gets_help(words: tuple[str, ...], said: str):
     with pytest.raises(KeyError) as error:
         listing(*words)
     assert said in error.value.args[0]
+
+
+def test_a_member_of_one_family_needs_no_family():
+    assert listing("kelvin_voigt") == listing("contact", "KELVIN_VOIGT")
 
 
 def test_names_in_any_case_and_old_codes():

@@ -210,7 +210,8 @@ class HistoryResult:
         """Compare the base shear with inertia and loads, if there are buildings."""
         if self.items.buildings:
             balance = self.recorder.envelopes.imbalance(self.items.buildings)
-            yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, "forces are out of balance")
+            cure = "forces are out of balance; where a method takes time steps, shorter ones help"
+            yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, cure)
 
     def _hinges(self) -> Iterator[Check]:
         """Compare the peaks of hinges, which the method tracks between the steps too, with the envelopes of

@@ -91,6 +91,9 @@ def law_of(name: str) -> Spec:
         return specs[0]
     if specs:
         raise LawTestError(f"{word} is a rule and a contact law: write hysteresis {word} or contact {word}")
+    if others := [f for f in catalog().families() if word in catalog().family(f) and not prefix]:
+        what = f"{word} is of the family {others[0]}"
+        raise LawTestError(f"{what}: only hysteresis rules and contact laws have loops")
     there = "; ".join(f"{f}: {', '.join(known[f])}" for f in families)
     near = suggest(word, [name for f in families for name in known[f]])
     raise LawTestError(f"no law {word}: " + hints(near, f"there are {there}"))

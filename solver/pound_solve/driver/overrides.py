@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Card, Model, Span
-from pound_deck.schema import REQUIRED, Spec, out_of_limits
+from pound_deck.schema import REQUIRED, Field, Spec, out_of_limits
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
 
@@ -69,7 +69,7 @@ def _changed(
     method = _method(name or card["METHOD"], diagnostics)
     if method is None:
         return None
-    told = list(_told(asked, method))
+    told = [*_told(asked, method), *_unfit(card, method, asked)]
     diagnostics += told
     if has_errors(told):
         return None
@@ -113,11 +113,31 @@ def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnosti
             yield Diagnostic("P211", message, option(item), severity="warning")
 
 
+def _unfit(card: Card, method: Spec, asked: Mapping[str, float]) -> Iterator[Diagnostic]:
+    """Yield diagnostics for items that the card's line gives and a requested method does not take so."""
+    for field in method.fields:
+        stated = field.name in card.spans and field.name not in asked
+        if stated and (wrong := _outside(card.values[field.name], field)):
+            hint = f"take {field.name} out of HISTORY" + ", or give --tol" * (field.name == "TOL")
+            message = f"{field.name} of {method.name} {wrong}"
+            yield Diagnostic("P217", message, card.spans[field.name], hint)
+
+
+def _outside(value: Any, field: Field) -> str:
+    return out_of_limits(value, field) if isinstance(value, float | int) else ""
+
+
 def with_method(card: Card, method: Spec, settings: Mapping[str, Any]) -> Card:
     """HISTORY card with another method.  Its items are those of `settings`, else those that the card's line
-    gives, else the method's defaults, which may differ between methods for the same item.
+    gives within the method's limits, else the method's defaults; both may differ between methods for the
+    same item.
     """
-    items = {f.name: card.values[f.name] if f.name in card.spans else f.default for f in method.fields}
+    items = {
+        f.name: card.values[f.name]
+        if f.name in card.spans and not _outside(card.values[f.name], f)
+        else f.default
+        for f in method.fields
+    }
     items |= {item: value for item, value in settings.items() if item in items}
     spans = dict(card.spans) | {item: option(item) for item in ("METHOD", *settings)}
     values = {**card.values, **items, "METHOD": method.name}

@@ -53,7 +53,7 @@ def listing(family: str | None = None, name: str | None = None) -> str:
     Parameters
     ----------
     family : str, optional
-        Family in any case; all families if left out.
+        Family in any case, or a member that only one family has; all families if left out.
     name : str, optional
         Member of it, by name or old code; all members if left out.
 
@@ -72,7 +72,10 @@ def listing(family: str | None = None, name: str | None = None) -> str:
         return "\n".join(_overview(known))
     key = family.lower()
     if key not in known.families():
-        raise KeyError(_no_family(known, family))
+        owners = [f for f in known.families() if family.upper() in known.family(f)]
+        if name is not None or len(owners) != 1:
+            raise KeyError(_no_family(known, family, owners))
+        key, name = owners[0], family
     members = known.family(key)
     if name is None:
         return "\n".join(_with_items(key, members.values()))
@@ -84,8 +87,7 @@ def listing(family: str | None = None, name: str | None = None) -> str:
     return "\n".join(_sheet(spec))
 
 
-def _no_family(known: Catalog, word: str) -> str:
-    owners = [f for f in known.families() if word.upper() in known.family(f)]
+def _no_family(known: Catalog, word: str, owners: list[str]) -> str:
     if owners:
         return f"{word.upper()} is no family: write " + " or ".join(
             f"list {f} {word.upper()}" for f in owners

@@ -198,10 +198,13 @@ class History:
     closeup : bool
         Whether close-ups of collisions have it, too.
     extremes : bool
-        Whether its smallest and largest values within intervals are kept.
+        Whether its smallest and largest values within intervals are kept.  `values` then also gets the
+        extremes of nodes, laws, outputs and sums as if they were samples: it may select and order them, but
+        must not add them up.
     axes : mapping of str to str
         What a number of the row is found by (``node``, ``member``, ``component``, ...), and the attribute
-        that holds these labels.  Without them a label alone finds it.
+        that holds these labels.  Without them a label alone finds it.  The histories of a group share their
+        axes: an axis of one name has the same labels in all of them, and no group has the name of an axis.
     """
 
     name: str

@@ -298,12 +298,12 @@ class Writer:
             place["time"] = self._history["time"]  # one more name of the same dataset
         dataset.dims[0].attach_scale(self._history["time"])
         for number, axis in enumerate(axes_of(name, attributes), 1):
-            scale = _beside(place, axis.name, axis.labels)
+            scale = _beside(name, place, axis.name, axis.labels)
             if not scale.is_scale:
                 scale.make_scale(axis.name)
             dataset.dims[number].attach_scale(scale)
             for other, values in axis.coordinates.items():
-                along = _beside(place, other, values)
+                along = _beside(name, place, other, values)
                 if not along.dims[0]:
                     along.dims[0].attach_scale(scale)
             if axis.coordinates:
@@ -431,14 +431,25 @@ def _items(values: Any) -> NDArray[Any]:
     return np.array([storable(str(v)) for v in np.atleast_1d(items)], dtype=object)
 
 
-def _beside(place: h5py.Group, name: str, values: Sequence[Any]) -> h5py.Dataset:
-    """Dataset with the labels of an axis, created if it is missing; the histories of a group share it."""
+def _beside(history: str, place: h5py.Group, axis: str, values: Sequence[Any]) -> h5py.Dataset:
+    """Dataset with the labels of an axis of a history, created if it is missing; the histories of a group
+    share it.
+
+    Raises
+    ------
+    ValueError
+        Another history of the group has other labels, or a group has the name of the axis.
+    """
     items = _items(values)
-    if name not in place:
-        return place.create_dataset(name, data=items, dtype=None if items.dtype.kind in "iuf" else _TEXT)
-    dataset: h5py.Dataset = place[name]
+    if axis not in place:
+        return place.create_dataset(axis, data=items, dtype=None if items.dtype.kind in "iuf" else _TEXT)
+    dataset = place[axis]
+    if not isinstance(dataset, h5py.Dataset):
+        raise ValueError(f"history {history!r}: a group of histories has the name of its axis {axis!r}")
     if _items(dataset.asstr()[()] if items.dtype.kind == "O" else dataset[()]).tolist() != items.tolist():
-        raise ValueError(f"two histories of one group differ in their axis {name!r}")
+        raise ValueError(
+            f"history {history!r}: another history of its group has other labels on the axis {axis!r}"
+        )
     return dataset
 
 

@@ -23,7 +23,7 @@ OF_THE_MATRIX = ("family", "law", "quick")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     common.add_deck(parser, nargs="?")
-    parser.add_argument("--methods", metavar="M,M,...", help="methods (default: all)")
+    parser.add_argument("--methods", metavar="M,M,...", help="methods (default: all but LAPLACE)")
     parser.add_argument(
         "--steps",
         metavar="DT,DT,...",

@@ -49,6 +49,7 @@ from pound_solve.laws.automaton import (
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
+from pound_solve.laws.refusal import ItemError
 
 OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
 
@@ -149,7 +150,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     if plain:
         k1, k2, dy = (values[name] for name in plain)
         if k2 > k1:
-            raise ValueError(f"K2 {k2:g} is above K1 {k1:g}: the second stiffness is the lower one")
+            raise ItemError(f"K2 {k2:g} is above K1 {k1:g}: the second stiffness is the lower one", "K2")
         required = resulting = math.nan
         worst = dy * (1.0 + math.sqrt(k1 / k2))
         slow, at = (speed(k1, k2, dy, x, reduced_mass) for x in (dy, worst))
@@ -184,9 +185,10 @@ def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:
         k1 = k * (a + s * (1.0 - a)) / (a * (1.0 - s))
         k2 = (k - a * k1) / (1.0 - a)
     if k2 <= 0.0:
-        raise ValueError(
+        raise ItemError(
             f"E {e:g} is out of reach: K2 would not be positive; with A {a:g} E must be above {least:.4g}, "
-            "a smaller A reaches lower"
+            "a smaller A reaches lower",
+            "E",
         )
     return k1, k2, a * dm
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind
+from pound_solve.laws.refusal import ItemError
 
 Relation = Callable[[float], float]
 
@@ -58,7 +59,9 @@ def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: floa
             f"give the damping once: {ways}" + (", not " + " and ".join(present) if present else "")
         )
     if present[0] != free and reduced_mass == 0.0:
-        raise ValueError(f"{present[0]} needs colliding masses: give the nodes weight, or MASSES")
+        raise ItemError(
+            f"{present[0]} needs colliding masses: give the nodes weight, or MASSES", present[0]
+        )
     return present[0]
 
 

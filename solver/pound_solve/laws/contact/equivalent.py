@@ -27,6 +27,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.kelvin_voigt import RULE, TENSION, Built
+from pound_solve.laws.refusal import ItemError
 from pound_solve.laws.two_bars import Diaphragm, Pair
 
 
@@ -53,8 +54,9 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     paper, tension = values["MODEL"] == "PAPER", values["TENSION"] == "YES"
     e = values["R"] * (pair.e_paper if paper else pair.e)
     if not 0.0 < e <= 1.0:
-        raise ValueError(
-            f"Eq. 14 of Cole et al. gives a restitution of {e:.4g}, which no contact has: take MODEL=EXACT"
+        raise ItemError(
+            f"Eq. 14 of Cole et al. gives a restitution of {e:.4g}, which no contact has: take MODEL=EXACT",
+            "MODEL",
         )
     xi = restitution.sticky_ratio(e) if paper or tension else restitution.no_tension_ratio(e)
     if paper:

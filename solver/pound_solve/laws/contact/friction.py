@@ -35,6 +35,7 @@ from pound_solve.laws.automaton import (
     rate_independent,
 )
 from pound_solve.laws.mirror import side
+from pound_solve.laws.refusal import ItemError
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
 RELEASED = 2  #: index of the event that the contact opens
@@ -107,5 +108,7 @@ def build(kt: float, mu: float, mud: float) -> Law:
         The dynamic coefficient is above the static one.
     """
     if mud > mu:
-        raise ValueError(f"MUD {mud:g} is above MU {mu:g}: what slips holds no better than what sticks")
+        raise ItemError(
+            f"MUD {mud:g} is above MU {mu:g}: what slips holds no better than what sticks", "MUD"
+        )
     return Law(RULE, (kt, mu, mud))

@@ -42,6 +42,7 @@ from pound_solve.laws.contact.power import (
     spring_force,
     stiffness_unit,
 )
+from pound_solve.laws.refusal import ItemError
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -110,7 +111,9 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     k, n = values["K"], values["N"]
     constants.chosen(values, ("XI", "E"), reduced_mass)
     if values["RELATION"] == "PUBLISHED" and n != 1.5:
-        raise ValueError("the published relation of E to XI is for N=1.5: RELATION=EXACT holds for any N")
+        raise ItemError(
+            "the published relation of E to XI is for N=1.5: RELATION=EXACT holds for any N", "N"
+        )
     scale = math.sqrt(2.0 / (n + 1.0))  # to the ratio of the linear law with the same path
     damping = constants.constant(
         values,

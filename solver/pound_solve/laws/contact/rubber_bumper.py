@@ -41,6 +41,7 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.contact.power import power_fields, spring_energy, spring_force, stiffness_unit
+from pound_solve.laws.refusal import ItemError
 
 OPEN, APPROACH, PARTING, STIFF_APPROACH, STIFF_PARTING = range(5)  #: stiff: the rubber is used up
 
@@ -161,7 +162,10 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     """
     k, n, thickness, beyond = (values[x] for x in ("K", "N", "THICKNESS", "KU"))
     if (thickness is None) != (beyond is None):
-        raise ValueError("THICKNESS and KU, the stiffness beyond its limit, go together")
+        raise ItemError(
+            "THICKNESS and KU, the stiffness beyond its limit, go together",
+            "KU" if thickness is None else "THICKNESS",
+        )
     constants.chosen(values, ("D", "E"), reduced_mass)
     damping = constants.constant(
         values, "D", restitution.in_restitution, restitution.in_restitution_constant, published

@@ -33,6 +33,7 @@ from pound_solve.laws.automaton import (
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
+from pound_solve.laws.refusal import ItemError
 
 OPEN, PRESSED = 0, 1
 
@@ -83,7 +84,9 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         An overlap, which rigid bodies cannot have; or a node without mass, which nothing would stop.
     """
     if values["GAP"] < 0.0:
-        raise ValueError("rigid bodies do not overlap: GAP must be 0 or more, or LAW one with a stiffness")
+        raise ItemError(
+            "rigid bodies do not overlap: GAP must be 0 or more, or LAW one with a stiffness", "GAP"
+        )
     if reduced_mass == 0.0:
         raise ValueError("a rigid contact needs masses that meet: give its nodes weight")
     e = values["E"]

@@ -35,6 +35,7 @@ from pound_solve.laws.automaton import (
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
+from pound_solve.laws.refusal import ItemError
 
 OPEN, MOST = 0, 8  #: segments of the table are branches 1 to MOST
 UNLOADING = MOST + 1
@@ -134,17 +135,20 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     """
     depths, forces, ku = values["DEPTHS"], values["FORCES"], values["KU"]
     if len(depths) != len(forces):
-        raise ValueError(f"DEPTHS has {len(depths)} values and FORCES {len(forces)}: they go in pairs")
+        raise ItemError(
+            f"DEPTHS has {len(depths)} values and FORCES {len(forces)}: they go in pairs", "DEPTHS"
+        )
     path = [(0.0, 0.0), *zip(depths, forces)]
     slopes = []
     for (d0, f0), (d1, f1) in pairwise(path):
         if d1 <= d0:
-            raise ValueError(f"DEPTHS must ascend from above 0: {d1:g} follows {d0:g}")
+            raise ItemError(f"DEPTHS must ascend from above 0: {d1:g} follows {d0:g}", "DEPTHS")
         slopes.append((f1 - f0) / (d1 - d0))
     if slopes[-1] < 0.0:
-        raise ValueError(
+        raise ItemError(
             f"the last segment falls, and beyond its end the force would pull: end FORCES level, with a "
-            f"further point of {forces[-1]:g}"
+            f"further point of {forces[-1]:g}",
+            "FORCES",
         )
     law = Law(
         RULE, (slopes[0], ku or 0.0, values["GAP"], len(depths), *(x for pair in path[1:] for x in pair))
@@ -153,7 +157,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         resulting, note = 1.0, "elastic: back along the table"
     else:
         if ku < max(slopes):
-            raise ValueError(f"KU {ku:g} is below the steepest slope of the table, {max(slopes):g}")
+            raise ItemError(f"KU {ku:g} is below the steepest slope of the table, {max(slopes):g}", "KU")
         resulting = math.nan
         brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
         back = 0.5 * forces[-1] ** 2 / ku

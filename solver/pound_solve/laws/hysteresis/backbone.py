@@ -43,6 +43,7 @@ from typing import Any
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import Numbers, linear, passes
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.refusal import ItemError
 
 # branches of the positive side; those of the negative side are one more
 ELASTIC, YIELDING, WEAKENING = 0, 1, 3
@@ -137,7 +138,7 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     need_both_sides(fy_plus, fy_minus)
     r, alpha = values.get("R", 0.0), values.get("ALFA", 0.0)
     if not 0.0 <= r < 1.0:
-        raise ValueError("R of a degrading rule lies from 0 to below 1")
+        raise ItemError("R of a degrading rule lies from 0 to below 1", "R")
     return (k, fy_plus, fy_minus, r, alpha, *_loss(values))
 
 
@@ -161,15 +162,15 @@ def _loss(values: Mapping[str, Any]) -> Numbers:
     form = FORMS[values["ILOS"]]
     begin, end, left, gone, by_cycle = (values[name] for name in _ITEMS)
     if None in (begin, end, left):
-        raise ValueError("ILOS needs DUCT1, DUCT2 and RDUCT")
+        raise ItemError("ILOS needs DUCT1, DUCT2 and RDUCT", "ILOS")
     if begin >= end:
-        raise ValueError("DUCT2 must be larger than DUCT1")
+        raise ItemError("DUCT2 must be larger than DUCT1", "DUCT2")
     if gone is not None and gone <= end:
-        raise ValueError("DUCT3 must be larger than DUCT2")
+        raise ItemError("DUCT3 must be larger than DUCT2", "DUCT3")
     if gone is not None and left <= LEAST:
-        raise ValueError(f"RDUCT must be larger than {LEAST:g}, which is left at DUCT3")
+        raise ItemError(f"RDUCT must be larger than {LEAST:g}, which is left at DUCT3", "RDUCT")
     if gone is None and form in (_EACH_SUDDEN, _LARGEST_SUDDEN):
-        raise ValueError("a SUDDEN loss needs DUCT3, where it happens")
+        raise ItemError("a SUDDEN loss needs DUCT3, where it happens", "ILOS")
     if (by_cycle is None) is (form >= _COUNTING):
         raise ValueError("RCYC goes with the forms of ILOS that end in RCYC or SUDDEN, and these need it")
     return begin, end, left, float(form), gone or 0.0, (by_cycle or 0.0) / 100.0

@@ -33,6 +33,7 @@ from pound_solve.laws.automaton import (
     below,
     linear,
 )
+from pound_solve.laws.refusal import ItemError
 
 SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
 
@@ -141,7 +142,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     gap = values["SLACK"]
     gap_minus = gap[1] if len(gap) == 2 else -gap[0]
     if gap[0] < 0 or gap_minus > 0:
-        raise ValueError("SLACK is written positive, then negative (signed)")
+        raise ItemError("SLACK is written positive, then negative (signed)", "SLACK")
     grow = float(values["GROW"] == "YES")
     return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], grow))
 

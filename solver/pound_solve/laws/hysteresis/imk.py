@@ -48,6 +48,7 @@ from pound_solve.laws.automaton import (
     Numbers,
 )
 from pound_solve.laws.mirror import need_both_sides
+from pound_solve.laws.refusal import ItemError
 
 FAILED = 0
 BRANCHES = BranchKind.OPEN.named(
@@ -161,7 +162,7 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     both = [values[name] for name in ("DP", "DPC", "DU")]
     dp, dpc, du = ((x[0], x[-1]) if x else (0.0, 0.0) for x in both)
     if values["DU"] and not (du[0] > fy_plus / k and du[1] > -fy_minus / k):
-        raise ValueError("the ultimate deformation DU is beyond the yield deformation")
+        raise ItemError("the ultimate deformation DU is beyond the yield deformation", "DU")
     mean = 0.5 * (fy_plus - fy_minus)
     modes = values["LAMBDA"]
     modes = modes * 4 if len(modes) == 1 else modes + (0.0,) * (4 - len(modes))

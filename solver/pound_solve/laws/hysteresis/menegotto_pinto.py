@@ -47,6 +47,7 @@ from pound_solve.laws.automaton import (
 )
 from pound_solve.laws.hysteresis.backbone import R
 from pound_solve.laws.mirror import need_both_sides
+from pound_solve.laws.refusal import ItemError
 
 LOADING, UNLOADING = 0, 1
 LEAST_R = 1.2  #: least exponent: at 1 the integral of the curve has another form
@@ -184,9 +185,9 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     need_both_sides(fy_plus, fy_minus)
     sharp, c1 = values["R0"], values["CR1"]
     if not 0.0 <= values["R"] < 1.0:
-        raise ValueError("R of this rule lies from 0 to below 1")
+        raise ItemError("R of this rule lies from 0 to below 1", "R")
     if sharp * (1.0 - c1) < LEAST_R:
-        raise ValueError(f"R0 (1 - CR1), the roundest knee, must not be below {LEAST_R:g}")
+        raise ItemError(f"R0 (1 - CR1), the roundest knee, must not be below {LEAST_R:g}", "R0")
     hardening = (values["A1"], values["A2"], values["A3"], values["A4"])
     return Law(RULE, (k, fy_plus, fy_minus, values["R"], sharp, c1, values["CR2"], *hardening))
 

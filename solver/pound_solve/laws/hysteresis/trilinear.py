@@ -36,6 +36,7 @@ from pound_solve.laws.automaton import (
     below,
     linear,
 )
+from pound_solve.laws.refusal import ItemError
 
 ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
 
@@ -97,7 +98,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     """
     r, r2, f2 = values["R"], values["R2"], values["F2"]
     if not 0.0 < r < 1.0 or r2 >= r:
-        raise ValueError("slopes must fall: R between 0 and 1, and R2 below R")
+        raise ItemError("slopes must fall: R between 0 and 1, and R2 below R", "R2")
     plus, minus = (1.0 + (f - 1.0) / r for f in (f2[0], f2[-1]))
     d1_plus, d1_minus = fy_plus / k, fy_minus / k
     return Law(RULE, (k, r, r2, d1_plus, d1_minus, d1_plus * plus, d1_minus * minus))

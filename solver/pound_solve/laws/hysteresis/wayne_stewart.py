@@ -51,6 +51,7 @@ from pound_solve.laws.automaton import (
     linear,
 )
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.refusal import ItemError
 
 SLACK, FAILED, UNLOADING = 0, 1, 2
 #: the first of each pair of branches: positive side, negative side
@@ -258,11 +259,11 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     fu_minus = fu[1] if len(fu) == 2 else -fu[0]
     gap_minus = slack[1] if len(slack) == 2 else -slack[0]
     if slack[0] < 0 or gap_minus > 0:
-        raise ValueError("SLACK is written positive, then negative (signed)")
+        raise ItemError("SLACK is written positive, then negative (signed)", "SLACK")
     if fu[0] < fy_plus or fu_minus > fy_minus:
-        raise ValueError("FU is not less than the yield force; positive, then negative (signed)")
+        raise ItemError("FU is not less than the yield force; positive, then negative (signed)", "FU")
     if r == 0.0 and (fu[0], fu_minus) != (fy_plus, fy_minus):
-        raise ValueError("without hardening (R=0) the ultimate force FU is the yield force")
+        raise ItemError("without hardening (R=0) the ultimate force FU is the yield force", "FU")
     pinch = r if values["RPINCH"] is None else values["RPINCH"]
     p = (
         *(k, fy_plus, fy_minus, r, fu[0], fu_minus, fi, values["PTRI"], slack[0], gap_minus),

@@ -172,7 +172,7 @@ class Format:
     read : function (text, options) -> RawRecord
         Samples out of the file's text; `options` are the values of the deck's card by field name.
     greedy : bool
-        The format takes nearly any numbers, so it is tried after all the others.
+        The format has no words to be recognised by, only numbers, so it is tried after all the others.
     """
 
     sniff: Callable[[str], bool]

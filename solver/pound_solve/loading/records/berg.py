@@ -50,5 +50,5 @@ SPEC: Final = Spec(
     "time-acceleration pairs, four per line (Ruaumoko .EQB)",
     code=1,
     reference="Carr, Ruaumoko manual: earthquake records",
-    impl=Format(sniff, read),
+    impl=Format(sniff, read, greedy=True),
 )

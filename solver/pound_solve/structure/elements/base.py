@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from pound_deck.model import Card, Element, Node
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import GAP, Branch, Law, State
 from pound_solve.laws.condensed import without
+from pound_solve.laws.refusal import ItemError
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMember
 from pound_solve.structure.dofs import Dof
@@ -270,6 +271,11 @@ class ElementError(Exception):
         super().__init__(message)
         self.item = item
 
+    @classmethod
+    def of_law(cls, refusal: ValueError, item: str) -> Self:
+        """Refusal of a law, at the law's item at fault, or at `item`, which names the law."""
+        return cls(str(refusal), refusal.item if isinstance(refusal, ItemError) else item)
+
 
 #: Fields of the damage index of Park and Ang, for elements that yield
 DAMAGE = (
@@ -339,7 +345,7 @@ def hysteretic(
     try:
         law = rule.impl(card.values, k, plus, minus)
     except ValueError as err:
-        raise ElementError(str(err), "RULE") from None
+        raise ElementError.of_law(err, "RULE") from None
     dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
     yields = law.rule.first_yield(law.p) if law.rule.first_yield else (plus / k, minus / k)
     spring = LawSpring(element, component, rule.name, dofs, factors, law, k, yields, strength, unit=unit)

@@ -76,7 +76,7 @@ def rubbing(
     try:
         law = friction.build(card["KT"], card["MU"], mud)
     except ValueError as err:
-        raise ElementError(str(err), "MUD") from None
+        raise ElementError.of_law(err, "MUD") from None
     row, facts = across(ends, (-ny, nx)), {"k": card["KT"]}
     spring = LawSpring(
         context.element.id,
@@ -122,7 +122,7 @@ def build(context: ElementContext) -> Parts:
     try:
         built = card.laws["LAW"][0].impl({**values, "MASSES": masses}, reduced)
     except ValueError as err:
-        raise ElementError(str(err), "LAW") from None
+        raise ElementError.of_law(err, "LAW") from None
     rubbed, rubs = rubbing(context, ends, (nx, ny))
     facts = {
         "k": built.k,

@@ -42,7 +42,7 @@ def build(context: ElementContext) -> Parts:
         try:
             law = card.laws["LAW"][0].impl(card.values, c, limits, ends)
         except ValueError as err:
-            raise ElementError(str(err), "LAW") from None
+            raise ElementError.of_law(err, "LAW") from None
         if law is None:
             r = np.array(row)
             parts.damping.append(ElementMatrix(dofs, c * np.outer(r, r)))

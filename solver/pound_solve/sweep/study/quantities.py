@@ -33,7 +33,8 @@ class Quantity:
     table : str
         Table whose rows hold it.
     label : callable
-        Label of a row; None leaves the row out.
+        Label of a row; empty for one number a run; None leaves the row out.  Of several rows with one label
+        the largest value counts.
     value : callable
         Value in a row.
     """

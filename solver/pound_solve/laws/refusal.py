@@ -1,0 +1,19 @@
+"""How a law refuses the values of its card."""
+
+from __future__ import annotations
+
+
+class ItemError(ValueError):
+    """An item has a value that contradicts another one, or what the law needs.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, and what would be right.
+    item : str
+        Name of the item at fault, at whose place the message is told.
+    """
+
+    def __init__(self, message: str, item: str) -> None:
+        super().__init__(message)
+        self.item = item
