@@ -959,11 +959,11 @@ def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
 
     real, tried = newmark.integrate, []
 
-    def stops(system, start, monitored, options, recorder):
+    def stops(problem, options):
         tried.append(options["DT"])
         if len(tried) in bad:
             raise Stop("A503", 1e-6, "laws alternate")
-        return real(system, start, monitored, options, recorder)
+        return real(problem, options)
 
     steps_alone(monkeypatch)
     monkeypatch.setattr(newmark, "integrate", stops)
@@ -1019,9 +1019,9 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     def unfit(self):
         raise tolerance_refinement.UnfitError("stopped", False)
 
-    def endless(system, start, monitored, limits, recorder):
+    def endless(problem, limits):
         spent.append(limits["COST"])
-        raise costs.CostlyError(limits["COST"], 0.9 * float(start.times[-1]))
+        raise costs.CostlyError(limits["COST"], 0.9 * float(problem.start.times[-1]))
 
     real = step_refinement.StepRefinement.least_cost
 
@@ -1045,7 +1045,7 @@ def test_others_follow_a_trial_of_exact_that_rounding_stops(tmp_path, monkeypatc
     """Where the structure gives way they do not, and EXACT is not tried again."""
     tried = []
 
-    def stops(system, start, monitored, limits, recorder):
+    def stops(problem, limits):
         tried.append(limits["COST"])
         raise Stop(code, 0.5, "stopped")
 
@@ -1089,8 +1089,8 @@ def cost_of_series(tmp_path, monkeypatch, text):
 
     real = auto.cost_of_series
 
-    def tell(system, start):
-        raise Told(real(system, start) / costs.of_series_step(system))
+    def tell(problem):
+        raise Told(real(problem) / costs.of_series_step(problem.system))
 
     deck = tmp_path / "series.inp"
     deck.write_text(text)

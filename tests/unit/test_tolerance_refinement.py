@@ -38,9 +38,9 @@ def tolerances(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Tolerances of the runs that follow."""
     out, real = list[float](), laguerre.integrate
 
-    def integrate(system: Any, start: Any, monitored: Any, options: Any, recorder: Any) -> Any:
+    def integrate(problem: Any, options: Any) -> Any:
         out.append(options["TOL"])
-        return real(system, start, monitored, options, recorder)
+        return real(problem, options)
 
     monkeypatch.setattr(laguerre, "integrate", integrate)
     return out
@@ -158,9 +158,9 @@ def test_a_run_dearer_than_series_is_given_up(tmp_path: Path, monkeypatch: pytes
     """No more steps are allowed than series cost, beside those that are expected."""
     allowed, real = list[float](), laguerre.integrate
 
-    def integrate(system: Any, start: Any, monitored: Any, options: Any, recorder: Any) -> Any:
+    def integrate(problem: Any, options: Any) -> Any:
         allowed.append(options["STEPS"])
-        return real(system, start, monitored, options, recorder)
+        return real(problem, options)
 
     monkeypatch.setattr(laguerre, "integrate", integrate)
     monkeypatch.setattr(auto, "cost_of_series", lambda *given: 2.0)

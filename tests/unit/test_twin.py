@@ -120,11 +120,10 @@ def test_the_twin_moves_otherwise(
     for module in (exact, taylor):
         real = module.integrate
 
-        def integrate(system: Any, start: Any, *given: Any, real: Any = real) -> Any:
-            seen.append(
-                {"excitation": system.excitation.coefs, "velocity": start.v, "displacement": start.u}
-            )
-            return real(system, start, *given)
+        def integrate(problem: Any, options: Any, real: Any = real) -> Any:
+            start, excitation = problem.start, problem.system.excitation
+            seen.append({"excitation": excitation.coefs, "velocity": start.v, "displacement": start.u})
+            return real(problem, options)
 
         monkeypatch.setattr(module, "integrate", integrate)
     (check,) = told(run(tmp_path, "AUTO", 1.0, moved=moved))

@@ -23,7 +23,7 @@ from pound_solve.analyses.history_start import begin, initial
 from pound_solve.analyses.recorder import HistoryRecorder, RecordedItems, SampleBlock
 from pound_solve.analyses.spring_response import SpringResponse, spring_responses
 from pound_solve.check import Bound, Check, Subject, at_least, at_most, beyond
-from pound_solve.integrate.protocol import INTERRUPTED, MonitoredOutputs, Outcome, Start, Stop
+from pound_solve.integrate.protocol import INTERRUPTED, MonitoredOutputs, Outcome, Problem, Start, Stop
 from pound_solve.interruption import undisturbed
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
@@ -408,7 +408,7 @@ def _integrate(
     options = {f.name: card[f.name] for f in spec.fields}
     while start.times[0] < end:
         part = replace(start, times=_until(start.times, saved if start.times[0] < saved else end))
-        parts.append(spec.impl(system, part, recorder.items.drifts, options, recorder))
+        parts.append(spec.impl(Problem(system, part, recorder.items.drifts, recorder), options))
         recorder.flush()
         here = _state(recorder, parts[-1])
         if recorder.reached == saved:

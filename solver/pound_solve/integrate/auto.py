@@ -34,10 +34,9 @@ from pound_solve.integrate.convergence.tolerance_refinement import ToleranceRefi
 from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
 from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
-    MonitoredOutputs,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     goals,
     not_in_series,
@@ -86,11 +85,12 @@ def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
     return int(np.isclose(np.diff(times), length, rtol=1e-9, atol=0.0).sum())
 
 
-def cost_of_series(system: ReducedSystem, start: Start) -> float:
+def cost_of_series(problem: Problem[Recorder]) -> float:
     """Return the cost of TAYLOR; infinite where it is not applicable."""
+    system, times = problem.system, problem.start.times
     if not has_series(system):
         return np.inf
-    times = np.append(start.times[0], goals(system, start.times)[0])
+    times = np.append(times[0], goals(system, times)[0])
     rate, count = costs.fastest_rate(system), len(times) - 1
     in_modes = intervals_in_modes(system, times, rate)
     by_series = float(times[-1] - times[0]) * rate * (1.0 - in_modes / count) / costs.TAYLOR_RADIANS
@@ -105,30 +105,23 @@ def stepped(system: ReducedSystem, reason: str) -> Decision:
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks converge")
 
 
-def by_series(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    recorder: Recorder,
-    **options: Any,
-) -> Outcome:
+def by_series(problem: Problem[Recorder], **options: Any) -> Outcome:
     """Run TAYLOR, and state why."""
     from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
 
-    reason = SERIES if rigid_contact(system) is None else RIGID
-    system.decisions.append(Decision("method", "TAYLOR", reason))
-    return taylor.integrate(system, start, monitored, options, recorder)
+    reason = SERIES if rigid_contact(problem.system) is None else RIGID
+    problem.system.decisions.append(Decision("method", "TAYLOR", reason))
+    return taylor.integrate(problem, options)
 
 
-def by_few_series(
-    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
-) -> Outcome | None:
+def by_few_series(problem: Problem[EnvelopeRecorder]) -> Outcome | None:
     """Run TAYLOR; None where dampers that hardly move would require too many steps."""
+    system = problem.system
     if not any(s.role is Role.DAMPER and s.law.curved for s in system.structure.laws):
-        return by_series(system, start, monitored, recorder)
-    replay, known = Replay(recorder), len(system.decisions)
+        return by_series(problem)
+    replay, known = Replay(problem.recorder), len(system.decisions)
     try:
-        outcome = by_series(system, start, monitored, replay, STEPS=MAX_SERIES)
+        outcome = by_series(problem.recorded_by(replay), STEPS=MAX_SERIES)
     except Stop as stop:
         if stop.code == "A502":
             del system.decisions[known:]
@@ -165,7 +158,7 @@ def to_tolerance(
     while True:
         # so both cost no more than twice what series alone would
         if series + runs.events * costs.of_series_step(system) <= runs.spent + runs.cost_ahead():
-            outcome = by_few_series(system, runs.start, runs.monitored, runs.recorder)
+            outcome = by_few_series(runs.problem)
             if outcome is not None:
                 return outcome
             series = np.inf
@@ -181,52 +174,41 @@ def to_tolerance(
             return outcome
 
 
-def with_rigid_contact(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: EnvelopeRecorder,
-) -> Outcome:
+def with_rigid_contact(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> Outcome:
     """Run the method of choice for a structure with rigid contacts, which only EXACT and TAYLOR take."""
-    refuse_rigid(system, start, "AUTO")
+    system = problem.system
+    refuse_rigid(problem, "AUTO")
     if not_linear(system):
-        return by_series(system, start, monitored, recorder)
+        return by_series(problem)
     if not has_series(system):
         system.decisions.append(Decision("method", "EXACT", RIGID))
-        return exact.integrate(system, start, monitored, {}, recorder)
-    series = cost_of_series(system, start)
+        return exact.integrate(problem, {})
+    series = cost_of_series(problem)
     if series + loading() <= SERIES_FIRST:
-        if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
+        if (outcome := by_few_series(problem)) is not None:
             return outcome
         series = np.inf
-    trial = ExactTrial(system, start, monitored, recorder, min(tolerances(options).values()), "")
-    return by_trial(trial, series) or by_series(system, start, monitored, recorder)
+    trial = ExactTrial(problem, min(tolerances(options).values()), "")
+    return by_trial(trial, series) or by_series(problem)
 
 
-def by_choice(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: EnvelopeRecorder,
-) -> Outcome:
+def by_choice(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> Outcome:
     """Choose a method, state why, and run it."""
-    asked = system, start, monitored, recorder, options
+    system = problem.system
     if rigid_contact(system) is not None:
-        return with_rigid_contact(system, start, monitored, options, recorder)
+        return with_rigid_contact(problem, options)
     curved = not_linear(system)
-    series, reason = cost_of_series(system, start), not_in_series(system) or curved
+    series, reason = cost_of_series(problem), not_in_series(system) or curved
     serves = provider().fast and not curved
-    implicit = ToleranceRefinement(*asked, series) if serves else None
+    implicit = ToleranceRefinement(problem, options, series) if serves else None
     at_once = SERIES_FIRST if implicit is None else max(SERIES_ALWAYS, implicit.cost_ahead())
     if series + loading() <= at_once:
-        if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
+        if (outcome := by_few_series(problem)) is not None:
             return outcome
         series = np.inf
-    trial = ExactTrial(system, start, monitored, recorder, min(tolerances(options).values()), curved)
+    trial = ExactTrial(problem, min(tolerances(options).values()), curved)
     if series <= at_once:
-        outcome = by_trial(trial, series) or by_few_series(system, start, monitored, recorder)
+        outcome = by_trial(trial, series) or by_few_series(problem)
         if outcome is not None:
             return outcome
         series = np.inf
@@ -237,24 +219,18 @@ def by_choice(
         except UnfitError as err:
             reason = str(err)
             if err.dear:
-                return by_series(system, start, monitored, recorder)
+                return by_series(problem)
         series = np.inf  # which stop there, too
-    return to_tolerance(StepRefinement(*asked), stepped(system, reason or DEAR), trial, series)
+    return to_tolerance(StepRefinement(problem, options), stepped(system, reason or DEAR), trial, series)
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: EnvelopeRecorder,
-) -> Outcome:
+def integrate(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> Outcome:
     """Run the method of choice, and its twin where its error is not estimated otherwise."""
-    watch = Watch(recorder)
-    outcome = by_choice(system, start, monitored, options, watch)
+    watch = Watch(problem.recorder)
+    outcome = by_choice(problem.recorded_by(watch), options)
     if outcome.exact:
         tol = min(tolerances(options).values())
-        outcome.checks = [*twin.checks(system, start, monitored, outcome, watch, tol), *outcome.checks]
+        outcome.checks = [*twin.checks(problem, outcome, watch, tol), *outcome.checks]
     return outcome
 
 

@@ -11,8 +11,8 @@ from pound_solve.integrate.protocol import (
     LawValues,
     MonitoredOutputs,
     Motion,
+    Problem,
     Recorder,
-    Start,
     Stop,
     rigid_contact,
     without_steps,
@@ -82,10 +82,8 @@ def others(system: ReducedSystem) -> str:
     return f"METHOD={' or '.join([*able, 'AUTO'])} takes them"
 
 
-def condensed(
-    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder, method: str
-) -> tuple[ReducedSystem, Start, MonitoredOutputs, Recorder]:
-    """Return the arguments of a method that works on full matrices, with massless DOFs without dashpots
+def condensed(problem: Problem[Recorder], method: str) -> Problem[Recorder]:
+    """Return the problem for a method that works on full matrices, with massless DOFs without dashpots
     condensed.
 
     Raises
@@ -93,11 +91,12 @@ def condensed(
     Stop
         There are more unknowns than `MAX_UNKNOWNS`.
     """
+    system, start, monitored = problem.system, problem.start, problem.monitored
     if system.size > MAX_UNKNOWNS:
         why = f"{method} works on full matrices, and {system.size} unknowns are too many for them"
-        raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): {others(system)}")
+        raise Stop("A505", problem.begin, f"{why} ({MAX_UNKNOWNS} at most): {others(system)}")
     small = condense(system)
-    return (
+    return Problem(
         small.system,
         replace(start, u=start.u[small.keep], v=start.v[small.keep]),
         MonitoredOutputs(
@@ -106,5 +105,5 @@ def condensed(
             monitored.input_rows + monitored.rows @ small.follow,
             monitored.constants + monitored.rows @ small.constant,
         ),
-        recorder if len(small.keep) == system.size else ExpandingRecorder(recorder, small),
+        problem.recorder if len(small.keep) == system.size else ExpandingRecorder(problem.recorder, small),
     )

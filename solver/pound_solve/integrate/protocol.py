@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol, Self
+from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -222,6 +222,39 @@ class EnvelopeRecorder(Recorder, Protocol):
         ...
 
 
+R = TypeVar("R", bound=Recorder, covariant=True)
+S = TypeVar("S", bound=Recorder)
+
+
+@dataclass(frozen=True)
+class Problem(Generic[R]):
+    """What a method integrates.
+
+    Attributes
+    ----------
+    system : ReducedSystem
+    start : Start
+        With the output times.
+    monitored : MonitoredOutputs
+    recorder : Recorder
+        Takes the samples.
+    """
+
+    system: ReducedSystem
+    start: Start
+    monitored: MonitoredOutputs
+    recorder: R
+
+    @property
+    def begin(self) -> float:
+        """Time of the start [T]."""
+        return float(self.start.times[0])
+
+    def recorded_by(self, recorder: S) -> Problem[S]:
+        """The same problem with another recorder."""
+        return Problem(self.system, self.start, self.monitored, recorder)
+
+
 @dataclass
 class Outcome:
     """How an integration went: its peaks, whether they are exact, figures, self-checks;
@@ -350,10 +383,11 @@ def between_check(peaks: Peaks) -> Check:
     return at_most(Subject.STEPS, BETWEEN, peaks.between, MOST_BETWEEN, told)
 
 
-def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:
+def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
     """Raise Stop where a reduced system has rigid contacts and the method does not take them there; no
     method does where the motion has no power series.
     """
+    system = problem.system
     rigid = rigid_contact(system)
     if rigid is None:
         return
@@ -368,7 +402,7 @@ def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:
         told = f"{method} knows no rigid contact, and {contact} is one"
         takes = "TAYLOR and EXACT take" if "EXACT" in methods else "TAYLOR takes"
         cure = f"{takes} it, or a LAW with a stiffness"
-    raise Stop("A505", float(start.times[0]), f"{told}: {cure}")
+    raise Stop("A505", problem.begin, f"{told}: {cure}")
 
 
 def goals(system: ReducedSystem, times: Array) -> tuple[Array, Flags]:

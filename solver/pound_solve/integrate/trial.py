@@ -13,9 +13,8 @@ import numpy as np
 from pound_solve.integrate import condensed, costs
 from pound_solve.integrate.closed_form import exact
 from pound_solve.integrate.convergence.replay import Replay
-from pound_solve.integrate.protocol import EnvelopeRecorder, MonitoredOutputs, Outcome, Start, Stop
+from pound_solve.integrate.protocol import EnvelopeRecorder, Outcome, Problem, Stop
 from pound_solve.numerics.providers import loading
-from pound_solve.structure.reduction import ReducedSystem
 
 SHARE = 0.5  #: limit of the cost of all trials, as a share of the cost of the other methods
 REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
@@ -44,16 +43,9 @@ class ExactTrial:
         Cost of all trials.
     """
 
-    def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        recorder: EnvelopeRecorder,
-        tol: float,
-        refused: str,
-    ) -> None:
-        self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
+    def __init__(self, problem: Problem[EnvelopeRecorder], tol: float, refused: str) -> None:
+        self.problem, self.system = problem, problem.system
+        system = self.system
         self.ease, self.spent = max(REFERENCE_TOL / tol, 1.0) ** 0.5, 0.0
         laws = len(system.structure.laws)
         count = min(1 + laws, EXPECTED_DECOMPOSITIONS)
@@ -76,14 +68,14 @@ class ExactTrial:
         budget = SHARE * (others + loading() + REST) - self.spent
         if self.cost >= budget:
             return None
-        replay, decisions = Replay(self.recorder), self.system.decisions
+        replay, decisions = Replay(self.problem.recorder), self.system.decisions
         known = len(decisions)
         limits = {"COST": budget, "TRIAL": CHECK * budget, "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS}
         try:
-            outcome = exact.integrate(self.system, self.start, self.monitored, limits, replay)
+            outcome = exact.integrate(self.problem.recorded_by(replay), limits)
         except costs.CostlyError as err:
             del decisions[known:]
-            begin, *_, end = self.start.times
+            begin, *_, end = self.problem.start.times
             self.spent += err.cost
             self.cost = err.cost * ((end - begin) / (err.t - begin) if err.t > begin else 1.0)
             return None

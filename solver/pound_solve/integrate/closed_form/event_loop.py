@@ -16,10 +16,9 @@ from pound_solve.integrate.protocol import (
     CHANGES_PER_LAW,
     CHATTER,
     RUNAWAY,
-    MonitoredOutputs,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     light,
 )
@@ -28,7 +27,6 @@ from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.integrate.uniqueness import Uniqueness
 from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.types import Array
-from pound_solve.structure.reduction import ReducedSystem
 
 
 def is_slack(branch: Branch) -> bool:
@@ -56,10 +54,9 @@ class EventDrivenRun(ABC):
     energy : EnergyAccumulator
     """
 
-    def __init__(
-        self, system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder
-    ) -> None:
-        self.system, self.recorder, self.times = system, recorder, start.times
+    def __init__(self, problem: Problem[Recorder]) -> None:
+        system, start, monitored = problem.system, problem.start, problem.monitored
+        self.system, self.recorder, self.times = system, problem.recorder, start.times
         self.laws = system.structure.laws
         self.states = list(start.states)
         self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]

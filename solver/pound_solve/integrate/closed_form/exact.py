@@ -42,10 +42,9 @@ from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     STILL,
-    MonitoredOutputs,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     goals,
     not_linear,
@@ -57,7 +56,7 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.rigid.contacts import MasslessContact, linear_forces
 from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.numerics.types import Array
-from pound_solve.structure.reduction import Decision, ReducedSystem
+from pound_solve.structure.reduction import Decision
 
 MAX_PIECES = 2000  #: windows within one interval of the excitation
 MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, which take many minutes
@@ -70,24 +69,18 @@ LOST = "modes are nearly parallel: digits are lost"
 class Exact(EventDrivenRun):
     """One run; see the module's head."""
 
-    def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        options: Mapping[str, Any],
-        recorder: Recorder,
-    ) -> None:
-        super().__init__(system, start, monitored, recorder)
+    def __init__(self, problem: Problem[Recorder], options: Mapping[str, Any]) -> None:
+        super().__init__(problem)
+        system = self.system
         self.goals, self.is_output = goals(system, self.times)
         self.budget = costs.Budget(
-            float(start.times[0]),
-            float(start.times[-1]),
+            problem.begin,
+            float(self.times[-1]),
             options.get("COST", np.inf),
             options.get("TRIAL"),
             options.get("DECOMPOSITIONS", np.inf),
         )
-        self.subsystems = Subsystems(system, self.rows, recorder.shown)
+        self.subsystems = Subsystems(system, self.rows, self.recorder.shown)
         self.largest = np.zeros((2, len(self.subsystems.rows.rows)))
         if (parts := self.subsystems.parts) > 1:
             system.decisions.append(
@@ -98,8 +91,8 @@ class Exact(EventDrivenRun):
         contact = np.array([s.role.contact_energy for s in self.laws], bool)
         self.work = DeferredWork(self.energy, system.constant, contact)
         self.rigid = RigidInstants(self, self.subsystems.rigid)
-        self.samples = DeferredSamples(system, self.subsystems.rigid, recorder)
-        self.envelopes = EnvelopeSamples(self.subsystems, recorder)
+        self.samples = DeferredSamples(system, self.subsystems.rigid, self.recorder)
+        self.envelopes = EnvelopeSamples(self.subsystems, self.recorder)
         self.windows = Windows(int(options.get("REFINE") or 0))
         self.window_count = self.pieces = self.unbroken = 0
 
@@ -374,13 +367,7 @@ class Exact(EventDrivenRun):
         return Outcome(peaks, figures, tuple(self.states), checks, exact=True)
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system exactly; see the module's head.
 
     AUTO limits the costs (see `costs.Budget`) by the options COST, TRIAL and DECOMPOSITIONS; no deck sets
@@ -393,16 +380,16 @@ def integrate(
     CostlyError
         The run exceeds these limits.
     """
-    if why := not_linear(system):
-        refuse_rigid(system, start, "EXACT")
-        other = "TAYLOR takes it" if "TAYLOR" in without_steps(system) else "AUTO takes steps"
+    if why := not_linear(problem.system):
+        refuse_rigid(problem, "EXACT")
+        other = "TAYLOR takes it" if "TAYLOR" in without_steps(problem.system) else "AUTO takes steps"
         why = f"EXACT needs linear pieces, and {why}: {other}"
-        raise Stop("A505", float(start.times[0]), why)
-    system, start, monitored, recorder = condensed(system, start, monitored, recorder, "EXACT")
+        raise Stop("A505", problem.begin, why)
+    problem = condensed(problem, "EXACT")
     try:
-        run = Exact(system, start, monitored, options, recorder)
+        run = Exact(problem, options)
     except MasslessContact as err:
-        raise Stop("A505", float(start.times[0]), str(err)) from None
+        raise Stop("A505", problem.begin, str(err)) from None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # a diverging motion stops with its own message
             return run.run()

@@ -36,11 +36,10 @@ from pound_solve.integrate.protocol import (
     CHANGES_PER_LAW,
     INTERRUPTED,
     Course,
-    MonitoredOutputs,
     Motion,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     not_linear,
     refuse_rigid,
@@ -49,7 +48,6 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.rigid.contacts import linear_forces
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
-from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
 SAME_INSTANT = 1e-12  #: share of the time within which two events are at one instant
@@ -59,18 +57,11 @@ MOST_NUMBERS = 6e7  #: complex ones of all dynamic stiffnesses that are kept: 1 
 class Laplace(EventDrivenRun):
     """One run; see the module's head."""
 
-    def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        options: Mapping[str, Any],
-        recorder: Recorder,
-    ) -> None:
-        super().__init__(system, start, monitored, recorder)
+    def __init__(self, problem: Problem[Recorder], options: Mapping[str, Any]) -> None:
+        super().__init__(problem)
         self.dt, self.points = options["DT"], 2 * (options["POINTS"] // 2)
-        self.transform = LaplaceTransform(system, self.dt, self.points)
-        self.with_mass = np.flatnonzero(~massless(system.mass))
+        self.transform = LaplaceTransform(self.system, self.dt, self.points)
+        self.with_mass = np.flatnonzero(~massless(self.system.mass))
         self.transforms = self.combinations = 0
         self._since, self._changes = self.t, 0
         self._stiffnesses: dict[tuple[float, ...], DynamicStiffness] = {}
@@ -274,13 +265,7 @@ def refuse_large(unknowns: int, points: int, t: float) -> None:
         raise Stop("A505", t, f"{why}: METHOD=EXACT needs one matrix")
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system by numerical Laplace transforms; see the module's head.
 
     Raises
@@ -290,12 +275,13 @@ def integrate(
         each other, a DT that does not resolve it or its events, a mechanism, numbers beyond all bounds, or
         an interrupt.
     """
-    refuse_rigid(system, start, "LAPLACE")
+    refuse_rigid(problem, "LAPLACE")
+    system = problem.system
     if why := not_linear(system) or ("the supports move apart from each other" if system.total else ""):
-        raise Stop("A505", float(start.times[0]), f"LAPLACE cannot take this: {why}; AUTO can")
-    system, start, monitored, recorder = condensed(system, start, monitored, recorder, "LAPLACE")
-    refuse_large(system.size, options["POINTS"], float(start.times[0]))
-    run = Laplace(system, start, monitored, options, recorder)
+        raise Stop("A505", problem.begin, f"LAPLACE cannot take this: {why}; AUTO can")
+    problem = condensed(problem, "LAPLACE")
+    refuse_large(problem.system.size, options["POINTS"], problem.begin)
+    run = Laplace(problem, options)
     try:
         return run.run()
     except KeyboardInterrupt:

@@ -15,9 +15,8 @@ from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     EnvelopeRecorder,
-    MonitoredOutputs,
     Outcome,
-    Start,
+    Problem,
     Stop,
     between_check,
     goals,
@@ -25,7 +24,6 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array
-from pound_solve.structure.reduction import ReducedSystem
 
 MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
@@ -68,21 +66,15 @@ class StepRefinement:
         Of the runs that are compared.
     """
 
-    def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        recorder: EnvelopeRecorder,
-        options: Mapping[str, Any],
-    ) -> None:
-        self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
+    def __init__(self, problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> None:
+        self.problem, self.system = problem, problem.system
         self.tolerances = tolerances(options)
         self.errors = dict.fromkeys(self.tolerances, np.inf)
-        self.length = float(start.times[-1] - start.times[0])
-        intervals = np.diff(goals(system, start.times)[0], prepend=start.times[0])
+        times = problem.start.times
+        self.length = float(times[-1] - times[0])
+        intervals = np.diff(goals(self.system, times)[0], prepend=times[0])
         self.h = self.aim = min(float(np.median(intervals)), self.length / 1000)
-        self.step_cost = costs.of_step(system) * (1 if provider().fast else costs.INTERPRETED)
+        self.step_cost = costs.of_step(self.system) * (1 if provider().fast else costs.INTERPRETED)
         self.error = self.likely = self.best = self.lasts = np.inf
         self.runs = self.events = self.stale = self.retries = 0
         self.steps, self.peaks = list[int](), list[Array]()
@@ -114,10 +106,10 @@ class StepRefinement:
         """
         from pound_solve.integrate.stepping import newmark  # where no steps are taken it is not loaded
 
-        replay = Replay(self.recorder)
+        replay = Replay(self.problem.recorder)
         options = {"DT": self.h, "BETA": 0.25, "GAMMA": 0.5}
         try:
-            outcome = newmark.integrate(self.system, self.start, self.monitored, options, replay)
+            outcome = newmark.integrate(self.problem.recorded_by(replay), options)
         except Stop as stop:
             return self._retry(stop, replay)
         self.runs, self.retries, self.complete = self.runs + 1, 0, (outcome, replay)
@@ -186,7 +178,7 @@ class StepRefinement:
         # A503 says nothing of the structure where the step is coarse, growth only if a finer step grows too
         coarse = stop.code == "A503" or (stop.code == "A504" and not self.steps)
         if coarse and not self._hopeless():
-            begin = float(self.start.times[0])
+            begin = float(self.problem.start.times[0])
             early = stop.t - begin < EARLY * self.length
             # where laws alternate at the start a step nearby may pass; a far shorter one need not
             self.h *= NEARBY if early or self.retries % 2 else 0.25
@@ -198,7 +190,7 @@ class StepRefinement:
             return self._end(f"shorter ones stopped ({stop.code} at t = {stop.t:.6g})")
         if stop.code == "A506" and self.complete is not None:
             outcome, replay = self.complete
-            stop = Stop("A506", float(self.start.times[-1]), INTERRUPTED, outcome)
+            stop = Stop("A506", float(self.problem.start.times[-1]), INTERRUPTED, outcome)
             outcome.checks = self.checks(outcome, "interrupted")
         replay.pass_on()
         raise stop from None

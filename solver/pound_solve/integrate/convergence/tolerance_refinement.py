@@ -24,13 +24,11 @@ from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     EnvelopeRecorder,
-    MonitoredOutputs,
     Outcome,
-    Start,
+    Problem,
     Stop,
     goals,
 )
-from pound_solve.structure.reduction import ReducedSystem
 
 STEPS = 2.0  #: of a run that are expected between two samples of the excitation or instants of output
 FIRST = 0.1  #: tolerance of the first run, as a share of that of the peaks
@@ -80,20 +78,14 @@ class ToleranceRefinement:
     """
 
     def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        recorder: EnvelopeRecorder,
-        options: Mapping[str, Any],
-        others: float,
+        self, problem: Problem[EnvelopeRecorder], options: Mapping[str, Any], others: float
     ) -> None:
-        self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
+        self.problem, self.system = problem, problem.system
         self.tolerances = tolerances(options)
         self.errors, self.error = dict.fromkeys(self.tolerances, np.inf), np.inf
         self.tol = self.floor = float(np.clip(FIRST * min(self.tolerances.values()), LEAST, MOST))
-        self.step_cost = costs.of_series_step(system)
-        self.steps = STEPS * len(goals(system, start.times)[0])
+        self.step_cost = costs.of_series_step(self.system)
+        self.steps = STEPS * len(goals(self.system, problem.start.times)[0])
         self.most = max(self.steps, others / self.step_cost)
         self.runs, self.events, self.spent = 0, 0, 0.0
         self.peaks = list[tuple[float, Peak]]()
@@ -118,10 +110,10 @@ class ToleranceRefinement:
         from pound_solve.integrate.series import laguerre  # where it is not needed it is not loaded
 
         # the first run is never the final one
-        replay = Replay(self.recorder, self.runs > 0 or set(self.tolerances) != {RESPONSES})
+        replay = Replay(self.problem.recorder, self.runs > 0 or set(self.tolerances) != {RESPONSES})
         try:
             options = {"TOL": self.tol, "STEPS": self.most + self.events}
-            outcome = laguerre.integrate(self.system, self.start, self.monitored, options, replay)
+            outcome = laguerre.integrate(self.problem.recorded_by(replay), options)
         except Stop as stop:
             if stop.code != "A506":
                 why = f"LAGUERRE stops: {stop.code} at t = {stop.t:.6g}"
@@ -172,7 +164,7 @@ class ToleranceRefinement:
         outcome, replay = self.complete
         replay.pass_on()
         outcome.checks = self.checks(outcome, "interrupted")
-        return Stop("A506", float(self.start.times[-1]), INTERRUPTED, outcome)
+        return Stop("A506", float(self.problem.start.times[-1]), INTERRUPTED, outcome)
 
     def checks(self, outcome: Outcome, ended: str) -> list[Check]:
         """Return checks of a run with the estimates; `ended` is why no smaller tolerances follow."""

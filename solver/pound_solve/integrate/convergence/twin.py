@@ -22,47 +22,42 @@ from pound_solve.integrate.convergence.compared import figures
 from pound_solve.integrate.convergence.replay import Watch, Witness
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
-    MonitoredOutputs,
+    EnvelopeRecorder,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     not_linear,
 )
-from pound_solve.structure.reduction import ReducedSystem
 
 CHANGE = 1e-11  #: of the excitation, as a share
 ABOUT = f"change of the peaks where the excitation changes by {CHANGE:g}"
 MAGNIFIED = "the motion magnifies rounding beyond TOL: these peaks are chance, so compare several motions"
 
 
-def changed(system: ReducedSystem, start: Start) -> tuple[ReducedSystem, Start]:
-    """Return a reduced system and a start for the twin: inputs and velocities are larger by `CHANGE`, or
-    the displacements where there are neither.
+def changed(problem: Problem[EnvelopeRecorder], witness: Witness) -> Problem[Recorder]:
+    """Return the problem of the twin: inputs and velocities are larger by `CHANGE`, or the displacements
+    where there are neither.
     """
-    factor = 1.0 + CHANGE
+    system, start, factor = problem.system, problem.start, 1.0 + CHANGE
     excitation = replace(system.excitation, coefs=factor * system.excitation.coefs)
     if excitation.coefs.any() or start.v.any():
         start = replace(start, v=factor * start.v)
     else:
         start = replace(start, u=factor * start.u)
-    return replace(system, excitation=excitation, decisions=[]), start
+    return Problem(replace(system, excitation=excitation, decisions=[]), start, problem.monitored, witness)
 
 
-def again(
-    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder, method: str
-) -> Outcome:
+def again(problem: Problem[Recorder], method: str) -> Outcome:
     """Run EXACT or TAYLOR."""
     if method == "EXACT":
-        return exact.integrate(system, start, monitored, {}, recorder)
+        return exact.integrate(problem, {})
     from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
 
-    return taylor.integrate(system, start, monitored, {}, recorder)
+    return taylor.integrate(problem, {})
 
 
-def checks(
-    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, run: Outcome, watch: Watch, tol: float
-) -> list[Check]:
+def checks(problem: Problem[EnvelopeRecorder], run: Outcome, watch: Watch, tol: float) -> list[Check]:
     """Repeat a `run` that makes rounding errors only, and return the check of how far it magnifies them.
 
     Nothing is repeated where nothing happens that could: there are no events and all forces are linear.
@@ -79,15 +74,16 @@ def checks(
     Stop
         An interrupt; the run is over, and its outcome goes with it.
     """
+    system = problem.system
     if run.figures["events"] == 0 and not not_linear(system):
         return []
     witness = Witness(watch.recorder)
     method = next(entry.decision for entry in reversed(system.decisions) if entry.subject == "method")
     try:
-        twin = again(*changed(system, start), monitored, witness, method)
+        twin = again(changed(problem, witness), method)
     except Stop as stop:
         if stop.code == "A506":
-            raise Stop("A506", float(start.times[-1]), INTERRUPTED, run) from None
+            raise Stop("A506", float(problem.start.times[-1]), INTERRUPTED, run) from None
         told = f"it stops then: {stop.code} at t = {stop.t:.6g}; {MAGNIFIED}"
         return [beyond(Subject.MAGNIFICATION, ABOUT, np.inf, tol, told)]
     first, second = figures(system, run.peaks, watch), figures(system, twin.peaks, witness)

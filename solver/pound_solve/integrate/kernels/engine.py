@@ -27,11 +27,10 @@ from pound_solve.integrate.protocol import (
     INTERRUPTED,
     Course,
     LawValues,
-    MonitoredOutputs,
     Motion,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     without_steps,
 )
@@ -45,7 +44,6 @@ from pound_solve.numerics.jit import Function
 from pound_solve.numerics.matrices import MOST_DENSE, dense
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.providers import provider
-from pound_solve.structure.reduction import ReducedSystem
 
 
 class KernelEngine(ABC):
@@ -53,8 +51,7 @@ class KernelEngine(ABC):
 
     Parameters
     ----------
-    system, start, monitored, recorder
-        See `integrate.protocol`.
+    problem : Problem
     scheme : Scheme
     dt : float
         Longest time step [T].
@@ -65,25 +62,17 @@ class KernelEngine(ABC):
     exact = False  #: whether there is no error but rounding
     shows_steps = True  #: whether envelopes see the motion at the ends of steps
 
-    def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        recorder: Recorder,
-        scheme: Scheme,
-        dt: float,
-        name: str,
-    ) -> None:
+    def __init__(self, problem: Problem[Recorder], scheme: Scheme, dt: float, name: str) -> None:
+        system, start, recorder = problem.system, problem.start, problem.recorder
         self.system, self.recorder, self.scheme, self.dt, self.name = system, recorder, scheme, dt, name
         self.springs, self.times = system.structure.laws, start.times
-        self.tracker = ResponseTracker(self.springs, len(monitored.names))
+        self.tracker = ResponseTracker(self.springs, len(problem.monitored.names))
         self.accumulator = EnergyAccumulator(system, start)
         rules = list(dict.fromkeys(s.law.rule for s in self.springs))
         self.rules = functions.tables(rules or [bilinear.RULE])  # never empty, which compiles to nothing
         layout = allocation.layout(system, scheme)
         self.order = layout.order
-        self.linear = allocation.linear_system(system, monitored, layout, scheme, dt)
+        self.linear = allocation.linear_system(system, problem.monitored, layout, scheme, dt)
         losses = self.accumulator.dashpot_losses
         self.laws = allocation.law_arrays(system, start, layout, scheme, rules, losses, dt)
         self.step = allocation.step_arrays(system, start, layout, self.linear, self.tracker.extremes)

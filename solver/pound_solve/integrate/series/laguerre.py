@@ -15,10 +15,9 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.protocol import (
-    MonitoredOutputs,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     not_linear,
     refuse_rigid,
@@ -26,7 +25,6 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.series.single_pole import LAST
 from pound_solve.integrate.series.taylor import MAX_STEPS, Taylor
-from pound_solve.structure.reduction import ReducedSystem
 
 
 class Laguerre(Taylor):
@@ -54,13 +52,7 @@ class Laguerre(Taylor):
         }
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system by implicit series; see the module's head.  `options` may hold STEPS, the
     most that a run may come to.
 
@@ -70,12 +62,12 @@ def integrate(
         A reduced system that is not piecewise linear or has rigid contacts, massless DOFs that nothing
         holds, too many changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
     """
-    refuse_rigid(system, start, "LAGUERRE")
-    if why := not_linear(system):
+    refuse_rigid(problem, "LAGUERRE")
+    if why := not_linear(problem.system):
         told = f"LAGUERRE needs linear pieces, and {why}: AUTO takes another method"
-        raise Stop("A505", float(start.times[0]), told)
-    contacts, most = RigidContacts(system), min(options.get("STEPS", MAX_STEPS), MAX_STEPS)
-    return Laguerre(system, start, monitored, recorder, contacts, most, options["TOL"]).run()
+        raise Stop("A505", problem.begin, told)
+    contacts, most = RigidContacts(problem.system), min(options.get("STEPS", MAX_STEPS), MAX_STEPS)
+    return Laguerre(problem, contacts, most, options["TOL"]).run()
 
 
 SPEC = Spec(

@@ -42,8 +42,8 @@ from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
     MonitoredOutputs,
     Outcome,
+    Problem,
     Recorder,
-    Start,
     Stop,
     goals,
     not_in_series,
@@ -80,7 +80,6 @@ from pound_solve.numerics.matrices import MOST_DENSE, dense, used_rows
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
-from pound_solve.structure.reduction import ReducedSystem
 
 MAX_STEPS = 5_000_000  #: that a run may come to
 
@@ -105,23 +104,20 @@ class Taylor(KernelEngine):
 
     def __init__(
         self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        recorder: Recorder,
+        problem: Problem[Recorder],
         contacts: RigidContacts,
         most: float,
         tolerance: float | None = None,
     ) -> None:
-        length = float(start.times[-1] - start.times[0])
+        length = float(problem.start.times[-1]) - problem.begin
         solved = Scheme(0.0, 0.0) if tolerance is None else Scheme(1.0, 1.0)  # nothing, or C and K
-        super().__init__(system, start, monitored, recorder, solved, length, self.words)
+        super().__init__(problem, solved, length, self.words)
         self.contacts, self.most = contacts, most
         self.state.stale = 1
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
         self.massless = self._without_mass()
-        self.series = self._allocate(monitored, tolerance)
+        self.series = self._allocate(problem.monitored, tolerance)
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
             curved.enter_curved(self.laws, self.rules, self.series.curved, i)
@@ -350,13 +346,7 @@ class Taylor(KernelEngine):
         return rounding_check(self.springs, peaks)
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system by power series; see the module's head.  `options` may hold STEPS, the
     most that a run may come to.
 
@@ -366,15 +356,14 @@ def integrate(
         A reduced system that is not piecewise linear, massless DOFs that cannot be condensed, too many
         changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
     """
-    begin = float(start.times[0])
-    if why := not_in_series(system):
-        refuse_rigid(system, start, "TAYLOR")
-        raise Stop("A505", begin, f"TAYLOR finds no power series where {why}: AUTO takes steps")
+    if why := not_in_series(problem.system):
+        refuse_rigid(problem, "TAYLOR")
+        raise Stop("A505", problem.begin, f"TAYLOR finds no power series where {why}: AUTO takes steps")
     try:
-        contacts = RigidContacts(system)
+        contacts = RigidContacts(problem.system)
     except MasslessContact as err:
-        raise Stop("A505", begin, str(err)) from None
-    return Taylor(system, start, monitored, recorder, contacts, options.get("STEPS", MAX_STEPS)).run()
+        raise Stop("A505", problem.begin, str(err)) from None
+    return Taylor(problem, contacts, options.get("STEPS", MAX_STEPS)).run()
 
 
 SPEC = Spec(

@@ -20,7 +20,13 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.check import Subject, at_most
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start, Stop, refuse_rigid
+from pound_solve.integrate.protocol import (
+    Outcome,
+    Problem,
+    Recorder,
+    Stop,
+    refuse_rigid,
+)
 from pound_solve.integrate.stepping.stepper import Stepper
 from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import weighted
@@ -40,13 +46,7 @@ def limit(system: ReducedSystem, u: Array) -> float:
     return 2.0 / omega if omega > 0.0 else float("inf")
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system step by step, explicitly.
 
     Raises
@@ -55,7 +55,8 @@ def integrate(
         Step above the stability limit, massless DOFs that cannot be condensed,
         or numbers beyond all bounds.
     """
-    refuse_rigid(system, start, "CENTRAL")
+    system = problem.system
+    refuse_rigid(problem, "CENTRAL")
     light = modes.massless(system.mass)
     if light.any():
         raise Stop(
@@ -63,7 +64,7 @@ def integrate(
             0.0,
             f"CENTRAL needs mass at {system.name(int(np.argmax(light)))}: give it weight, or use NEWMARK",
         )
-    longest = limit(system, start.u)
+    longest = limit(system, problem.start.u)
     if options["DT"] > longest:
         raise Stop(
             "A502",
@@ -71,9 +72,7 @@ def integrate(
             f"the step {options['DT']:g} is above the stability limit {longest:.4g}; "
             "NEWMARK has no such limit",
         )
-    stepper = Stepper(
-        system, start, monitored, recorder, options, Scheme(0.0, 0.5), "CENTRAL, central differences"
-    )
+    stepper = Stepper(problem, options, Scheme(0.0, 0.5), "CENTRAL, central differences")
     outcome = stepper.run()
     about, unit = "time step, stable with contacts pressed", system.structure.model.units.time
     outcome.checks.append(at_most(Subject.STEPS, about, options["DT"], longest, "not stable", unit))

@@ -17,18 +17,11 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start
+from pound_solve.integrate.protocol import Outcome, Problem, Recorder
 from pound_solve.integrate.stepping.stepper import COMMON, Stepper
-from pound_solve.structure.reduction import ReducedSystem
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system step by step.
 
     Raises
@@ -39,9 +32,7 @@ def integrate(
     rho = options["RHO"]
     am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     scheme = Scheme(0.25 * (1.0 - am + af) ** 2, 0.5 - am + af, am, af)
-    return Stepper(
-        system, start, monitored, recorder, options, scheme, f"GENERALISED_ALPHA, rho {rho:g}"
-    ).run()
+    return Stepper(problem, options, scheme, f"GENERALISED_ALPHA, rho {rho:g}").run()
 
 
 SPEC = Spec(

@@ -16,18 +16,11 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start
+from pound_solve.integrate.protocol import Outcome, Problem, Recorder
 from pound_solve.integrate.stepping.stepper import COMMON, Stepper
-from pound_solve.structure.reduction import ReducedSystem
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system step by step.
 
     Raises
@@ -37,7 +30,7 @@ def integrate(
     """
     alpha = options["ALPHA"]
     scheme = Scheme(0.25 * (1.0 - alpha) ** 2, 0.5 - alpha, 0.0, -alpha)
-    return Stepper(system, start, monitored, recorder, options, scheme, f"HHT, alpha {alpha:g}").run()
+    return Stepper(problem, options, scheme, f"HHT, alpha {alpha:g}").run()
 
 
 SPEC = Spec(

@@ -7,18 +7,11 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start, Stop
+from pound_solve.integrate.protocol import Outcome, Problem, Recorder, Stop
 from pound_solve.integrate.stepping.stepper import COMMON, Stepper
-from pound_solve.structure.reduction import ReducedSystem
 
 
-def integrate(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: Recorder,
-) -> Outcome:
+def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
     """Integrate a reduced system step by step.
 
     Raises
@@ -39,7 +32,7 @@ def integrate(
         if (beta, gamma) == (0.25, 0.5)
         else f"NEWMARK, beta {beta:g}, gamma {gamma:g}"
     )
-    return Stepper(system, start, monitored, recorder, options, Scheme(beta, gamma), name).run()
+    return Stepper(problem, options, Scheme(beta, gamma), name).run()
 
 
 SPEC = Spec(

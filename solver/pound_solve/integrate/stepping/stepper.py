@@ -27,9 +27,8 @@ from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.present import KernelPresent
 from pound_solve.integrate.kernels.state import FALL, Goals, Scheme
 from pound_solve.integrate.protocol import (
-    MonitoredOutputs,
+    Problem,
     Recorder,
-    Start,
     between_check,
     goals,
     refuse_rigid,
@@ -40,7 +39,6 @@ from pound_solve.integrate.stepping import kernel
 from pound_solve.integrate.stepping.step import REFRESH
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
-from pound_solve.structure.reduction import ReducedSystem
 
 COMMON = (
     Field("DT", Kind.REAL, "T", above=0, doc="longest time step"),
@@ -67,8 +65,7 @@ class Stepper(KernelEngine):
 
     Parameters
     ----------
-    system, start, monitored, recorder
-        See `integrate.protocol`.
+    problem : Problem
     options : mapping
         DT, the longest step [T]: every interval between output times and record points is divided evenly;
         EVENTS.
@@ -78,18 +75,11 @@ class Stepper(KernelEngine):
     """
 
     def __init__(
-        self,
-        system: ReducedSystem,
-        start: Start,
-        monitored: MonitoredOutputs,
-        recorder: Recorder,
-        options: Mapping[str, Any],
-        scheme: Scheme,
-        name: str,
+        self, problem: Problem[Recorder], options: Mapping[str, Any], scheme: Scheme, name: str
     ) -> None:
-        refuse_rigid(system, start, name.partition(",")[0])
+        refuse_rigid(problem, name.partition(",")[0])
         located = scheme._replace(locate=options.get("EVENTS", "LOCATED") == "LOCATED")
-        super().__init__(system, start, monitored, recorder, located, options["DT"], name)
+        super().__init__(problem, located, options["DT"], name)
 
     def integrate(self) -> None:
         """Integrate in equal steps from one goal to the next."""
