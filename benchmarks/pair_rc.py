@@ -16,18 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from pair_cole import (
-    HERE,
-    PEER,
-    answer,
-    at_equal_error,
-    best_of,
-    errors,
-    ours,
-    seconds_for,
-    table,
-    theirs,
-)
+from pair_cole import HERE, PEER, answer, at_equal_error, best_of, errors, ours, seconds_for, table, theirs
 
 DECK = HERE / "rc_pair.inp"
 STEP, GAL = 0.01, 0.01  # of the record: interval [s], unit [m/s2]

@@ -7,13 +7,20 @@ No example is timed: a loaded machine is no fault.
 
 import gc
 from collections.abc import Generator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
+import pound_solve
 from pound_solve.numerics import threads
 
 threads.one()  # before a test imports numpy
+
+if not Path(pound_solve.__file__).is_relative_to(Path(__file__).parents[1]):
+    pytest.exit(
+        f"these tests would test {pound_solve.__file__}: install this checkout, or set PYTHONPATH", 2
+    )
 
 settings.register_profile("repeated", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None, print_blob=True)

@@ -11,12 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from paths import Walk, pieces, turning_points
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Law,
-    State,
-    drive,
-)
+from pound_solve.laws.automaton import BranchKind, Law, State, drive
 
 SEEDS = (0, 1, 2)
 

@@ -71,10 +71,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "Unexpected item on this card. An item is a number, an expression, a word, a text, a "
         "list or NAME=value.",
     ),
-    "P210": (
-        "unknown word",
-        "The word is not among the choices for this item. The message lists them.",
-    ),
+    "P210": ("unknown word", "The word is not among the choices for this item. The message lists them."),
     "P211": ("unknown item name", "The card has no item of that name. The message lists its items."),
     "P212": ("item given twice", "A card gives one item twice, by name or by position. Remove one."),
     "P213": (
@@ -136,10 +133,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The function is unknown or needs another number of arguments. The message lists the functions.",
     ),
     "P227": ("text in arithmetic", "A text cannot be added, multiplied or given to a function."),
-    "P228": (
-        "circular PARAM",
-        "The value of a PARAM depends on itself. Set one name to a number.",
-    ),
+    "P228": ("circular PARAM", "The value of a PARAM depends on itself. Set one name to a number."),
     "P229": (
         "PARAM given twice",
         "A PARAM has two values in the deck. Remove one, or override it with --set.",
@@ -186,10 +180,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "element given twice",
         "Two cards define the same element number. Ranges generate numbers too.",
     ),
-    "P303": (
-        "property set given twice",
-        "Two lines under PROPS have the same label; case is ignored.",
-    ),
+    "P303": ("property set given twice", "Two lines under PROPS have the same label; case is ignored."),
     "P304": ("drift given twice", "Two lines under DRIFT have the same name."),
     "P305": (
         "unknown node",
@@ -210,10 +201,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "fixed and slaved",
         "A direction is both fixed and slaved. Remove the letter from FIX or SLAVED.",
     ),
-    "P312": (
-        "member without length",
-        "Both ends of a FRAME, BEAM_COLUMN or TENDON are at the same point.",
-    ),
+    "P312": ("member without length", "Both ends of a FRAME, BEAM_COLUMN or TENDON are at the same point."),
     "P313": ("property set not used (warning)", "No element has this property set."),
     "P314": ("loose node (warning)", "No element ends at the node, and it is not slaved to another."),
     "P315": ("nothing to analyse", "The deck has no nodes or no elements."),
@@ -650,10 +638,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "PARAM without effect",
         "The deck uses the PARAM only for its motion, which the records of the study replace.",
     ),
-    "L601": (
-        "3D deck",
-        "The deck is for Ruaumoko-3D. This program reads plane structures only.",
-    ),
+    "L601": ("3D deck", "The deck is for Ruaumoko-3D. This program reads plane structures only."),
     "L602": (
         "line incomplete",
         "A line of the old deck ends before a required item, or a section before a required line. The "
@@ -704,10 +689,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The old deck contains no record. Name its file: `pound-solve import DECK --record FILE -o "
         "model.inp`.",
     ),
-    "L612": (
-        "old deck too large",
-        "The file exceeds 256 MB. Put its record into a separate file.",
-    ),
+    "L612": ("old deck too large", "The file exceeds 256 MB. Put its record into a separate file."),
 }
 
 #: codes of warnings, which a card MEANT may name

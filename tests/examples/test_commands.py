@@ -333,10 +333,7 @@ READERS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "text",
-    [pytest.param(text, id=c.places[0]) for text, c in READERS.items()],
-)
+@pytest.mark.parametrize("text", [pytest.param(text, id=c.places[0]) for text, c in READERS.items()])
 @pytest.mark.filterwarnings("default")  # matplotlib's own
 def test_a_command_reads_the_results_of_a_run(
     text: str, ended: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

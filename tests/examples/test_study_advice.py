@@ -16,11 +16,7 @@ ELCENTRO, CORRALITOS = '"ELCENTRO_270"', '"CORRALITOS_000"'
 CASES = {
     "04_timber_frame/timber_frame": (
         ("NEWMARK", "HHT", "GENERALISED_ALPHA"),
-        (
-            {"record": '"ELCENTRO_180"'},
-            {"record": ELCENTRO, "scale": "-1"},
-            {"record": '"CORRALITOS_090"'},
-        ),
+        ({"record": '"ELCENTRO_180"'}, {"record": ELCENTRO, "scale": "-1"}, {"record": '"CORRALITOS_090"'}),
     ),
     "cole2011/lumped": (
         ("NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL"),

@@ -24,11 +24,7 @@ LAYOUTS: Layout = {
     "contact/force": HistoryLayout((2,), {"labels": ["901", "902"], "unit": "F"}),
     "member/force": HistoryLayout(
         (3,),
-        {
-            "element": [101, 101, 102],
-            "quantity": ["axial", "moment I", "axial"],
-            "unit": ["F", "F*L", "F"],
-        },
+        {"element": [101, 101, 102], "quantity": ["axial", "moment I", "axial"], "unit": ["F", "F*L", "F"]},
     ),
     "spring/force": HistoryLayout((0,), {"labels": [], "unit": "F"}),
     "spring/deformation": HistoryLayout(

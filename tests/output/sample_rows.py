@@ -131,15 +131,8 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         ("A", 1, "shear", "kN", 1152.39, 6.458, -1256.96, 4.866),
         ("A", 1, "floor acceleration", "m/s^2", 3.251, 1.988, -2.81, 3.554),
     ),
-    "imports": (
-        ("pound_solve", 3, "app, cli, course"),
-        ("numba", 0, "not imported"),
-    ),
-    "run_figures": (
-        ("wall time", "0.412 s"),
-        ("peak memory", "81 MB"),
-        ("numpy", "2.4.6"),
-    ),
+    "imports": (("pound_solve", 3, "app, cli, course"), ("numba", 0, "not imported")),
+    "run_figures": (("wall time", "0.412 s"), ("peak memory", "81 MB"), ("numpy", "2.4.6")),
     "mode_buildings": ((1, "A", 100.0), (2, "B", 99.82), (2, "A", 0.18)),
     "mode_shapes": (
         (1, 1, 0.841471, 0.0, 0.00199585),
@@ -176,10 +169,7 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
             "9b0c5a1f3e77aa019b0c5a1f3e77aa019b0c5a1f3e77aa019b0c5a1f3e77aa01",
         ),
     ),
-    "buildings": (
-        ("A", 1, 12, 84.2, 0.0, 10.5, 3),
-        ("building 2", 21, 8, 51.6, 0.0, 7.0, 2),
-    ),
+    "buildings": (("A", 1, 12, 84.2, 0.0, 10.5, 3), ("building 2", 21, 8, 51.6, 0.0, 7.0, 2)),
     "collision_theory": (
         ("floor 1", 0.42324, 0.52664, 0.040318, 8129.57, 31.0066, "the equations of the paper fail"),
         ("903", math.nan, math.nan, math.nan, math.nan, math.nan, "rigid: no theory"),
@@ -217,15 +207,8 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         (102, "", "SLAB1", "FRAME", 101, 102, 1.0),
         (901, "pounding 1", "POUND", "CONTACT", 120, 300, 0.1),
     ),
-    "loads": (
-        (100, 0.0, -800.0, 0.0),
-        (101, 0.0, -80.0, 12.5),
-    ),
-    "masses": (
-        (100, 81.577, 81.577, 0.0),
-        (101, 8.15773, 8.15773, 0.0),
-        (300, 163.155, 163.155, 1.25),
-    ),
+    "loads": ((100, 0.0, -800.0, 0.0), (101, 0.0, -80.0, 12.5)),
+    "masses": ((100, 81.577, 81.577, 0.0), (101, 8.15773, 8.15773, 0.0), (300, 163.155, 163.155, 1.25)),
     "member_loads": ((101, "WY -12 kN/m, PX 3 kN, AT 0.5"),),
     "nodes": (
         (1, 0.0, 0.0, "XYR", "", 0),
@@ -289,10 +272,7 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         (102, "X", 0.457234, -0.0100317),
     ),
     "pushover": (("end", "the target displacement is reached"),),
-    "arrays": (
-        ("structure", "stiffness, mass, damping", 768, 6144),
-        ("contacts", "closures of 0", 0, 0),
-    ),
+    "arrays": (("structure", "stiffness, mass, damping", 768, 6144), ("contacts", "closures of 0", 0, 0)),
     "scene": (
         (
             "directions",
@@ -310,19 +290,9 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         ),
         ("left out", "geometric stiffness", "P-DELTA is not asked for"),
     ),
-    "size": (
-        ("degrees of freedom", "84"),
-        ("after condensation", "44"),
-        ("contacts", "3"),
-    ),
-    "equilibrium": (
-        ("loads", 0.0, 654.584, 0.0),
-        ("sum", 0.0, 1e-12, 0.0),
-    ),
-    "reactions": (
-        (1, 1.30817, 981.882, -27.3291),
-        (2, -0.864524, 755.801, -3.9308),
-    ),
+    "size": (("degrees of freedom", "84"), ("after condensation", "44"), ("contacts", "3")),
+    "equilibrium": (("loads", 0.0, 654.584, 0.0), ("sum", 0.0, 1e-12, 0.0)),
+    "reactions": ((1, 1.30817, 981.882, -27.3291), (2, -0.864524, 755.801, -3.9308)),
     "static_displacement": (
         (4, 2.94132e-20, -5.68445e-06, 5.46713e-06),
         (100, -7.36454e-20, -3.2582e-05, -4.82119e-06),

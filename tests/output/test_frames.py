@@ -211,10 +211,7 @@ assert "pandas" not in sys.modules or sys.modules["pandas"] is None
         text=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
     )
-    assert (done.stdout, done.stderr) == (
-        f'this needs {package}: pip install "pound-solve[data]"\n',
-        "",
-    )
+    assert (done.stdout, done.stderr) == (f'this needs {package}: pip install "pound-solve[data]"\n', "")
 
 
 WALL = """TITLE A mass that meets a wall

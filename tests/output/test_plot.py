@@ -51,8 +51,7 @@ def test_the_pictures_are_listed(capsys: Any) -> None:
 
 @pytest.mark.full
 @pytest.mark.parametrize(
-    ("ending", "count"),
-    [("svg", 3), *at_night(("png", 1), ("svg", None), ("png", None), ("pdf", None))],
+    ("ending", "count"), [("svg", 3), *at_night(("png", 1), ("svg", None), ("png", None), ("pdf", None))]
 )
 def test_every_picture_is_drawn_and_repeats(
     results: Results, tmp_path: Path, ending: str, count: int | None
@@ -323,10 +322,7 @@ ANALYSIS
 @pytest.mark.full
 @pytest.mark.parametrize(
     ("fix", "elements", "node", "end"),
-    [
-        ("FIX=YR", "1 W 1 2", 1, 1.0),
-        *at_night(("FIX=XYR", "1 S 1 2", 2, 0.1), ("FIX=YR", "1 W 2", 2, 0.1)),
-    ],
+    [("FIX=YR", "1 W 1 2", 1, 1.0), *at_night(("FIX=XYR", "1 S 1 2", 2, 0.1), ("FIX=YR", "1 W 2", 2, 0.1))],
     ids=["two bodies", "no contact", "a body at a wall"],
 )
 def test_every_picture_of_a_bare_structure_is_drawn_or_says_that_there_is_nothing(

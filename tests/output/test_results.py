@@ -255,11 +255,7 @@ def test_wrong_files_are_refused(tmp_path: Path) -> None:
     [
         ("filetype", "statepoint", "not one of pound-solve"),
         ("filetype", None, "not one of pound-solve"),
-        (
-            "format_version",
-            [3, 3],
-            r"format 3\.3, this version reads up to 2\.x; written by pound-solve",
-        ),
+        ("format_version", [3, 3], r"format 3\.3, this version reads up to 2\.x; written by pound-solve"),
         ("title", None, "damaged results file"),
     ],
 )

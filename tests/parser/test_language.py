@@ -199,12 +199,7 @@ def test_single_cards(read):
 
 @pytest.mark.parametrize(
     "units, told",
-    [
-        ("kN m", "missing: time; "),
-        ("kN", "missing: length, time; "),
-        ("m s", ""),
-        ("kN m s s", ""),
-    ],
+    [("kN m", "missing: time; "), ("kN", "missing: length, time; "), ("m s", ""), ("kN m s s", "")],
 )
 def test_units_are_three(catalog, units, told):
     (d,) = read_text(f"UNITS {units}\n" + HEAD, catalog)[1]

@@ -9,11 +9,7 @@ from hypothesis import strategies as st
 from paths import Walk
 from pound_solve.integrate.closed_form.decomposition import make_propagator
 from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Law,
-    drive,
-)
+from pound_solve.laws.automaton import BranchKind, Law, drive
 from pound_solve.laws.contact import kelvin_voigt
 from pound_solve.laws.hysteresis import bilinear, bilinear_slack
 from pound_solve.numerics import polynomial

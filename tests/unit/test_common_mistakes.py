@@ -88,10 +88,7 @@ ANALYSIS
 RIGHT_FOOT, RIGHT_FEET = " 21 6.45 0 FIX=XYR", [" 21 6.45 0 FIX=XYR", " 24 12.45 0 FIX=XYR"]
 HINGES = "RULE=TAKEDA R=0.03 MI=400 MJ=400 LP=0.3"
 #: a column in two pieces, as where a floor of the neighbour strikes it
-SPLIT = [
-    ("ELEMENTS", " 27 6.45 1.75\nELEMENTS"),
-    (" 21 PIER 21 22", " 21 PIER 21 27\n 27 PIER 27 22"),
-]
+SPLIT = [("ELEMENTS", " 27 6.45 1.75\nELEMENTS"), (" 21 PIER 21 22", " 21 PIER 21 27\n 27 PIER 27 22")]
 
 #: without dashpots across hinges, which divide the rotation between them
 PLASTIC = [
@@ -106,10 +103,7 @@ ONE_HINGE = [
 UNWEIGHTED = (" STATIC GRAVITY=YES", " STATIC")
 #: a third floor of the left frame
 THIRD = [
-    (
-        "ELEMENTS\n",
-        " 17 0 10.5\n 18 6 10.5\nELEMENTS\n 17 COL 13 17\n 18 COL 16 18\n 19 BEAM 17 18\n",
-    ),
+    ("ELEMENTS\n", " 17 0 10.5\n 18 6 10.5\nELEMENTS\n 17 COL 13 17\n 18 COL 16 18\n 19 BEAM 17 18\n"),
     ("12,13,15,16 240", "12,13,15,16,17,18 240"),
 ]
 SYNTHETIC = ("SINE AMPLITUDE=2 PERIOD=1 DURATION=5", "SYNTHETIC PGA=3 SEED=1 DURATION=9")

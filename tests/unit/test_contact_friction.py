@@ -34,14 +34,7 @@ OUTPUT
 
 
 def ball(
-    folder,
-    friction,
-    vn=1.0,
-    vt=1.0,
-    angle=0.0,
-    law="LAW=LINEAR K=5000",
-    method="NEWMARK DT=1e-4",
-    gap=0.02,
+    folder, friction, vn=1.0, vt=1.0, angle=0.0, law="LAW=LINEAR K=5000", method="NEWMARK DT=1e-4", gap=0.02
 ):
     """A mass of 2 that meets a wall at `vn`, sliding at `vt`; both speeds afterwards, and the results."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
@@ -286,10 +279,7 @@ def test_all_methods_that_locate_events_take_it(tmp_path):
 @pytest.mark.parametrize(
     ("method", "words"),
     [
-        (
-            "EXACT",
-            "EXACT needs linear pieces, and the law COULOMB of element 1 is curved: TAYLOR takes it",
-        ),
+        ("EXACT", "EXACT needs linear pieces, and the law COULOMB of element 1 is curved: TAYLOR takes it"),
         ("NEWMARK DT=1E-4 EVENTS=STEPPED", "friction (element 1) needs steps with EVENTS=LOCATED"),
     ],
 )

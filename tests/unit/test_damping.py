@@ -16,15 +16,7 @@ from decks import structure_of
 from pound_solve.analyses import modal
 from pound_solve.driver.prepare import DeckError, prepare
 from pound_solve.driver.request import Request
-from pound_solve.laws.automaton import (
-    REVERSAL_DOWN,
-    REVERSAL_UP,
-    BranchKind,
-    Law,
-    Rule,
-    drive,
-    linear,
-)
+from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, BranchKind, Law, Rule, drive, linear
 from pound_solve.laws.hysteresis import bilinear, bilinear_slack
 from pound_solve.numerics.modes import condense, massless
 from pound_solve.structure.assembly import AssemblyError

@@ -591,11 +591,7 @@ PROPS
             "end I is pinned, where no hinge yields: leave out MI,",
         ),
         ("MI=100 MJ=9 PIN=I LP=0.3 RULE=BILINEAR", "MI", "no hinge yields: leave out MI$"),
-        (
-            "MI=1 MJ=1 PIN=BOTH KH=3 RULE=BILINEAR",
-            "MI",
-            "ends I and J .*: leave out MI, MJ, RULE, KH",
-        ),
+        ("MI=1 MJ=1 PIN=BOTH KH=3 RULE=BILINEAR", "MI", "ends I and J .*: leave out MI, MJ, RULE, KH"),
         ("MI=1,1 MJ=1,1 LP=0.3 RULE=BILINEAR", "MI", "MI and MJ are written positive, then negative"),
         ("MJ=-100,100 LP=0.3 RULE=BILINEAR", "MJ", "positive, then negative"),
         ("MI=100 LP=4.1 RULE=BILINEAR", "LP", "4.1 is longer than the flexible length, 4$"),

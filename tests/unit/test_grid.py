@@ -41,12 +41,7 @@ def mesh(step: float, segments: int, cells: int) -> Array:
 def test_no_rise_is_passed_over(terms: list[tuple[float, float, float]], c: float, step: float) -> None:
     f, t = Waves(terms, c), mesh(step, 3, 4)
     curvature = np.full((1, 3), f.curvature)
-    marked = grid.may_rise(
-        f.value(t)[None],
-        f.slope(t)[None],
-        curvature,
-        np.diff(t),
-    )[0]
+    marked = grid.may_rise(f.value(t)[None], f.slope(t)[None], curvature, np.diff(t))[0]
     within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
     above = (f.value(within) > 1e-12).any(axis=2) & (f.value(t)[:, :-1] <= 0.0)
     assert not (above & ~marked).any()
@@ -107,12 +102,7 @@ def test_first_rise(terms: list[tuple[float, float, float]], c: float, segments:
         assert not len(above) or at <= fine[above[0]]
 
 
-@given(
-    st.floats(0.1, 0.4),
-    st.floats(0.6, 0.9),
-    st.floats(0.05, 0.95),
-    st.sampled_from([1.0, -1.0]),
-)
+@given(st.floats(0.1, 0.4), st.floats(0.6, 0.9), st.floats(0.05, 0.95), st.sampled_from([1.0, -1.0]))
 def test_two_turns_within_one_cell_are_seen(first: float, second: float, share: float, sign: float) -> None:
     """A cubic that turns at two places between two samples, where its slopes have one sign: the hump
     rises through zero, its summit and its trough are the peaks.

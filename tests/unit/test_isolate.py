@@ -200,11 +200,7 @@ def judge(c: Array, end: float, tol: float) -> None:
 
 
 @settings(max_examples=400)
-@given(
-    c=polynomials,
-    end=st.sampled_from([1.0, 0.37, 1e-3]),
-    tol=st.sampled_from([1e-12, 1e-9, 1e-3]),
-)
+@given(c=polynomials, end=st.sampled_from([1.0, 0.37, 1e-3]), tol=st.sampled_from([1e-12, 1e-9, 1e-3]))
 @example(c=np.array([-1.0]), end=1.0, tol=1e-12)
 @example(c=np.array([0.0]), end=1.0, tol=0.0)
 @example(c=np.array([0.0, 0.0, 1.0]), end=1.0, tol=1e-12)

@@ -132,11 +132,7 @@ def test_runs_share_their_order_and_modes_and_change_neither(
 
         return call
 
-    for module, name in (
-        (allocation, "laid_out"),
-        (massless, "laid_out"),
-        (modal_tables, "shared_part"),
-    ):
+    for module, name in ((allocation, "laid_out"), (massless, "laid_out"), (modal_tables, "shared_part")):
         monkeypatch.setattr(module, name, told(getattr(module, name)))
     deck = tmp_path / "deck.inp"
     deck.write_text(DECK.format(method=method))

@@ -219,16 +219,8 @@ def test_a_motion_beyond_any_earthquake_is_told_on_the_first_page(tmp_path):
 
 
 RECORD_OF = {
-    "gal without its unit": (
-        818.0,
-        "DT=0.01",
-        "is 818 g; it would be 0.834 g if",
-    ),
-    "multiplied by g twice": (
-        0.28,
-        "DT=0.01 SCALE=9.81",
-        "SCALE=9.81 is gravity",
-    ),
+    "gal without its unit": (818.0, "DT=0.01", "is 818 g; it would be 0.834 g if"),
+    "multiplied by g twice": (0.28, "DT=0.01 SCALE=9.81", "SCALE=9.81 is gravity"),
     "m/s^2 read as g": (2.75, "DT=0.01", "is 2.75 g; it would be 0.28 g if"),
 }
 

@@ -16,14 +16,7 @@ from pound_solve import run
 from pound_solve.analyses import pushover, static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Law,
-    Rule,
-    above,
-    drive,
-    linear,
-)
+from pound_solve.laws.automaton import BranchKind, Law, Rule, above, drive, linear
 from pound_solve.structure.assembly import assemble
 
 pytestmark = pytest.mark.full
@@ -156,8 +149,7 @@ def test_by_force_and_by_displacement_are_one_path():
 def test_user_forces_backwards():
     """FORCES to the left and a target to the right: by force the factor falls."""
     p = pushed(
-        STOREYS.format(fa=5, ra=0.2, fb=3, rb=0.1),
-        "3 0.2 PATTERN=FORCES NODES=3 FORCES=-1 CONTROL=FORCE",
+        STOREYS.format(fa=5, ra=0.2, fb=3, rb=0.1), "3 0.2 PATTERN=FORCES NODES=3 FORCES=-1 CONTROL=FORCE"
     )
     assert p.curve[-1].factor < 0 and p.curve[-1].displacement == pytest.approx(0.2)
 

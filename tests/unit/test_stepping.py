@@ -989,10 +989,7 @@ def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypat
         found = run(tmp_path, f"AUTO TOL=2e-3 PEAKS={asked}")
         checks = [c for c in found.checks if c.subject is Subject.ERROR]
         assert len(checks) == (3 if asked == "ALL" else 1)
-        told, steps[asked] = (
-            max(c.value for c in checks),
-            int(dict(found.table("run").tolist())["steps"]),
-        )
+        told, steps[asked] = (max(c.value for c in checks), int(dict(found.table("run").tolist())["steps"]))
         if asked == "ALL":
             for name, size in (("node/a", 2), ("member/force", 0)):
                 a, b = (np.abs(r.history(name)[..., : size or None]).max(axis=0) for r in (found, truth))

@@ -308,11 +308,7 @@ ANALYSIS
 @pytest.mark.full
 @pytest.mark.parametrize(
     ("alpha", "items"),
-    [
-        (0.5, ""),
-        (0.3, "FX=40"),
-        *at_night((0.3, ""), *((a, x) for a in (0.7, 1.5) for x in ("", "FX=40"))),
-    ],
+    [(0.5, ""), (0.3, "FX=40"), *at_night((0.3, ""), *((a, x) for a in (0.7, 1.5) for x in ("", "FX=40")))],
 )
 def test_newmark_converges_to_braced_frames(alpha: float, items: str) -> None:
     """Dampers in a row behind braces, beside storeys that yield."""

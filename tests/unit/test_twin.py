@@ -106,11 +106,7 @@ def test_where_nothing_happens_there_is_no_twin(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.parametrize(
     ("moved", "what"),
-    [
-        (SHAKEN, "excitation"),
-        ("INITIAL\n 2 VX=1.0", "velocity"),
-        ("INITIAL\n 2 UX=-0.05", "displacement"),
-    ],
+    [(SHAKEN, "excitation"), ("INITIAL\n 2 VX=1.0", "velocity"), ("INITIAL\n 2 UX=-0.05", "displacement")],
 )
 def test_the_twin_moves_otherwise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moved: str, what: str

@@ -150,7 +150,7 @@ class Envelopes:
         parts = {name: self._all.part(part) for name, part in self.quantities.parts.items()}
         self.node = {q: parts.pop(q) for q in MOTION}
         self.output = parts.pop("output")
-        self.total = parts
+        self.sums = parts
         self.seen, self.apart, self.searched = 0, 0.0, False
 
     def blank(self) -> Envelopes:
@@ -175,7 +175,7 @@ class Envelopes:
         the largest of these forces, of its inertia and of what drives it; a moment is also compared with
         the force times the reach of the building.
         """
-        off, base = (np.array([x for x, _ in self.total[name].largest()]) for name in ("imbalance", "base"))
+        off, base = (np.array([x for x, _ in self.sums[name].largest()]) for name in ("imbalance", "base"))
         off, *others = off.reshape(3, -1, 3)
         worst = 0.0
         for b, x, force in zip(buildings, off, np.maximum(base.reshape(-1, 3), np.max(others, axis=0))):

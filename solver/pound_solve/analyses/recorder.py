@@ -167,7 +167,7 @@ class SampleBlock:
         Displacements "u", velocities "v" and accelerations "a" of the recorded nodes.
     members : ndarray, shape (n_outputs, n_times)
         Forces of the recorded members [F], [F L].
-    totals : mapping of str to ndarray, shape (n_sums, n_times)
+    sums : mapping of str to ndarray, shape (n_sums, n_times)
         Sums of forces by their names [F], [F L].
     energy : ndarray, shape (n_times, 7)
         `ENERGIES` and the residual [F L].
@@ -181,7 +181,7 @@ class SampleBlock:
     deformation: Array
     nodes: Mapping[str, Array]
     members: Array
-    totals: Mapping[str, Array]
+    sums: Mapping[str, Array]
     energy: Array
 
 
@@ -372,9 +372,9 @@ class HistoryRecorder:
         self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
         law_forces = (force + dashpot)[self.acting]
         before = inputs_before(system, t)
-        nodes, members, totals = self.envelopes.take(Motion(t, u, v, a, law_forces), before)
+        nodes, members, sums = self.envelopes.take(Motion(t, u, v, a, law_forces), before)
         whole = np.column_stack([energy, residual])
-        self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, totals, whole))
+        self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, sums, whole))
 
     def closeups(self) -> Iterator[SampleBlock]:
         """The close-ups of collisions, in the order of time; they have no energies, and forces of the

@@ -19,14 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pound_solve.numerics.matrices import (
-    Matrix,
-    entries,
-    gathered,
-    least_squares,
-    used_columns,
-    used_rows,
-)
+from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares, used_columns, used_rows
 from pound_solve.numerics.matrices import at as values_at
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.assembly import assemble

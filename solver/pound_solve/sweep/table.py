@@ -48,11 +48,7 @@ def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep
         if q.axis in labels:
             shaped = arrays[q.name] if q.axis else arrays[q.name][:, 0]
             variables[q.name] = Variable(shaped, q.axis, units.text(q.unit), q.doc)
-    about = {
-        "study": Path(study.name).name,
-        "program_version": __version__,
-        "units": " ".join(study.units),
-    }
+    about = {"study": Path(study.name).name, "program_version": __version__, "units": " ".join(study.units)}
     return Sweep(variables, {axis: names for axis, names in labels.items() if axis}, about)
 
 

@@ -19,11 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("results", help="results file (.h5), or results of a sweep or of ida (sweep.h5)")
     parser.add_argument(
-        "--periods",
-        type=_two,
-        default=(),
-        metavar="T1,T2",
-        help="of the buildings, in place of the modes'",
+        "--periods", type=_two, default=(), metavar="T1,T2", help="of the buildings, in place of the modes'"
     )
     parser.add_argument(
         "--damping", type=_two, default=(), metavar="X1,X2", help="in percent, in place of the modes'"

@@ -67,11 +67,7 @@ class WorkIntegrals:
     """
 
     def __init__(
-        self,
-        propagator: Propagator,
-        damping: Array,
-        inputs: Array,
-        laws: list[tuple[int, float, Array]],
+        self, propagator: Propagator, damping: Array, inputs: Array, laws: list[tuple[int, float, Array]]
     ) -> None:
         self.propagator, self.inputs, self.laws, self.damping = propagator, inputs, laws, damping
         self.damped = bool(np.any(damping))

@@ -103,10 +103,7 @@ def figures(system: ReducedSystem, peaks: Peaks, witness: Witness, asked: Collec
     lasting = [c for c in peaks.collisions if not math.isnan(c.peak)]  # others are impacts, without a force
     contacts = [i for i, s in enumerate(laws) if s.role.collides]
     force = np.array([max((c.peak for c in lasting if c.law == i), default=0.0) for i in contacts])
-    parts = [
-        measured(peaks.monitored, ["drift"] * len(peaks.monitored)),
-        hinges(laws, peaks, witness.lost),
-    ]
+    parts = [measured(peaks.monitored, ["drift"] * len(peaks.monitored)), hinges(laws, peaks, witness.lost)]
     if not peaks.monitored:
         springs = [(e, s.unit) for e, s in zip(peaks.deformation, laws) if not s.role.collides]
         parts.append(measured([e for e, _ in springs], [unit for _, unit in springs]))

@@ -21,14 +21,7 @@ from pound_solve.check import Check, Subject, at_most
 from pound_solve.integrate import costs
 from pound_solve.integrate.convergence.compared import NAMES, RESPONSES, Peak, figures, tolerances
 from pound_solve.integrate.convergence.replay import Replay
-from pound_solve.integrate.protocol import (
-    INTERRUPTED,
-    EnvelopeRecorder,
-    Outcome,
-    Problem,
-    Stop,
-    goals,
-)
+from pound_solve.integrate.protocol import INTERRUPTED, EnvelopeRecorder, Outcome, Problem, Stop, goals
 
 STEPS = 2.0  #: of a run that are expected between two samples of the excitation or instants of output
 FIRST = 0.1  #: tolerance of the first run, as a share of that of the peaks

@@ -14,14 +14,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.integrate.protocol import (
-    Outcome,
-    Problem,
-    Recorder,
-    Stop,
-    not_linear,
-    refuse_rigid,
-)
+from pound_solve.integrate.protocol import Outcome, Problem, Recorder, Stop, not_linear, refuse_rigid
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.series.single_pole import LAST
 from pound_solve.integrate.series.taylor import MAX_STEPS, Taylor

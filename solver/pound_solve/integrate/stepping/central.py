@@ -20,13 +20,7 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.check import Subject, at_most
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import (
-    Outcome,
-    Problem,
-    Recorder,
-    Stop,
-    refuse_rigid,
-)
+from pound_solve.integrate.protocol import Outcome, Problem, Recorder, Stop, refuse_rigid
 from pound_solve.integrate.stepping.stepper import Stepper
 from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import weighted

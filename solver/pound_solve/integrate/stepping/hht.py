@@ -39,15 +39,7 @@ SPEC = Spec(
     "implicit steps with damped high frequencies",
     (
         *COMMON,
-        Field(
-            "ALPHA",
-            Kind.REAL,
-            "-",
-            default=-0.1,
-            lo=-1 / 3,
-            hi=0.0,
-            doc="a lower value damps more",
-        ),
+        Field("ALPHA", Kind.REAL, "-", default=-0.1, lo=-1 / 3, hi=0.0, doc="a lower value damps more"),
     ),
     reference="Hilber, Hughes & Taylor 1977",
     impl=integrate,

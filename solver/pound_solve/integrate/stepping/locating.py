@@ -11,20 +11,9 @@ import numpy as np
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEAR
-from pound_solve.integrate.kernels.state import (
-    DONE,
-    NEWTON,
-    PART,
-    PIVOT,
-    Scheme,
-    Simulation,
-)
+from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Scheme, Simulation
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.stepping.step import (
-    factorise_step,
-    start_again,
-    try_step,
-)
+from pound_solve.integrate.stepping.step import factorise_step, start_again, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import next_trial
 from pound_solve.numerics.types import Array

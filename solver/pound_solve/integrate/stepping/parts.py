@@ -21,13 +21,7 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.stepping.changing import change_branches
 from pound_solve.integrate.stepping.locating import locate_event
-from pound_solve.integrate.stepping.step import (
-    REFRESH,
-    accept_trial,
-    factorise_step,
-    start_again,
-    try_step,
-)
+from pound_solve.integrate.stepping.step import REFRESH, accept_trial, factorise_step, start_again, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 

@@ -85,13 +85,7 @@ SPEC = Spec(
             doc="theory of the collision: exact, or Eqs 14-17 of Cole et al. 2011",
         ),
         Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=1.0,
-            above=0,
-            hi=1,
-            doc="plasticity index of collision; 1: elastic",
+            "R", Kind.REAL, "-", default=1.0, above=0, hi=1, doc="plasticity index of collision; 1: elastic"
         ),
         TENSION,
     ),

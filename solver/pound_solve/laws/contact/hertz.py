@@ -24,10 +24,5 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 
 
 SPEC = Spec(
-    "contact",
-    "HERTZ",
-    "power of the overlap",
-    power_fields(1.5),
-    reference="Hertz 1882",
-    impl=build,
+    "contact", "HERTZ", "power of the overlap", power_fields(1.5), reference="Hertz 1882", impl=build
 )

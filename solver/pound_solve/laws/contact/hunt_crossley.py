@@ -121,10 +121,7 @@ def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
 
 
 RULE = Rule(
-    (
-        *BranchKind.OPEN.named("open"),
-        *BranchKind.PRESSED.named("pressed", "pressed, beyond"),
-    ),
+    (*BranchKind.OPEN.named("open"), *BranchKind.PRESSED.named("pressed", "pressed, beyond")),
     start,
     branch,
     transition,

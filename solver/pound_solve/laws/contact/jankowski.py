@@ -83,15 +83,7 @@ def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
 
 
 RULE = Rule(
-    BRANCHES,
-    start,
-    branch,
-    transition,
-    recoverable,
-    curve,
-    powers=powers,
-    parameters=5,
-    variables=0,
+    BRANCHES, start, branch, transition, recoverable, curve, powers=powers, parameters=5, variables=0
 )
 
 

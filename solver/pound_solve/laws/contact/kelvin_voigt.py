@@ -21,16 +21,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import (
-    GAP,
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
+from pound_solve.laws.automaton import GAP, BranchKind, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 
@@ -153,10 +144,7 @@ SPEC = Spec(
     "contact",
     "KELVIN_VOIGT",
     "spring and dashpot while closed",
-    (
-        *linear_fields("Anagnostopoulos 2004"),
-        TENSION,
-    ),
+    (*linear_fields("Anagnostopoulos 2004"), TENSION),
     code=1,
     reference="Anagnostopoulos 1988, 2004; no tension: Shakya, Wijeyewickrema & Ohmachi 2008",
     sample="E=0.5",

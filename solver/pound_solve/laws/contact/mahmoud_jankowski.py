@@ -34,10 +34,7 @@ from pound_solve.laws.contact.constants import dashpot, linear_fields
 from pound_solve.laws.contact.kelvin_voigt import Built, start
 
 OPEN, APPROACH, PARTING = 0, 1, 2
-BRANCHES = (
-    *BranchKind.OPEN.named("open"),
-    *BranchKind.PRESSED.named("pressed", "pressed, parting"),
-)
+BRANCHES = (*BranchKind.OPEN.named("open"), *BranchKind.PRESSED.named("pressed", "pressed, parting"))
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -62,15 +59,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[GAP]) ** 2
 
 
-RULE = Rule(
-    BRANCHES,
-    start,
-    branch,
-    transition,
-    recoverable,
-    parameters=3,
-    variables=0,
-)
+RULE = Rule(BRANCHES, start, branch, transition, recoverable, parameters=3, variables=0)
 
 
 def published(e: float) -> float:

@@ -88,10 +88,7 @@ def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
 
 
 RULE = Rule(
-    (
-        *BranchKind.OPEN.named("open"),
-        *BranchKind.PRESSED.named("pressed"),
-    ),
+    (*BranchKind.OPEN.named("open"), *BranchKind.PRESSED.named("pressed")),
     start,
     branch,
     transition,

@@ -22,16 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import (
-    GAP,
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
+from pound_solve.laws.automaton import GAP, BranchKind, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
@@ -62,10 +53,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    (
-        *BranchKind.OPEN.named("open"),
-        *BranchKind.HELD.named("pressed"),
-    ),
+    (*BranchKind.OPEN.named("open"), *BranchKind.HELD.named("pressed")),
     start,
     branch,
     transition,
@@ -97,16 +85,7 @@ SPEC = Spec(
     "contact",
     "STEREOMECHANICS",
     "rigid: velocities jump",
-    (
-        Field(
-            "E",
-            Kind.REAL,
-            "-",
-            lo=0,
-            hi=1,
-            doc="coefficient of restitution",
-        ),
-    ),
+    (Field("E", Kind.REAL, "-", lo=0, hi=1, doc="coefficient of restitution"),),
     reference="Goldsmith 1960; Cole et al. 2011, Eqs 1-2",
     sample="E=0.65",
     impl=build,

@@ -104,10 +104,7 @@ def steepest(p: Numbers) -> float:
 
 SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MOST + 1))
 RULE = Rule(
-    (
-        *BranchKind.OPEN.named("open"),
-        *BranchKind.PRESSED.named(*SEGMENTS, "pressed, unloading"),
-    ),
+    (*BranchKind.OPEN.named("open"), *BranchKind.PRESSED.named(*SEGMENTS, "pressed, unloading")),
     start,
     branch,
     transition,

@@ -160,10 +160,7 @@ def damper(
 
 
 def build(
-    values: Mapping[str, Any],
-    c: float,
-    limit: tuple[float, float] | None,
-    play: tuple[float, float] | None,
+    values: Mapping[str, Any], c: float, limit: tuple[float, float] | None, play: tuple[float, float] | None
 ) -> Law | None:
     """Law of one component of a DASHPOT from its card's values; None for a linear dashpot.
 

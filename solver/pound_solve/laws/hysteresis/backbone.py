@@ -68,13 +68,7 @@ _CYCLES, _LARGEST, _EACH_SUDDEN, _LARGEST_RCYC, _LARGEST_SUDDEN = 2.0, 3.0, 5.0,
 _COUNTING = 4.0  #: the first form that counts cycles beside the ductility
 
 R = Field(
-    "R",
-    Kind.REAL,
-    "-",
-    default=0.0,
-    lo=0.0,
-    below=1.0,
-    doc="ratio of post-yield to initial stiffness",
+    "R", Kind.REAL, "-", default=0.0, lo=0.0, below=1.0, doc="ratio of post-yield to initial stiffness"
 )
 ALFA = Field(
     "ALFA",

@@ -22,15 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import (
-    REVERSAL_DOWN,
-    REVERSAL_UP,
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    linear,
-)
+from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, BranchKind, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis import degrading_bilinear
 from pound_solve.laws.hysteresis.backbone import LOSS, loses_strength
 
@@ -63,10 +55,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 RULE = Rule(
-    (
-        *BranchKind.ELASTIC.named("elastic"),
-        *BranchKind.YIELDING.named("yielding +", "yielding -"),
-    ),
+    (*BranchKind.ELASTIC.named("elastic"), *BranchKind.YIELDING.named("yielding +", "yielding -")),
     start,
     branch,
     transition,
@@ -87,14 +76,7 @@ SPEC = Spec(
     "BILINEAR",
     "bilinear, kinematic hardening",
     (
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            below=1.0,
-            doc="ratio of post-yield to initial stiffness",
-        ),
+        Field("R", Kind.REAL, "-", default=0.0, below=1.0, doc="ratio of post-yield to initial stiffness"),
         *LOSS,
     ),
     code=2,

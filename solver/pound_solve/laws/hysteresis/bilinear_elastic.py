@@ -16,15 +16,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
 
 STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
 

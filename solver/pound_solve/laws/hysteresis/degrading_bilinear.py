@@ -22,15 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.hysteresis.backbone import (
     ALFA,
     ELASTIC,

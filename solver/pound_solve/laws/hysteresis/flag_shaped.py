@@ -25,23 +25,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
-from pound_solve.laws.mirror import (
-    inward,
-    need_both_sides,
-    outward,
-    side,
-    turns_inward,
-    turns_outward,
-)
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.mirror import inward, need_both_sides, outward, side, turns_inward, turns_outward
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BACK_MINUS = range(7)
 

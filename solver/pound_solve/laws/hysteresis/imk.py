@@ -42,11 +42,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import (
-    STRENGTHLESS,
-    BranchKind,
-    Numbers,
-)
+from pound_solve.laws.automaton import STRENGTHLESS, BranchKind, Numbers
 from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
@@ -173,13 +169,7 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
 #: backbone of both sides
 BACKBONE = (
     Field(
-        "R",
-        Kind.REAL,
-        "-",
-        default=0.0,
-        lo=0.0,
-        below=1.0,
-        doc="ratio of hardening to initial stiffness",
+        "R", Kind.REAL, "-", default=0.0, lo=0.0, below=1.0, doc="ratio of hardening to initial stiffness"
     ),
     Field(
         "DP",

@@ -19,14 +19,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import (
-    NEVER,
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    linear,
-)
+from pound_solve.laws.automaton import NEVER, BranchKind, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
     FAILED,

@@ -18,14 +18,7 @@ Internal variables: those of `backbone`; the point is that of the last reversal,
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import (
-    BranchKind,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
+from pound_solve.laws.automaton import BranchKind, Numbers, Rule, above, below, linear
 from pound_solve.laws.hysteresis.backbone import (
     CHANGES,
     ELASTIC,

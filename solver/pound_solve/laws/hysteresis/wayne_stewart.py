@@ -40,16 +40,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import (
-    STRENGTHLESS,
-    BranchKind,
-    Law,
-    Numbers,
-    Rule,
-    above,
-    below,
-    linear,
-)
+from pound_solve.laws.automaton import STRENGTHLESS, BranchKind, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 from pound_solve.laws.refusal import ItemError
 

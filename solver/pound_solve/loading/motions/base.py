@@ -35,13 +35,7 @@ COMMON: Final = (
         words=("X", "Y", "R"),
         doc="direction of the ground motion; R rotates the ground about the point ABOUT",
     ),
-    Field(
-        "SCALE",
-        Kind.REAL,
-        "-",
-        default=1.0,
-        doc="factor on the acceleration; negative: reversed",
-    ),
+    Field("SCALE", Kind.REAL, "-", default=1.0, doc="factor on the acceleration; negative: reversed"),
     Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; omitted: the whole base"),
     Field(
         "WAVE",

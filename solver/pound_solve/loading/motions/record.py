@@ -214,13 +214,7 @@ FIELDS: Final = (
         count=(2, 2),
         doc="first and last line of the record in the file; omitted: all",
     ),
-    Field(
-        "START",
-        Kind.REAL,
-        "T",
-        default=0.0,
-        doc="time of the record at t = 0; negative: a delay",
-    ),
+    Field("START", Kind.REAL, "T", default=0.0, doc="time of the record at t = 0; negative: a delay"),
     Field(
         "DURATION",
         Kind.REAL,

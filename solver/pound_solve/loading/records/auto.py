@@ -51,9 +51,5 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 
 
 SPEC: Final = Spec(
-    "record",
-    "AUTO",
-    "recognised by content",
-    columns.FIELDS + header.FIELDS,
-    impl=Format(sniff, read),
+    "record", "AUTO", "recognised by content", columns.FIELDS + header.FIELDS, impl=Format(sniff, read)
 )

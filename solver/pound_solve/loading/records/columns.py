@@ -30,13 +30,7 @@ FIELDS: Final = (
         lo=0,
         doc="column of the acceleration, counted from 1; 0: all numbers in turn; omitted: the only one",
     ),
-    Field(
-        "TIMES",
-        Kind.INT,
-        default=1,
-        lo=1,
-        doc="column of the times, counted from 1, if DT is omitted",
-    ),
+    Field("TIMES", Kind.INT, default=1, lo=1, doc="column of the times, counted from 1, if DT is omitted"),
 )
 
 
@@ -127,9 +121,5 @@ def _column(width: int, timed: int, column: int | None) -> int:
 
 
 SPEC: Final = Spec(
-    "record",
-    "COLUMNS",
-    "number columns, also CSV",
-    FIELDS,
-    impl=Format(sniff, read, greedy=True),
+    "record", "COLUMNS", "number columns, also CSV", FIELDS, impl=Format(sniff, read, greedy=True)
 )

@@ -28,13 +28,7 @@ _SAMPLES: Final = re.compile(
 _LONGEST: Final = 200  # characters of a line that announces numbers; damaged ones can be a whole file
 _END: Final = re.compile(r"\s*(?:end-of-data|/&)", re.IGNORECASE)
 #: units of accelerations by their code, with the factor from samples to `RawRecord.unit`
-_UNITS: Final = {
-    2: ("G", 1.0),
-    4: ("CM/S2", 1.0),
-    7: ("CM/S2", 2.54),
-    10: ("CM/S2", 1.0),
-    11: ("G", 0.001),
-}
+_UNITS: Final = {2: ("G", 1.0), 4: ("CM/S2", 1.0), 7: ("CM/S2", 2.54), 10: ("CM/S2", 1.0), 11: ("G", 0.001)}
 _DIRECTIONS: Final = {
     "400": "UP",
     "401": "DOWN",

@@ -28,11 +28,7 @@ def possible(results: Results, ending: str = "svg") -> list[str]:
 
 
 def draw(
-    results: Results,
-    names: Sequence[str],
-    folder: Path,
-    ending: str = "svg",
-    choice: Choice = ALL,
+    results: Results, names: Sequence[str], folder: Path, ending: str = "svg", choice: Choice = ALL
 ) -> tuple[list[Path], dict[str, list[str]]]:
     """Draw pictures into files ``<results>_<picture>.<ending>``.
 

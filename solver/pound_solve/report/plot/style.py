@@ -39,10 +39,7 @@ def sheet(path: Path | None = None) -> Iterator[None]:
     """
     from matplotlib import rc_context, rc_params_from_file
 
-    with (
-        warnings.catch_warnings(),
-        rc_context(rc_params_from_file(SHEET, use_default_template=False)),
-    ):
+    with warnings.catch_warnings(), rc_context(rc_params_from_file(SHEET, use_default_template=False)):
         # a character that the font lacks is drawn as a box; SVG files hold the text
         warnings.filterwarnings("ignore", r"Glyph \d+ |Matplotlib currently does not support", UserWarning)
         if path is None:

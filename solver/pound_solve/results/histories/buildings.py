@@ -57,7 +57,7 @@ def storey_layout(unit: str, places: Sequence[tuple[str, int]]) -> HistoryLayout
 
 def total(name: str, chosen: slice, block: SampleBlock) -> Array:
     """Part `chosen` of the recorded sums of forces called `name`, shape (n_times, n_chosen)."""
-    return block.totals[name][chosen].T
+    return block.sums[name][chosen].T
 
 
 def _storey(place: int, name: str, unit: str, doc: str, values: Callable[[SampleBlock], Array]) -> History:

@@ -29,7 +29,7 @@ def recorded(items: RecordedItems) -> HistoryLayout:
 
 def values(block: SampleBlock) -> Array:
     """Reactions, shape (n_times, n_supports, 3)."""
-    return block.totals["reaction"].T.reshape(len(block.t), len(block.items.supports), 3)
+    return block.sums["reaction"].T.reshape(len(block.t), len(block.items.supports), 3)
 
 
 HISTORY = History(

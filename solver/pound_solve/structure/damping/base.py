@@ -21,10 +21,7 @@ BUILDING = Field(
     doc="name of the building to damp by its own modes; omitted: the whole structure",
 )
 NODES = Field(
-    "NODES",
-    Kind.NODES,
-    default=None,
-    doc="all nodes of one building, in place of its name",
+    "NODES", Kind.NODES, default=None, doc="all nodes of one building, in place of its name"
 )  #: of the models that are made of modes
 
 
@@ -199,8 +196,7 @@ def ratios(card: Card, count: int) -> Array:
     xi = card["XI"]
     if len(xi) not in (1, count):
         raise DampingError(
-            f"XI has {len(xi)} values for {count} frequencies: give one for each, or one for all",
-            "XI",
+            f"XI has {len(xi)} values for {count} frequencies: give one for each, or one for all", "XI"
         )
     return np.broadcast_to(np.array(xi), (count,))
 

@@ -104,13 +104,7 @@ SPEC = Spec(
             doc="damping ratio at OMEGA or MODES; one value: at both",
         ),
         Field(
-            "OMEGA",
-            Kind.REAL,
-            "1/T",
-            default=None,
-            count=(2, 2),
-            above=0,
-            doc="circular frequencies of XI",
+            "OMEGA", Kind.REAL, "1/T", default=None, count=(2, 2), above=0, doc="circular frequencies of XI"
         ),
         Field(
             "MODES",

@@ -409,12 +409,7 @@ FIELDS = (
     Field("G", Kind.REAL, "F/L^2", default=None, above=0, doc="shear modulus, with AS"),
     Field("AS", Kind.REAL, "L^2", default=0.0, lo=0, doc="shear area; 0: no shear deformation"),
     Field(
-        "WGT",
-        Kind.REAL,
-        "F/L",
-        default=0.0,
-        lo=0,
-        doc="self weight per length: mass, and a load in STATIC",
+        "WGT", Kind.REAL, "F/L", default=0.0, lo=0, doc="self weight per length: mass, and a load in STATIC"
     ),
     Field("END1", Kind.REAL, "L", default=0.0, lo=0, doc="length of the rigid block at I"),
     Field("END2", Kind.REAL, "L", default=0.0, lo=0, doc="length of the rigid block at J"),

@@ -172,12 +172,7 @@ SPEC = Spec(
         Field("LAW", Kind.FAMILY, default="LINEAR", family="contact", doc="contact law"),
         Field("MU", Kind.REAL, "-", default=None, above=0, doc="coefficient of friction; omitted: none"),
         Field(
-            "MUD",
-            Kind.REAL,
-            "-",
-            default=None,
-            lo=0,
-            doc="coefficient of sliding friction; omitted: MU",
+            "MUD", Kind.REAL, "-", default=None, lo=0, doc="coefficient of sliding friction; omitted: MU"
         ),
         Field("KT", Kind.REAL, "F/L", default=None, above=0, doc="tangential stiffness while sticking"),
         Field(

@@ -62,14 +62,7 @@ SPEC = Spec(
     "DASHPOT",
     "dashpot or damper with components x, y and rotation",
     (
-        Field(
-            "CX",
-            Kind.REAL,
-            "F*T/L",
-            default=0.0,
-            lo=0,
-            doc="force at unit rate along local x",
-        ),
+        Field("CX", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="force at unit rate along local x"),
         Field("CY", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="force at unit rate along local y"),
         Field("CR", Kind.REAL, "F*L*T", default=0.0, lo=0, doc="moment at unit rate"),
         *PLACEMENT,

@@ -54,12 +54,7 @@ def lobatto(count: int) -> tuple[Array, Array]:
 
 
 def no_tension(
-    element: int,
-    component: str,
-    row: Mapping[Dof, float],
-    k: float,
-    strength: float | None,
-    width: float,
+    element: int, component: str, row: Mapping[Dof, float], k: float, strength: float | None, width: float
 ) -> LawSpring:
     """A spring that opens in tension; crushed at its `strength`, elastic where that is None."""
     far = FAR * width

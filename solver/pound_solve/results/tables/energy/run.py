@@ -14,13 +14,5 @@ def rows(run: RunRecord) -> list[Row]:
 
 
 TABLE = Table(
-    name="run",
-    title="Run log",
-    place=30,
-    stages=(Stage.PEAKS,),
-    columns=(
-        ITEM,
-        VALUE,
-    ),
-    rows=rows,
+    name="run", title="Run log", place=30, stages=(Stage.PEAKS,), columns=(ITEM, VALUE), rows=rows
 )

@@ -13,7 +13,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """Up to three rows for each building: those of forces that are not zero throughout."""
-    units, envelope = run.model.units, iter(run.history.recorder.envelopes.total["base"].rows())
+    units, envelope = run.model.units, iter(run.history.recorder.envelopes.sums["base"].rows())
     for b in run.history.items.buildings:
         for (quantity, dimension), extremes in zip(BASE, envelope):
             if extremes[0] != 0.0 or extremes[2] != 0.0:

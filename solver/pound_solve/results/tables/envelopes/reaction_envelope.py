@@ -14,7 +14,7 @@ QUANTITIES = (("force X", "F"), ("force Y", "F"), ("moment", "F*L"))  #: of a su
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each direction in which a recorded support has a force."""
-    units, envelope = run.model.units, run.history.recorder.envelopes.total["reaction"].rows()
+    units, envelope = run.model.units, run.history.recorder.envelopes.sums["reaction"].rows()
     for i, node in enumerate(run.history.items.supports):
         for d, (quantity, dimension) in enumerate(QUANTITIES):
             extremes = envelope[3 * i + d]
@@ -32,12 +32,7 @@ TABLE = Table(
     title="Reaction envelopes",
     place=30,
     stages=(Stage.SAMPLES,),
-    columns=(
-        NODE,
-        Column("quantity", doc="`force X`, `force Y` or `moment`"),
-        UNIT,
-        *extreme_columns(""),
-    ),
+    columns=(NODE, Column("quantity", doc="`force X`, `force Y` or `moment`"), UNIT, *extreme_columns("")),
     rows=rows,
     remark=remark,
     note="Forces of the supports on the structure. Damping in proportion to stiffness and the inertia of a "

@@ -14,7 +14,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """Three rows for each storey."""
     from pound_solve.structure.storeys import storeys  # not needed to read a report
 
-    seen, units = run.history.recorder.envelopes.total, run.model.units
+    seen, units = run.history.recorder.envelopes.sums, run.model.units
     drift, force, motion = (list(seen[name].rows()) for name in ("drift", "storey", "acceleration"))
     for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
         yield b.name, i, "drift ratio", "-", *drift[n]

@@ -31,10 +31,7 @@ TABLE = Table(
     title="Time, memory, versions",
     place=10,
     stages=(Stage.END,),
-    columns=(
-        ITEM,
-        VALUE,
-    ),
+    columns=(ITEM, VALUE),
     rows=rows,
     note="Only this last section differs between two runs of the same deck.",
 )

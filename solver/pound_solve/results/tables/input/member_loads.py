@@ -25,9 +25,6 @@ TABLE = Table(
     title="Member loads",
     place=70,
     stages=(Stage.INPUT,),
-    columns=(
-        ELEMENT,
-        Column("load", doc="the load in words"),
-    ),
+    columns=(ELEMENT, Column("load", doc="the load in words")),
     rows=rows,
 )

@@ -27,12 +27,7 @@ TABLE = Table(
     title="Member envelopes",
     place=10,
     stages=(Stage.SAMPLES,),
-    columns=(
-        ELEMENT,
-        Column("quantity", doc="name of the force or moment"),
-        UNIT,
-        *extreme_columns(""),
-    ),
+    columns=(ELEMENT, Column("quantity", doc="name of the force or moment"), UNIT, *extreme_columns("")),
     rows=rows,
     remark=remark,
 )

@@ -28,13 +28,5 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 TABLE = Table(
-    name="pushover",
-    title="Pushover",
-    place=10,
-    stages=(Stage.PUSHOVER,),
-    columns=(
-        ITEM,
-        VALUE,
-    ),
-    rows=rows,
+    name="pushover", title="Pushover", place=10, stages=(Stage.PUSHOVER,), columns=(ITEM, VALUE), rows=rows
 )

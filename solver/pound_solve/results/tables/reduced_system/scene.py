@@ -28,10 +28,7 @@ TABLE = Table(
     name="scene",
     title="What this analysis needs",
     place=10,
-    stages=(
-        Stage.MODAL,
-        Stage.HISTORY,
-    ),
+    stages=(Stage.MODAL, Stage.HISTORY),
     columns=(
         Column("subject", doc="part of the analysis"),
         Column("decision", doc="what is done or omitted"),

@@ -33,13 +33,5 @@ def rows(run: RunRecord) -> list[Row]:
 
 
 TABLE = Table(
-    name="size",
-    title="Problem size",
-    place=20,
-    stages=(Stage.INPUT,),
-    columns=(
-        ITEM,
-        VALUE,
-    ),
-    rows=rows,
+    name="size", title="Problem size", place=20, stages=(Stage.INPUT,), columns=(ITEM, VALUE), rows=rows
 )

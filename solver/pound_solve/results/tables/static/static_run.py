@@ -23,9 +23,6 @@ TABLE = Table(
     title="Log of the static analysis",
     place=50,
     stages=(Stage.STATIC,),
-    columns=(
-        ITEM,
-        VALUE,
-    ),
+    columns=(ITEM, VALUE),
     rows=rows,
 )

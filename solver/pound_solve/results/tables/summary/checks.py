@@ -23,11 +23,7 @@ TABLE = Table(
     name="checks",
     title="Checks of this run",
     place=50,
-    stages=(
-        Stage.STATIC,
-        Stage.PUSHOVER,
-        Stage.PEAKS,
-    ),
+    stages=(Stage.STATIC, Stage.PUSHOVER, Stage.PEAKS),
     columns=(
         Column("subject", doc=_all(Subject)),
         Column("check", doc="what was checked"),

@@ -98,7 +98,7 @@ def response(run: RunRecord) -> Iterator[Row]:
         name, ratio = max(drifts, key=lambda drift: drift[1])
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"
     elif history.items.buildings:
-        seen = [ratio for ratio, _ in history.recorder.envelopes.total["drift"].largest()]
+        seen = [ratio for ratio, _ in history.recorder.envelopes.sums["drift"].largest()]
         at = max(range(len(seen)), key=seen.__getitem__, default=None)
         if at is not None:
             building, storey = list(storeys(history.items.buildings))[at]

@@ -14,7 +14,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each storey."""
     from pound_solve.structure.storeys import storeys  # not needed to read a report
 
-    seen = run.history.recorder.envelopes.total
+    seen = run.history.recorder.envelopes.sums
     drift, force, motion = (seen[name].largest() for name in ("drift", "storey", "acceleration"))
     last = run.stored("storey/drift")[-1] if len(drift) else ()
     for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
