@@ -23,6 +23,7 @@ ROOMS = (
     "modules",
     "interruption",
     "check",
+    "user_error",
     "numerics",
     "loading",
     "laws",
@@ -291,6 +292,7 @@ def test_every_room_is_known_and_few_modules_lie_outside_of_rooms():
         "check",
         "deck",
         "interruption",
+        "user_error",
         "modules",
         "version",
     }

@@ -14,7 +14,7 @@ from scipy.linalg import solve_continuous_lyapunov
 
 from decks import results_of
 from pound_solve.cli.main import main
-from pound_solve.report.separation import SeparationError, SeparationRecord, rows, text
+from pound_solve.report.separation import SeparationError, rows, text
 from pound_solve.results import Results
 from pound_solve.statistics.separation import correlation, double_difference
 
@@ -99,7 +99,7 @@ def ran(folder: Path, ends: str = "2 4", angle: str = "0", **params: float):
 
 def test_a_run_in_which_nothing_meets(tmp_path: Path) -> None:
     with ran(tmp_path) as results:
-        (row,) = rows(SeparationRecord(results))
+        (row,) = rows(results)
         history = results.history("node/u")[:, [1, 3], 0]
     _, u1, u2, t1, t2, xi1, xi2, total, srss, ddc, needed, gap, note = row
     assert (u1, u2) == pytest.approx((0.03, 0.02), rel=1e-12)
@@ -113,7 +113,7 @@ def test_a_run_in_which_nothing_meets(tmp_path: Path) -> None:
 
 def test_along_an_inclined_direction(tmp_path: Path) -> None:
     with ran(tmp_path, angle="60") as results:
-        (row,) = rows(SeparationRecord(results))
+        (row,) = rows(results)
     assert row[1:3] == pytest.approx((0.015, 0.01), rel=1e-12)
 
 
@@ -121,16 +121,16 @@ def test_a_node_that_is_not_stored(tmp_path: Path) -> None:
     deck, words = tmp_path / "walls.inp", WALLS.replace(" EVERY=0.001", " EVERY=0.001 NODES=2")
     deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
     with results_of(deck, out=tmp_path) as results:
-        (row,) = rows(SeparationRecord(results))
+        (row,) = rows(results)
     assert row[1] == pytest.approx(0.03) and math.isnan(row[2]) and math.isnan(row[7])
 
 
 def test_given_periods_and_a_wall(tmp_path: Path) -> None:
     with ran(tmp_path) as results:
-        (row,) = rows(SeparationRecord(results, (0.4, 0.4), (3.0, 3.0)))
+        (row,) = rows(results, (0.4, 0.4), (3.0, 3.0))
         assert row[3:7] == (0.4, 0.4, 3.0, 3.0) and row[9] == pytest.approx(0.01)
     with ran(tmp_path, ends="2") as results:
-        (row,) = rows(SeparationRecord(results))
+        (row,) = rows(results)
         assert row[2] == 0.0 and row[7:10] == pytest.approx((0.03, 0.03, 0.03))
 
 
@@ -138,19 +138,19 @@ def test_without_mode_shapes_there_is_no_ddc(tmp_path: Path) -> None:
     deck, words = tmp_path / "walls.inp", WALLS.replace(" MODAL 2", " MODAL 2 SHAPES=NO")
     deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
     with results_of(deck, out=tmp_path) as results:
-        (row,) = rows(SeparationRecord(results))
+        (row,) = rows(results)
         assert row[8] == pytest.approx(math.hypot(0.03, 0.02))  # SRSS needs no periods
         assert math.isnan(row[9]) and "--periods" in row[12]
         assert "SHAPES=YES" in " ".join(text(results).split())
-        (row,) = rows(SeparationRecord(results, (0.4, 0.4)))  # the damping is still not known
+        (row,) = rows(results, (0.4, 0.4))  # the damping is still not known
         assert math.isnan(row[9])
-        (row,) = rows(SeparationRecord(results, (0.4, 0.4), (3.0, 3.0)))
+        (row,) = rows(results, (0.4, 0.4), (3.0, 3.0))
         assert row[9] == pytest.approx(0.01) and row[12] == "free: nothing met"
 
 
 def test_a_run_in_which_they_meet_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with ran(tmp_path, gap=0.04) as results:
-        (row,) = rows(SeparationRecord(results))
+        (row,) = rows(results)
         assert math.isnan(row[10]) and row[11] == 0.04 and row[12].startswith("pounding")
         assert "DDC" in text(results)
         path = results.path
@@ -172,7 +172,7 @@ def test_a_file_without_contacts(tmp_path: Path, capsys: pytest.CaptureFixture[s
     lines = [line for line in WALLS.splitlines() if "HIT" not in line and "gap" not in line]
     deck.write_text("\n".join(lines), encoding="utf-8")
     with results_of(deck, out=tmp_path) as results, pytest.raises(SeparationError, match="contacts"):
-        rows(SeparationRecord(results))
+        rows(results)
     assert main(["separation", str(tmp_path / "walls.h5")]) == 3
     assert "contacts" in capsys.readouterr().err
     assert main(["separation", str(tmp_path / "none.h5")]) == 3
@@ -183,14 +183,12 @@ def test_a_run_that_ended_early_says_so(tmp_path: Path) -> None:
     deck.write_text(WALLS.format(ends="2 4", angle="0"), encoding="utf-8")
     results_of(deck, out=tmp_path).close()
     with Results.open(tmp_path / "walls.h5") as results:
-        assert "early" not in rows(SeparationRecord(results))[0][-1]
+        assert "early" not in rows(results)[0][-1]
     with h5py.File(tmp_path / "walls.h5", "a") as file:
         file.attrs["status"] = "stopped"
         file.attrs["format_version"] = [1, 1]
     with Results.open(tmp_path / "walls.h5") as results:
-        assert rows(SeparationRecord(results))[0][-1].endswith(
-            f"the run ended early, at {results.time[-1]:g}"
-        )
+        assert rows(results)[0][-1].endswith(f"the run ended early, at {results.time[-1]:g}")
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,12 @@ import pytest
 
 from kernels import steps_alone
 from pound_solve.assess import advice, study
-from pound_solve.assess.advice import Reference, StudyError, Trial
+from pound_solve.assess.advice import StudyError
 from pound_solve.assess.study import Plan
 from pound_solve.cli.main import main
 from pound_solve.driver import run
 from pound_solve.results import Results
+from pound_solve.results.study_record import Reference, Trial
 from tiers import at_night
 
 pytestmark = pytest.mark.full

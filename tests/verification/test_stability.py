@@ -99,7 +99,7 @@ def judged(case, **given):
     """How a made-up run of a case is judged."""
 
     def run(case, deck, method):
-        return stability.NOTHING._replace(**{"t": np.zeros(2), "u": np.zeros((2, 1)), **given})
+        return stability.Findings(**{"t": np.zeros(2), "u": np.zeros((2, 1)), **given})
 
     return stability.judge(run, case, "NEWMARK").end
 
@@ -128,7 +128,7 @@ def test_an_answer_that_no_engineer_would_believe_excuses_no_error(tmp_path):
 
 
 LINE = np.linspace(0.0, 1.0, 11)
-RIGHT_RUN = stability.NOTHING._replace(
+RIGHT_RUN = stability.Findings(
     t=LINE, u=LINE[:, None], f=LINE[:, None], swings=np.array([[1.0, 0.0]]), blows=np.array([2.0, 1e-3])
 )
 
@@ -200,7 +200,7 @@ def test_springs_are_not_judged_where_a_body_turns_unless_the_reference_has_no_s
         def run(case, deck, method):
             if method == "TAYLOR":
                 return RIGHT_RUN._replace(f=f[:, None])
-            return turning if by in method else stability.NOTHING._replace(stop="A505 at t = 0 s: curved")
+            return turning if by in method else stability.Findings(stop="A505 at t = 0 s: curved")
 
         row = stability.judge(run, case, "TAYLOR")
         assert (row.says == stability.PARTLY) is (row.end == stability.RIGHT)
@@ -217,7 +217,7 @@ def test_other_masses_show_a_touch_that_steps_take_for_rounding(monkeypatch):
 
     def run(case, deck, method):
         if "REFINE" in method:
-            return stability.NOTHING._replace(stop="A505 at t = 0 s: curved")
+            return stability.Findings(stop="A505 at t = 0 s: curved")
         return RIGHT_RUN if "NEWMARK" in method else RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
 
     stability.judge(run, case, "TAYLOR")

@@ -94,29 +94,23 @@ class HistoryOutput(Protocol):
 
     def start(self, items: RecordedItems) -> None:
         """Prepare for what is recorded."""
-        ...
 
     def append(self, block: SampleBlock) -> None:
         """Take some samples."""
-        ...
 
     def closeups(self, blocks: Iterable[SampleBlock]) -> None:
         """Receive the close-ups of collisions, when the history is over."""
-        ...
 
     def extremes(self, bounds: Array, blocks: Sequence[SampleBlock]) -> None:
         """Receive the smallest and largest values between the `bounds`, when the history is over."""
-        ...
 
     def save(self, state: Mapping[str, Array]) -> None:
         """Receive the state from which a later run can continue."""
-        ...
 
     def progress(self, t: float, end: float, doing: str) -> None:
         """Receive the time reached, the time to reach, and what keeps the run waiting there, if
         anything.
         """
-        ...
 
 
 @dataclass(frozen=True)

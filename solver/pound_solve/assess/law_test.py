@@ -20,6 +20,7 @@ from pound_solve.laws.automaton import Law, NoProgressError, State, transitions
 from pound_solve.report.text_plot import svg
 from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.elements.base import LawSpring
+from pound_solve.user_error import UserError
 
 #: start of the specimen's card; items that it is given where the user gives none, and fields that need them
 _CARDS: Final = {
@@ -39,7 +40,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 AXES: Final = {"hysteresis": ("deformation", "force"), "contact": ("closure", "contact force")}
 
 
-class LawTestError(Exception):
+class LawTestError(UserError):
     """Raised where a specimen cannot be made, or cannot be driven."""
 
 

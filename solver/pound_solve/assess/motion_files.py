@@ -13,12 +13,13 @@ from pound_solve.driver.prepare import ground
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.base import Motion
 from pound_solve.loading.records import peer
+from pound_solve.user_error import UserError
 
 EQUAL: Final = 1e-9  #: share by which steps of equal length may differ: times are sums
 LONGEST: Final = 10**7  #: file, in steps
 
 
-class MotionError(Exception):
+class MotionError(UserError):
     """Raised where a motion cannot be written to a file; the message says why."""
 
 

@@ -22,12 +22,13 @@ from pound_solve.driver.reading import Deck
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.results import Results
+from pound_solve.user_error import UserError
 
 SAMPLES: Final = 10  #: stored accelerations in the shortest period, below which they are too coarse
 WAYS: Final = MappingProxyType({"X": "X", "Y": "Y", "R": "R (rad)"})  #: names of directions
 
 
-class SpectrumError(Exception):
+class SpectrumError(UserError):
     """Raised where a source has no motion; the message says why."""
 
 

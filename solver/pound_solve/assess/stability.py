@@ -86,30 +86,16 @@ class Findings(NamedTuple):
     stop or refusal; checks of the numbers with the verdict "look"; what is wrong with it; seconds.
     """
 
-    t: Array
-    u: Array
-    v: Array
-    f: Array
-    swings: Array
-    blows: Array
-    stop: str
-    looks: tuple[Check, ...]
-    wrong: str
-    seconds: float
-
-
-NOTHING: Final = Findings(
-    t=np.zeros(0),
-    u=np.zeros(0),
-    v=np.zeros((0, 0)),
-    f=np.zeros((0, 0)),
-    swings=np.zeros((0, 2)),
-    blows=np.zeros(0),
-    stop="",
-    looks=(),
-    wrong="",
-    seconds=0.0,
-)
+    t: Array = np.zeros(0)
+    u: Array = np.zeros(0)
+    v: Array = np.zeros((0, 0))
+    f: Array = np.zeros((0, 0))
+    swings: Array = np.zeros((0, 2))
+    blows: Array = np.zeros(0)
+    stop: str = ""
+    looks: tuple[Check, ...] = ()
+    wrong: str = ""
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -160,7 +146,7 @@ def solve(deck: str, files: Mapping[str, str]) -> Findings:
     began = time.perf_counter()
 
     def findings(**known: Any) -> Findings:
-        return Findings(**{**NOTHING._asdict(), **known, "seconds": time.perf_counter() - began})
+        return Findings(**known, seconds=time.perf_counter() - began)
 
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -233,7 +219,7 @@ class Runner:
             process.join()
             wrong = f"the process died: exit code {process.exitcode}"
         self.close()
-        return NOTHING._replace(wrong=wrong, seconds=self.limit)
+        return Findings(wrong=wrong, seconds=self.limit)
 
     def close(self) -> None:
         """End the process."""
@@ -268,7 +254,7 @@ def reference(run: Runner, case: Case) -> tuple[Findings, str, float] | None:
     result = run(case, deck, method := "EXACT REFINE=3")
     if not (result.stop or result.wrong) and holds(result):
         return result, method, 0.0
-    step, before = min(case.step, STEP) / 16.0, NOTHING
+    step, before = min(case.step, STEP) / 16.0, Findings()
     while not len(result.t) or result.t[-1] / step < MOST_STEPS:
         result = run(case, deck, method := f"NEWMARK DT={step!r}")
         if result.stop or result.wrong:

@@ -23,20 +23,7 @@ import numpy as np
 
 from pound_deck.schema import out_of_limits
 from pound_solve.analyses.history import ROWS
-from pound_solve.assess.advice import (
-    MARGIN,
-    NOISY,
-    TARGETS,
-    Advice,
-    Peaks,
-    Reference,
-    StudyError,
-    Trial,
-    advise,
-    errors,
-    extrapolated,
-    order,
-)
+from pound_solve.assess.advice import MARGIN, TARGETS, StudyError, advise, errors, extrapolated
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject
 from pound_solve.driver import run as driver
@@ -45,12 +32,12 @@ from pound_solve.driver.preflight import MOST_STEPS
 from pound_solve.results import Results
 from pound_solve.results.place import put_in_place
 from pound_solve.results.schema import Stage
+from pound_solve.results.study_record import Peaks, Reference, Study, Trial
 from pound_solve.results.whole_file import partial
 
 Report = Callable[[str], None]
 
 HALVINGS: Final = 16  #: of the first step, at most
-SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
 FINE: Final = 1e-10  #: tolerance with which LAGUERRE makes the reference
 CHECKED: Final = 1e-8  #: tolerance of the run that shows the error of that
 TOO_LONG: Final = "takes longer than --longest"
@@ -87,52 +74,6 @@ class Plan:
     tols: tuple[float, ...] = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     repeat: int = 3
     longest: float = 5.0
-
-
-@dataclass(frozen=True)
-class Study:
-    """Trials with their errors, the reference, and the advice."""
-
-    trials: tuple[Trial, ...]
-    reference: Reference
-    advice: tuple[Advice, ...]
-
-    @property
-    def sentence(self) -> str:
-        """The advice in one sentence."""
-        lacking = any(a.trial is None for a in self.advice)
-        text = "Least time for errors up to " + "; ".join(map(str, self.advice))
-        if self.reference.unseen:
-            closed = "no contact closed, so no step is named"
-            return f"{text}; {closed}: give a stronger motion to learn which step collisions need."
-        return text + (" (give smaller --steps, or a larger --longest)." if lacking else ".")
-
-    @property
-    def noise(self) -> float:
-        """Largest spread of the repeats that are long enough to compare; 0 where none is."""
-        return max((t.spread for t in self.trials if t.time > SHORT), default=0.0)
-
-    @property
-    def warning(self) -> str:
-        """Warning that the times are not to be trusted; empty if they are."""
-        if self.noise <= NOISY:
-            return ""
-        return (
-            f"Repeats of one run differ by up to {100 * self.noise:.0f} %: the machine does other work, "
-            "go by the steps rather than by the times."
-        )
-
-    @property
-    def orders(self) -> list[float]:
-        """Observed order of each trial against the one before; NaN where there is none: a tolerance does
-        not shorten all steps alike.
-        """
-        orders, before = [], None
-        for t in self.trials:
-            along = before is not None and before.method == t.method and t.setting.startswith("DT=")
-            orders.append(order(before, t) if before is not None and along else math.nan)
-            before = None if t.stopped else t
-        return orders
 
 
 def run(

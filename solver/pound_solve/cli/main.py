@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
-from typing import TextIO
 
 from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
 from pound_solve.interruption import Interruption
 from pound_solve.modules import modules_below
 from pound_solve.numerics import threads
+from pound_solve.user_error import UserError
 from pound_solve.version import __version__
 
 VERBS = tuple(name.rpartition(".")[2] for name in modules_below(verbs))
@@ -57,14 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _status(args.execute, args)
 
 
-def _tell(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
+def _tell(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
     """Print a warning of a library in one line that refers to the magnitudes of the deck."""
     where = f"{category.__name__}: {message}".splitlines()[0]
     complain(f"warning: arithmetic at the limits of floating point ({where}): check the deck's magnitudes")
@@ -85,6 +78,11 @@ def _status(execute: Callable[[argparse.Namespace], int], args: argparse.Namespa
     except BrokenPipeError:  # the reader of the output has closed it
         sys.stderr.close()
         return 0
+    except UserError as err:
+        if not err.has_places:
+            return complain(str(err), err.status)
+        print(err, file=sys.stderr)
+        return err.status
     except OSError as err:
         return complain(f"{err.filename or ''}: {err.strerror or err}".lstrip(": "))
     except KeyboardInterrupt:

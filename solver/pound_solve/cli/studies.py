@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,23 +35,15 @@ def give_conduct(args: argparse.Namespace, document: Document) -> None:
 
 def carried_out(study: str, work: Callable[[], int]) -> int:
     """Do some work on a study; print its mistakes or why it cannot be done, and return the exit status."""
-    from pound_solve.results import ResultsError
     from pound_solve.statistics.curves import CurveError
     from pound_solve.sweep.execution.executors import ExecutorError
-    from pound_solve.sweep.execution.lock import BusyError
-    from pound_solve.sweep.study.study import StudyError
 
     try:
         return work()
-    except StudyError as err:
-        print(err, file=sys.stderr)
-        return common.MISTAKES
     except argparse.ArgumentTypeError as err:
         return common.complain(str(err), common.MISTAKES)
     except (CurveError, ExecutorError) as err:
         return common.complain(f"{study}: {err}", common.MISTAKES)
-    except (BusyError, ResultsError) as err:
-        return common.complain(str(err))
 
 
 class Progress:

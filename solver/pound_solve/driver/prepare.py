@@ -24,14 +24,17 @@ from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.damping.assembly import add_damping
 from pound_solve.structure.reduction import moved_supports
 from pound_solve.structure.structure import Structure
+from pound_solve.user_error import UserError
 
 LATER = "Records and the structure are checked when these mistakes are gone."
 
 
-class DeckError(Exception):
+class DeckError(UserError):
     """Raised where the deck has mistakes: `diagnostics` are those that could be found, `files` the texts
     that they are in, and `later` says what was not checked because of them.
     """
+
+    has_places = True
 
     def __init__(
         self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str], later: str = ""

@@ -41,37 +41,29 @@ class RunOutput(Protocol):
 
     def text(self, name: str, text: str) -> None:
         """Store a text of the input."""
-        ...
 
     def tables(self, stage: Stage, record: RunRecord) -> None:
         """Store the tables of a stage."""
-        ...
 
     def start_history(self, layout: Layout, packed: bool = False) -> None:
         """Prepare for histories."""
-        ...
 
     def append(self, block: Mapping[str, Array]) -> None:
         """Store the rows of all histories at some instants."""
-        ...
 
     def stored(self, name: str) -> Array:
         """Rows of a history so far."""
-        ...
 
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
         """Store the close-ups of collisions."""
-        ...
 
     def extremes(
         self, layout: Layout, bounds: Array, low: Mapping[str, Array], high: Mapping[str, Array]
     ) -> None:
         """Store the extremes of histories within intervals."""
-        ...
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
         """Store the state that a later run can continue from, and what it belongs to."""
-        ...
 
 
 @dataclass

@@ -160,23 +160,18 @@ class Envelopes(Protocol):
 
     def between(self, course: Course) -> None:
         """Count in the motion between samples, as `Recorder.between`."""
-        ...
 
     def take(self, motion: Motion, s: Sequence[Array]) -> object:
         """Count in samples; `s` are the inputs and their first two rates."""
-        ...
 
     def peaks(self) -> tuple[Array, list[str]]:
         """Largest and smallest accelerations of nodes and forces of members, and the kind of each."""
-        ...
 
     def blank(self) -> Self:
         """Return empty envelopes of the same quantities."""
-        ...
 
     def widen(self, other: Self) -> None:
         """Include the extremes of another one."""
-        ...
 
 
 class Recorder(Protocol):
@@ -185,12 +180,10 @@ class Recorder(Protocol):
     @property
     def shown(self) -> Flags:
         """Which unknowns `between` needs, shape (n,): those of the laws in `acting` are among them."""
-        ...
 
     @property
     def acting(self) -> Index:
         """Laws whose forces `between` needs, ascending, shape (n_acting,)."""
-        ...
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take the motion (n, n_times) and the laws' forces and energies at some output times.
@@ -198,15 +191,12 @@ class Recorder(Protocol):
         `works`, shape (3, n_times), are the work put in, and that lost so far in the structure's
         and in the contacts' dashpots.
         """
-        ...
 
     def between(self, course: Course) -> None:
         """Take the motion between samples: for envelopes."""
-        ...
 
     def trial(self, t: float, doing: str = "") -> None:
         """Receive the time reached by a run whose samples may not be used, or what keeps it waiting."""
-        ...
 
 
 class EnvelopeRecorder(Recorder, Protocol):
@@ -214,12 +204,10 @@ class EnvelopeRecorder(Recorder, Protocol):
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take some samples, as `sample` does, whose progress has been reported before."""
-        ...
 
     @property
     def envelopes(self) -> Envelopes:
         """Envelopes of the motion between the samples, and possibly at them."""
-        ...
 
 
 R = TypeVar("R", bound=Recorder, covariant=True)

@@ -50,25 +50,20 @@ class JumpingRun(Protocol):
     @property
     def branches(self) -> Sequence[Branch]:
         """Present branches of all laws."""
-        ...
 
     def force(self, law: int, d: float) -> tuple[float, float]:
         """Force of a law at rest at deformation `d`, and its tangent."""
-        ...
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` on a way in the direction of `v`."""
-        ...
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
         """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
         the input.
         """
-        ...
 
     def stop(self, code: str, why: str) -> Stop:
         """Return the exception that ends the run here."""
-        ...
 
 
 def falls(before: Branch, after: Branch, d: float) -> bool:

@@ -90,16 +90,13 @@ class Peak(Protocol):
     @property
     def high(self) -> float:
         """Largest value so far."""
-        ...
 
     @property
     def low(self) -> float:
         """Smallest value so far."""
-        ...
 
     def take(self, value: float, t: float) -> None:
         """Count a value in."""
-        ...
 
 
 class Extremes(NamedTuple):

@@ -27,25 +27,20 @@ class Provider(Protocol):
     @property
     def name(self) -> str:
         """How kernels run, for the report."""
-        ...
 
     @property
     def fast(self) -> bool:
         """Whether kernels run as compiled code."""
-        ...
 
     @property
     def loading(self) -> float:
         """Approximate time that a process takes to load the kernels [s]."""
-        ...
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """The kernel ready to be called; with a signature of numba, ready to be handed to kernels."""
-        ...
 
     def notice(self, kernel: Function) -> str:
         """What a user has to know before a run of this kernel; empty if nothing."""
-        ...
 
 
 class Interpreter:

@@ -13,7 +13,7 @@ import numpy as np
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
-from pound_solve.results.schema import Row, Table
+from pound_solve.results.schema import Row, Sheet
 from pound_solve.results.whole_file import whole
 
 _BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
@@ -93,9 +93,9 @@ def export_columns(
     return _write(folder / "histories.csv", heads, _blocks(columns))
 
 
-def export_rows(path: Path, units: Units, table: Table[Any], rows: Iterable[Row]) -> None:
+def export_rows(path: Path, units: Units, sheet: Sheet, rows: Iterable[Row]) -> None:
     """Write rows of a table that is not in a results file as CSV; see `export_csv`."""
-    heads = [_head(column.name, units.text(column.unit)) for column in table.columns]
+    heads = [_head(column.name, units.text(column.unit)) for column in sheet.columns]
     _write(path, heads, ([_cell(v) for v in row] for row in rows))
 
 

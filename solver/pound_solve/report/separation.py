@@ -11,32 +11,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from pound_solve.report.text import printed
 from pound_solve.results import Results
 from pound_solve.results.columns import CONTACT
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.statistics.separation import Peaks, correlation, own_mode
 from pound_solve.structure.elements.base import axes
+from pound_solve.user_error import UserError
 
 NAN: Final = math.nan
 FREE, MET = "free: nothing met", "pounding: something met"
 UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods and --damping"
 
 
-class SeparationError(Exception):
+class SeparationError(UserError):
     """Raised where a results file does not hold what the rules need."""
 
-
-class SeparationRecord(NamedTuple):
-    """Input of the rows, see `text`."""
-
-    results: Results
-    periods: Sequence[float] = ()
-    damping: Sequence[float] = ()
+    status = 3
 
 
 def text(results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()) -> str:
@@ -55,12 +50,11 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     SeparationError
         There is no contact or no history in the file.
     """
-    return "\n".join(printed(results.units, TABLE, rows(SeparationRecord(results, periods, damping))))
+    return "\n".join(printed(results.units, TABLE, rows(results, periods, damping)))
 
 
-def rows(record: SeparationRecord) -> list[Row]:
+def rows(results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()) -> list[Row]:
     """One row for each contact; see `text`."""
-    results = record.results
     _check(results)
     ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
     summary = {row["contact"]: row for row in results.table("contact_summary")}
@@ -72,8 +66,8 @@ def rows(record: SeparationRecord) -> list[Row]:
         direction, nodes = axes(law["angle"])[0], ends[law["contact"]]
         u1, u2 = (_peak(results, node, direction) for node in nodes)
         modes = [_mode(results, node, direction) for node in nodes]
-        t1, t2 = record.periods or [m[0] for m in modes]
-        xi1, xi2 = record.damping or [m[1] for m in modes]
+        t1, t2 = periods or [m[0] for m in modes]
+        xi1, xi2 = damping or [m[1] for m in modes]
         ddc, remark = _ddc(u1, u2, (t1, t2), (xi1, xi2))
         gap = float(law["gap"])
         closure = NAN if met else gap - float(summary[law["contact"]]["min_gap"])
@@ -127,11 +121,7 @@ def _mode(results: Results, node: int, direction: tuple[float, float]) -> tuple[
     )
 
 
-TABLE = Table(
-    name="separation",
-    title="Separation of the buildings",
-    place=0,
-    stages=(),  # it is printed, not stored
+TABLE = Sheet(
     columns=(
         CONTACT,
         Column("u1", "peak\nnode I", "L", "short", doc="largest absolute displacement along the contact"),
@@ -147,7 +137,6 @@ TABLE = Table(
         Column("gap", "gap of\nthe deck", "L", "num", doc="gap of the contact"),
         Column("note", "run", doc="whether the buildings moved freely, and what is not known"),
     ),
-    rows=rows,
     note="Peaks are absolute displacements from the node envelopes of this run. The gap needed is its "
     "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
     "building is that of the longest mode in which the node has a tenth of the largest component, or "

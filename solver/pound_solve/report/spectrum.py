@@ -13,7 +13,7 @@ from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.spectrum import Spectrum
 from pound_solve.report.export import export_rows
 from pound_solve.report.text import block
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet
 
 
 class Curve(NamedTuple):
@@ -43,10 +43,9 @@ def rows(curves: Sequence[Curve]) -> Iterator[Row]:
 
 def text(units: Units, curves: Sequence[Curve]) -> str:
     """Tables of all curves, each below the name, the peak acceleration and the damping."""
-    kinds = [(c.name, "O" if c.is_text else "f8") for c in TABLE.columns]
     lines = []
     for curve in curves:
-        spectrum = np.array(list(rows([curve])), dtype=kinds)
+        spectrum = np.array(list(rows([curve])), dtype=TABLE.kinds)
         t, peak = curve.acceleration.peak()
         head = (
             f"{curve.name}: peak acceleration {abs(peak):.4g} {units.text('L/T^2')} at {t:.6g} {units.time}"
@@ -68,11 +67,7 @@ def write_csv(path: Path, units: Units, curves: Sequence[Curve]) -> None:
     export_rows(path, units, TABLE, rows(curves))
 
 
-TABLE = Table(
-    name="spectrum",
-    title="Response spectrum",
-    place=0,
-    stages=(),  # it is printed, not stored
+TABLE = Sheet(
     columns=(
         Column("motion", doc="what moves the oscillators"),
         Column("damping", "damping", "%", "percent", doc="ratio to critical damping"),
@@ -82,6 +77,5 @@ TABLE = Table(
         Column("psv", "PSV", "L/T", "num", doc="pseudo-velocity: SD times the circular frequency"),
         Column("psa", "PSA", "L/T^2", "num", doc="pseudo-acceleration: PSV times the circular frequency"),
         Column("sa", "SA", "L/T^2", "num", doc="largest absolute acceleration"),
-    ),
-    rows=rows,
+    )
 )

@@ -23,7 +23,7 @@ from pound_deck.model import Units
 from pound_solve.report.views import view_of
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet, Table
 
 WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
@@ -177,34 +177,23 @@ def _excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[ND
     return rows[:most], f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
 
 
-def block(units: Units, table: Table[Any], rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
-    """Lines of a table with its notes; none where there is nothing to show.
-
-    Parameters
-    ----------
-    rows : ndarray, structured
-        Fields are the table's columns.
-    note, more : str
-        A further note, and a line on what is left out.
-    """
-    lines = _body(units, table, rows)
-    if more:
-        lines += ["", _INDENT + more]
-    return _with_notes(lines, table, note)
+def block(units: Units, sheet: Sheet, rows: NDArray[Any]) -> list[str]:
+    """Lines of rows, whose fields are the columns, with notes; none where there is nothing to show."""
+    return _with_notes(_body(units, sheet, rows), sheet)
 
 
-def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
+def _with_notes(lines: list[str], sheet: Sheet, note: str = "") -> list[str]:
     """Lines of a table, if there are any, and its notes below them."""
-    notes = " ".join(_plain(text) for text in (table.note, note) if text)
+    notes = " ".join(_plain(text) for text in (sheet.note, note) if text)
     if lines and notes:
         lines = [*lines, "", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
     return lines
 
 
-def printed(units: Units, table: Table[Any], rows: Iterable[Row], note: str = "") -> list[str]:
-    """Lines of a table that is not stored in a file, from its rows; see `block`."""
-    records = np.array(list(rows), dtype=table.kinds)
-    return [line.rstrip() for line in block(units, table, records, note)]
+def printed(units: Units, sheet: Sheet, rows: Iterable[Row]) -> list[str]:
+    """Lines of rows that are not stored in a file; see `block`."""
+    records = np.array(list(rows), dtype=sheet.kinds)
+    return [line.rstrip() for line in block(units, sheet, records)]
 
 
 class Formatted(NamedTuple):
@@ -226,11 +215,11 @@ class Formatted(NamedTuple):
     blocks: list[int]
 
 
-def formatted(units: Units, table: Table[Any], rows: NDArray[Any]) -> Formatted:
+def formatted(units: Units, sheet: Sheet, rows: NDArray[Any]) -> Formatted:
     """Format the cells of a table as a report shows them."""
-    groups = _groups(table, rows)
+    groups = _groups(sheet, rows)
     cells, heads, columns = {}, {}, []
-    for c in table.columns:
+    for c in sheet.columns:
         if c.name not in (rows.dtype.names or ()):
             continue  # a file of an older minor version
         as_text = rows.dtype[c.name].kind == "O" and not c.is_text  # in a file of an older version
@@ -244,9 +233,9 @@ def formatted(units: Units, table: Table[Any], rows: NDArray[Any]) -> Formatted:
     return Formatted(columns, heads, cells, [len(g) for g in groups])
 
 
-def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
+def _body(units: Units, sheet: Sheet, rows: NDArray[Any]) -> list[str]:
     """Lines of the heads and rows of a table; none where no column has anything to show."""
-    columns, heads, cells, blocks = formatted(units, table, rows)
+    columns, heads, cells, blocks = formatted(units, sheet, rows)
     if not columns:
         return []
     _wrap(columns, heads, cells)
@@ -258,12 +247,12 @@ def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
     return lines[1:]
 
 
-def _groups(table: Table[Any], rows: NDArray[Any]) -> list[list[int]]:
+def _groups(sheet: Sheet, rows: NDArray[Any]) -> list[list[int]]:
     """Row numbers by value of the group column, in order of first appearance."""
-    if not table.group:
+    if not sheet.group:
         return [list(range(len(rows)))]
     groups: dict[Any, list[int]] = {}
-    for number, key in enumerate(rows[table.group].tolist()):
+    for number, key in enumerate(rows[sheet.group].tolist()):
         groups.setdefault(key, []).append(number)
     return list(groups.values())
 

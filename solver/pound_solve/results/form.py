@@ -10,6 +10,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.user_error import UserError
+
 FILETYPE: Final = "pound-solve results"
 FORMAT_VERSION: Final = (2, 0)  #: major: old readers fail; minor: something was added
 #: version since which a complete file is sealed, see `seal`, and its digest knows its head
@@ -28,8 +30,10 @@ FOR_OTHERS: Final = frozenset(
 STATUSES: Final = ("done", "stopped")  #: how a run ends; before that its file says "running"
 
 
-class ResultsError(Exception):
+class ResultsError(UserError):
     """A results file that cannot be created or read."""
+
+    status = 3
 
 
 def storable(text: str) -> str:

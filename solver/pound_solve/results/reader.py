@@ -63,6 +63,8 @@ _D = TypeVar("_D", str, NDArray[Any])
 class NoSuchPartError(ResultsError, KeyError):
     """The file has no table, history or text of that name."""
 
+    status = 2
+
     def __str__(self) -> str:
         return str(self.args[0])
 

@@ -115,7 +115,32 @@ def no_remark(record: object) -> None:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Table(Generic[Record]):
+class Sheet:
+    """Columns with notes: what is needed to print rows that no file stores.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+        In the order of storing and printing.
+    note : str
+        A sentence or two on how to read the rows.
+    group : str
+        Column by whose values the report sorts rows into blocks (order within a block is kept), each with
+        number formats of its own; empty for one block.
+    """
+
+    columns: tuple[Column, ...]
+    note: str = ""
+    group: str = ""
+
+    @property
+    def kinds(self) -> list[tuple[str, str]]:
+        """Name and type of each column in memory, where texts are objects."""
+        return [(c.name, "O" if c.is_text else FORMATS[c.fmt]) for c in self.columns]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table(Sheet, Generic[Record]):
     """One table of the results file and of the report.
 
     Parameters
@@ -128,18 +153,11 @@ class Table(Generic[Record]):
         Tables stand in a section in the order of their places; steps of ten leave room for new ones.
     stages : tuple of Stage
         When the table is written; a later one replaces an earlier one.
-    columns : tuple of Column
-        In the order of storing and printing.
     rows : callable
         Makes the rows from the record of the run (`RunRecord`) or of the study: one value for each column,
         in units of the deck, percentages as percent.  None leaves the table out.
     remark : callable
         Makes a remark on this run's table from the same record; the report prints it below the note.
-    note : str
-        A sentence or two on how to read the table.
-    group : str
-        Column by whose values the report sorts rows into blocks (order within a block is kept), each with
-        number formats of its own; empty for one block.
     limit : int
         Largest number of rows that the report prints; 0 for all.
     """
@@ -148,17 +166,9 @@ class Table(Generic[Record]):
     title: str
     place: int
     stages: tuple[Stage, ...]
-    columns: tuple[Column, ...]
     rows: Callable[[Record], Iterable[Row] | None]
     remark: Callable[[Record], str | None] = no_remark
-    note: str = ""
-    group: str = ""
     limit: int = 0
-
-    @property
-    def kinds(self) -> list[tuple[str, str]]:
-        """Name and type of each column in memory, where texts are objects."""
-        return [(c.name, "O" if c.is_text else FORMATS[c.fmt]) for c in self.columns]
 
 
 class HistoryLayout(NamedTuple):

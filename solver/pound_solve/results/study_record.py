@@ -1,127 +1,157 @@
-"""Interface of the data that the tables of a study are made from; `assess.study.Study` has it."""
+"""What a study finds: trials with their errors, the reference and the advice; its tables show it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Protocol
+import math
+import statistics
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from pound_solve.numerics.types import Array
+
+NOISY: Final = 0.25  #: share that times may differ by and be alike; repeats that differ by more are noise
+SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
+
+#: Extremes by kind and unit.
+Peaks = Mapping[tuple[str, str], Array]
+#: Errors by kind; NaN for a kind that the deck does not have.
+Errors = dict[str, float]
 
 
-class Trial(Protocol):
-    """One method with one setting."""
+@dataclass(frozen=True)
+class Trial:
+    """One method with one setting.
 
-    @property
-    def method(self) -> str:
-        """Name of the method."""
-        ...
+    Attributes
+    ----------
+    method, setting : str
+    seconds : tuple of float
+        Of the repeats.
+    steps, events, collisions : int
+    residual : float
+    peaks : mapping
+    stopped : str
+        Why it was not completed; empty if it was.
+    errors : dict
+        By kind.
+    """
 
-    @property
-    def setting(self) -> str:
-        """Step or tolerance as a deck gives it."""
-        ...
+    method: str
+    setting: str
+    seconds: tuple[float, ...] = (math.nan,)
+    steps: int = 0
+    events: int = 0
+    collisions: int = 0
+    residual: float = math.nan
+    peaks: Peaks = field(default_factory=dict)
+    stopped: str = ""
+    errors: Errors = field(default_factory=dict)
 
     @property
     def time(self) -> float:
         """Median time [s]."""
-        ...
+        return statistics.median(self.seconds)
 
     @property
-    def steps(self) -> int:
-        """Steps taken."""
-        ...
-
-    @property
-    def events(self) -> int:
-        """Changes of springs and contacts that were located."""
-        ...
-
-    @property
-    def collisions(self) -> int:
-        """Number of collisions."""
-        ...
-
-    @property
-    def residual(self) -> float:
-        """Largest energy residual over the largest energy."""
-        ...
-
-    @property
-    def stopped(self) -> str:
-        """Why it stopped early; empty if it did not."""
-        ...
-
-    @property
-    def errors(self) -> Mapping[str, float]:
-        """Errors of extremes by kind: ``drift``, ``member``, ``contact``."""
-        ...
+    def spread(self) -> float:
+        """Longest less shortest repeat over the median."""
+        return (max(self.seconds) - min(self.seconds)) / self.time
 
     @property
     def error(self) -> float:
-        """Largest error of all kinds."""
-        ...
+        """Largest error of all kinds; NaN where there is none."""
+        return max((e for e in self.errors.values() if math.isfinite(e)), default=math.nan)
 
 
-class Reference(Protocol):
-    """Reference that the errors of trials are measured against."""
+@dataclass(frozen=True)
+class Reference:
+    """Extremes that errors are measured against; `error` is their own, by kind."""
 
-    @property
-    def error(self) -> Mapping[str, float]:
-        """Estimated errors of the reference itself, by kind."""
-        ...
-
-    @property
-    def how(self) -> str:
-        """Text on how it was found."""
-        ...
-
-
-class Advice(Protocol):
-    """The trial of least time for a target."""
+    peaks: Peaks
+    error: Errors
+    how: str
 
     @property
-    def target(self) -> float:
-        """Error that must be met."""
-        ...
+    def unseen(self) -> bool:
+        """Whether there are contacts but none has closed: the effect of steps on them is unknown."""
+        forces = [values for (kind, _), values in self.peaks.items() if kind == "contact"]
+        return bool(forces) and not any(values.any() for values in forces)
 
     @property
-    def trial(self) -> Trial | None:
-        """Trial of least time that meets the target; None where none is sure to."""
-        ...
-
-    @property
-    def sure(self) -> float:
-        """Error of the trial with the margin of the advice."""
-        ...
+    def doubt(self) -> float:
+        """Largest estimated error of the reference itself."""
+        return max((e for e in self.error.values() if math.isfinite(e)), default=0.0)
 
 
-class StudyRecord(Protocol):
+@dataclass(frozen=True)
+class Advice:
+    """Trial of least time for a target, and the error that is allowed for; None where no trial will do."""
+
+    target: float
+    trial: Trial | None = None
+    sure: float = math.nan
+
+    def __str__(self) -> str:
+        """Advice for one target in words."""
+        target = (
+            f"{100 * self.target:g} %" if self.target >= 1e-4 else f"{self.target:.0e}".replace("e-0", "e-")
+        )
+        if self.trial is None:
+            return f"{target}: none of these runs"
+        name = f"{self.trial.method} {self.trial.setting}".strip()
+        return f"{target}: {name} ({self.trial.time:.3g} s)"
+
+
+def order(coarse: Trial, fine: Trial) -> float:
+    """Observed order of the largest error between two trials; NaN where there is none."""
+    ratio = fine.steps / coarse.steps if coarse.steps and fine.steps else 1.0
+    if not (coarse.error > 0.0 and fine.error > 0.0 and ratio != 1.0):
+        return math.nan
+    return math.log(coarse.error / fine.error) / math.log(ratio)
+
+
+@dataclass(frozen=True)
+class Study:
     """Trials with their errors, the reference, and the advice."""
 
-    @property
-    def trials(self) -> Sequence[Trial]:
-        """All trials, each method's in one piece."""
-        ...
-
-    @property
-    def orders(self) -> Sequence[float]:
-        """Observed order of each trial against the one before; NaN where there is none."""
-        ...
-
-    @property
-    def reference(self) -> Reference:
-        """Reference that the errors of trials are measured against."""
-        ...
-
-    @property
-    def advice(self) -> Sequence[Advice]:
-        """One for each target."""
-        ...
+    trials: tuple[Trial, ...]
+    reference: Reference
+    advice: tuple[Advice, ...]
 
     @property
     def sentence(self) -> str:
         """The advice in one sentence."""
-        ...
+        lacking = any(a.trial is None for a in self.advice)
+        text = "Least time for errors up to " + "; ".join(map(str, self.advice))
+        if self.reference.unseen:
+            closed = "no contact closed, so no step is named"
+            return f"{text}; {closed}: give a stronger motion to learn which step collisions need."
+        return text + (" (give smaller --steps, or a larger --longest)." if lacking else ".")
+
+    @property
+    def noise(self) -> float:
+        """Largest spread of the repeats that are long enough to compare; 0 where none is."""
+        return max((t.spread for t in self.trials if t.time > SHORT), default=0.0)
 
     @property
     def warning(self) -> str:
-        """Why times are not to be trusted; empty if they are."""
-        ...
+        """Warning that the times are not to be trusted; empty if they are."""
+        if self.noise <= NOISY:
+            return ""
+        return (
+            f"Repeats of one run differ by up to {100 * self.noise:.0f} %: the machine does other work, "
+            "go by the steps rather than by the times."
+        )
+
+    @property
+    def orders(self) -> list[float]:
+        """Observed order of each trial against the one before; NaN where there is none: a tolerance does
+        not shorten all steps alike.
+        """
+        orders, before = [], None
+        for t in self.trials:
+            along = before is not None and before.method == t.method and t.setting.startswith("DT=")
+            orders.append(order(before, t) if before is not None and along else math.nan)
+            before = None if t.stopped else t
+        return orders

@@ -31,10 +31,9 @@ def execute(args: argparse.Namespace) -> int:
     try:
         ready = run.prepare(common.request(args))
     except run.DeckError as err:
-        if args.json:
-            _print_json(args.deck, err.diagnostics, None)
-        else:
-            print(err, file=sys.stderr)
+        if not args.json:
+            raise
+        _print_json(args.deck, err.diagnostics, None)
         return common.MISTAKES
     size = {
         "nodes": len(ready.model.nodes),

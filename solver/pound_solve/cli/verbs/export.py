@@ -45,25 +45,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the files and print their paths."""
     from pound_solve.report.export import export_columns, export_csv
-    from pound_solve.results import Results, ResultsError
-    from pound_solve.results.reader import NoSuchPartError
+    from pound_solve.results import Results
 
     choices = [(name, _coordinates(items)) for name, *items in args.history or ()]
-    try:
-        with Results.open(args.results) as results:
-            folder = args.out or results.path.with_suffix("")
-            if args.vtk:
-                paths = [_vtk(results, args.out or results.path.parent)]
-            elif choices:
-                paths = [export_columns(results, folder, choices)]
-            else:
-                paths = export_csv(results, folder)
-            for path in paths:
-                print(path)
-    except NoSuchPartError as err:
-        return common.complain(str(err), common.MISTAKES)
-    except ResultsError as err:
-        return common.complain(str(err))
+    with Results.open(args.results) as results:
+        folder = args.out or results.path.with_suffix("")
+        if args.vtk:
+            paths = [_vtk(results, args.out or results.path.parent)]
+        elif choices:
+            paths = [export_columns(results, folder, choices)]
+        else:
+            paths = export_csv(results, folder)
+        for path in paths:
+            print(path)
     return common.DONE
 
 

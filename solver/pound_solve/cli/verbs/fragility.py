@@ -38,7 +38,6 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.report.plot import suites
     from pound_solve.report.sweep import fragility, summary
     from pound_solve.report.sweep.incremental import axes_of
-    from pound_solve.results import ResultsError
     from pound_solve.results.sweep_file import Sweep
     from pound_solve.statistics.curves import Asked, CurveError
     from pound_solve.statistics.fragility_of_sweep import fit
@@ -59,8 +58,6 @@ def execute(args: argparse.Namespace) -> int:
         told = summary.write(Path(args.sweep).with_name(_name(asked, limits)), sweep, "fragilities", lines)
     except CurveError as err:
         return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
-    except ResultsError as err:
-        return common.complain(str(err))
     print("\n".join([*lines, str(told)]))
     if args.picture:
         suites.fragilities(fragility.drawn(fitted), axes_of(sweep, asked)[1], args.picture)

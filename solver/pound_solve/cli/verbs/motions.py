@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from pound_solve.cli import common
@@ -23,20 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the files; none that is there is replaced."""
     from pound_solve.assess import motion_files
-    from pound_solve.driver.prepare import DeckError
     from pound_solve.results.whole_file import write_text
 
     if args.dt is not None and not args.dt > 0.0:
         return common.complain("--dt must be above zero", common.MISTAKES)
     args.name = None
     request = common.request(args)
-    try:
-        files = list(motion_files.of_deck(request, args.dt))
-    except DeckError as err:
-        print(err, file=sys.stderr)
-        return common.MISTAKES
-    except motion_files.MotionError as err:
-        return common.complain(str(err), common.MISTAKES)
+    files = list(motion_files.of_deck(request, args.dt))
     if there := [f.name for f in files if (args.out / f.name).exists()]:
         text = f"{args.out / there[0]} is there: give another folder with -o, or remove it"
         return common.complain(text)

@@ -49,7 +49,7 @@ def execute(args: argparse.Namespace) -> int:
     """Draw the pictures, print their paths and name those left out."""
     from pound_deck.files import opened
     from pound_solve.report import plot
-    from pound_solve.results import Results, ResultsError
+    from pound_solve.results import Results
 
     if args.results is None:
         for picture in plot.PICTURES.values():
@@ -64,10 +64,6 @@ def execute(args: argparse.Namespace) -> int:
     try:
         with Results.open(args.results) as results:
             return _draw(results, args, choice)
-    except ResultsError as err:
-        return common.complain(str(err))
-    except plot.ChoiceError as err:
-        return common.complain(str(err), common.MISTAKES)
     except ImportError:
         return common.complain('pictures need matplotlib: pip install "pound-solve[plot]"', common.MISTAKES)
 

@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print the report, or write the page and print its path."""
     from pound_solve.report.text import render
-    from pound_solve.results import Results, ResultsError
+    from pound_solve.results import Results
     from pound_solve.results.contents import SECTIONS
     from pound_solve.results.place import digest_in
 
@@ -42,16 +42,13 @@ def execute(args: argparse.Namespace) -> int:
         "limit": 0 if args.full else None,
         "only": SECTIONS[0][1] if args.brief else None,
     }
-    try:
-        with Results.open(args.results) as results:
-            if args.html is not None:
-                return _page(results, args.html, chosen)
-            sys.stdout.write(render(results, **chosen))
-            beside = results.path.with_suffix(".rpt")
-            if digest_in(beside) not in ("", results.digest):
-                common.complain(f"warning: {beside} is the report of another run")
-    except ResultsError as err:
-        return common.complain(str(err))
+    with Results.open(args.results) as results:
+        if args.html is not None:
+            return _page(results, args.html, chosen)
+        sys.stdout.write(render(results, **chosen))
+        beside = results.path.with_suffix(".rpt")
+        if digest_in(beside) not in ("", results.digest):
+            common.complain(f"warning: {beside} is the report of another run")
     return common.DONE
 
 

@@ -35,16 +35,10 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import render
     from pound_solve.driver import run
     from pound_solve.report.text import render as report
-    from pound_solve.results import ResultsError
 
     request, progress = common.request(args), Progress(args.quiet, args.interruption.check)
     try:
         status, results, ready = run.execute(request, progress)
-    except run.DeckError as err:
-        print(err, file=sys.stderr)
-        return common.MISTAKES
-    except ResultsError as err:
-        return common.complain(str(err))
     except Exception:
         args.interruption.check()  # a library caught the interrupt and failed later
         raise

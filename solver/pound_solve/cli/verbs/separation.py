@@ -49,18 +49,15 @@ def _two(word: str) -> tuple[float, float]:
 def execute(args: argparse.Namespace) -> int:
     """Print the separations."""
     from pound_solve.report import separation
-    from pound_solve.results import Results, ResultsError
+    from pound_solve.results import Results
     from pound_solve.results.sweep_file import Sweep
 
     if Sweep.is_of(args.results):
         return _of_sweep(args)
     if option := next((name for name in OF_SWEEPS if getattr(args, name) is not None), ""):
         return common.complain(f"--{option} needs the runs of a sweep: sweep.h5", common.MISTAKES)
-    try:
-        with Results.open(args.results) as results:
-            print(separation.text(results, args.periods, args.damping))
-    except (ResultsError, separation.SeparationError) as err:
-        return common.complain(str(err))
+    with Results.open(args.results) as results:
+        print(separation.text(results, args.periods, args.damping))
     return common.DONE
 
 
@@ -68,7 +65,6 @@ def _of_sweep(args: argparse.Namespace) -> int:
     """Print the probabilities, and write them beside the file of the sweep."""
     from pound_solve.report.plot import suites
     from pound_solve.report.sweep import separation, summary
-    from pound_solve.results import ResultsError
     from pound_solve.results.sweep_file import Sweep, write_table
     from pound_solve.statistics.curves import CurveError, units_of
     from pound_solve.statistics.needed_gaps import groups
@@ -85,8 +81,6 @@ def _of_sweep(args: argparse.Namespace) -> int:
         told = summary.write(path, sweep, "separation of the buildings", lines)
     except CurveError as err:
         return common.complain(f"{args.results}: {err}", common.MISTAKES)
-    except ResultsError as err:
-        return common.complain(str(err))
     print("\n".join(lines))
     print(f"{told}\n{path.with_suffix('.csv')}\n{path}")
     if args.picture:

@@ -85,22 +85,11 @@ def _damping(word: str) -> list[float]:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the spectra; write and draw them into the files given."""
-    from pound_solve.assess.spectra import SpectrumError
-    from pound_solve.driver.prepare import DeckError
     from pound_solve.report import spectrum as report
-    from pound_solve.results import ResultsError
 
     if not common.drawable(args.picture):
         return common.MISTAKES
-    try:
-        units, curves = _curves(args)
-    except DeckError as err:
-        print(err, file=sys.stderr)
-        return common.MISTAKES
-    except SpectrumError as err:
-        return common.complain(str(err), common.MISTAKES)
-    except ResultsError as err:
-        return common.complain(str(err))
+    units, curves = _curves(args)
     print(report.text(units, curves))
     if args.out:
         report.write_csv(args.out, units, curves)

@@ -68,26 +68,16 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     """Run the methods on a deck, write the study's results file and report, and print the report."""
     from pound_deck.diagnostics import render
     from pound_solve.assess import study
-    from pound_solve.assess.advice import StudyError
-    from pound_solve.driver import run
     from pound_solve.report.text import render as report
-    from pound_solve.results import ResultsError
 
     request, line = common.request(args), StatusLine()
     if not common.drawable(args.picture):
         return common.MISTAKES
     try:
         result, ready = study.run(request, _plan(args), line.show)
+    finally:
         line.clear()
-        results = study.write(result, ready, request.path(".study.h5"))
-    except run.DeckError as err:
-        print(err, file=sys.stderr)
-        return common.MISTAKES
-    except StudyError as err:
-        line.clear()
-        return common.complain(str(err), common.MISTAKES)
-    except ResultsError as err:
-        return common.complain(str(err))
+    results = study.write(result, ready, request.path(".study.h5"))
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
     if result.warning:

@@ -46,7 +46,6 @@ class Sampled(Protocol):
 
     def at(self, row: int, segment: int, cell: int, tau: float) -> tuple[float, float, float]:
         """Value, rate and second rate of a row at a time in the cell after a point of a segment."""
-        ...
 
 
 class RowFunctions:

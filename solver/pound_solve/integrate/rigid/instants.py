@@ -41,25 +41,20 @@ class RigidRun(Protocol):
     @property
     def branches(self) -> Sequence[Branch]:
         """Present branches of all laws."""
-        ...
 
     def law_forces(self, d: Array, v: Array) -> Array:
         """Forces of all laws on their present branches at deformations `d` and rates `v`, (n_laws,) each;
         zero for rigid contacts.
         """
-        ...
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
-        ...
 
     def take_impact(self, put_in: float, lost: Array) -> None:
         """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
-        ...
 
     def stop(self, code: str, why: str) -> Stop:
         """Return the exception that ends the run here."""
-        ...
 
 
 class RigidInstants:

@@ -11,6 +11,7 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
+from pound_solve.user_error import UserError
 
 STILL: Final = ("svg", "png", "pdf")  #: endings of a picture that stands still
 MOVING: Final = ("html", "gif", "mp4")  #: endings of one that moves
@@ -20,7 +21,7 @@ class Nothing(Exception):
     """Raised where there is nothing to draw; the message states what is missing."""
 
 
-class ChoiceError(Exception):
+class ChoiceError(UserError):
     """Raised where the file has no such member, instant or time; the message states what there is."""
 
 

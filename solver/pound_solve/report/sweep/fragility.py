@@ -10,7 +10,7 @@ import numpy as np
 
 from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep
 from pound_solve.statistics.curves import Asked, measure, unit_of, units_of
 from pound_solve.statistics.fragility_of_sweep import Fitted
@@ -82,14 +82,10 @@ def drawn(fits: Sequence[Fitted]) -> list[suites.Fragilities]:
     return curves
 
 
-def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:
+def fragility_table(unit: str, level: float) -> Sheet:
     """Table of fragilities for a unit of the demand and a level of confidence."""
     sure = f"{100 * level:g} %"
-    return Table(
-        name="fragility",
-        title="Fragilities",
-        place=0,
-        stages=(),  # it is printed, not stored
+    return Sheet(
         columns=(
             Column("case", "case", doc="PARAMs that differ in the sweep"),
             Column("limit", "limit", unit, "given", doc="of the demand"),
@@ -103,23 +99,17 @@ def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:
             Column("beta_high", "to", "-", "short", doc="interval of the dispersion"),
             Column("remark", "remark", doc="what is missing"),
         ),
-        rows=rows,
         note="Lognormal, most likely parameters; intervals by profile likelihood. The dispersion is that "
         "of the records alone: it knows no uncertainty of the model.",
     )
 
 
-def probability_table(unit: str, at: Sequence[float]) -> Table[Sequence[Fitted]]:
+def probability_table(unit: str, at: Sequence[float]) -> Sheet:
     """The table of probabilities at some levels."""
-    return Table(
-        name="probabilities",
-        title="Probabilities at levels",
-        place=0,
-        stages=(),
+    return Sheet(
         columns=(
             Column("case", "case", doc="PARAMs that differ in the sweep"),
             Column("limit", "limit", unit, "given", doc="of the demand"),
             *(Column(f"p{n}", f"at\n{x:g}", "-", "short", doc="probability") for n, x in enumerate(at)),
-        ),
-        rows=lambda fits: _probable(fits, at),
+        )
     )

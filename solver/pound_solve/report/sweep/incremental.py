@@ -12,7 +12,7 @@ import numpy as np
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep
 from pound_solve.statistics.curves import (
     FRACTILES,
@@ -101,11 +101,7 @@ def axes_of(sweep: Sweep, asked: Asked) -> tuple[str, str]:
     return demand, LEVEL_NAMES[measure(sweep)]
 
 
-CAPACITIES: Final = Table(
-    name="capacities",
-    title="Capacities of the records",
-    place=0,
-    stages=(),  # it is printed, not stored
+CAPACITIES: Final = Sheet(
     columns=(
         Column("record", "record", doc="record"),
         Column("runs", "runs", fmt="int", doc="runs of it"),
@@ -113,20 +109,15 @@ CAPACITIES: Final = Table(
         Column("falls", "lowest level\nthat collapses", "-", "short", doc="NaN where none does"),
         Column("end", "how", doc="what counts as its collapse"),
     ),
-    rows=capacities,
     note="A record collapses the structure where its run stops, where the demand reaches the limit, or "
     "where the curve has gone flat.",
 )
 
 
-def fractile_table(measure: str, unit: str) -> Table[Analysis]:
+def fractile_table(measure: str, unit: str) -> Sheet:
     """Table of fractiles for a measure of the levels and a unit of the demand."""
     names = [f"{100 * q:.0f} %" for q in FRACTILES]
-    return Table(
-        name="fractiles",
-        title="Fractiles of the demand",
-        place=0,
-        stages=(),
+    return Sheet(
         columns=(
             Column("level", f"level\n{measure}", "-", "short", doc="level of all records"),
             *(
@@ -136,6 +127,5 @@ def fractile_table(measure: str, unit: str) -> Table[Analysis]:
                 for n, name in enumerate(names)
             ),
         ),
-        rows=rows_of_fractiles,
         note="Nothing stands where so many records have collapsed, or a record was not run so far.",
     )

@@ -11,7 +11,7 @@ import numpy as np
 from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.columns import CONTACT
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.statistics.curves import FRACTILES, fractiles_of, measure, units_of
 from pound_solve.statistics.needed_gaps import ANY, Group, Options
@@ -116,14 +116,10 @@ def _keys(measure: str) -> tuple[Column, ...]:
     )
 
 
-def needed_table(measure: str, level: float) -> Table[Sequence[Group]]:
+def needed_table(measure: str, level: float) -> Sheet:
     """The table of gaps that are needed."""
     sure = f"{100 * level:g} %\nfrom"
-    return Table(
-        name="needed",
-        title="Gaps that are needed",
-        place=0,
-        stages=(),  # it is printed, not stored
+    return Sheet(
         columns=(
             *_keys(measure),
             Column("free", "runs\nfree", fmt="int", doc="runs in which nothing met"),
@@ -139,20 +135,15 @@ def needed_table(measure: str, level: float) -> Table[Sequence[Group]]:
             Column("beta", "dispersion", "-", "short", doc="standard deviation of the logarithm"),
             Column("remark", "remark", doc="what is missing"),
         ),
-        rows=needs,
         note="The gap that a run needs is its largest closure. The lognormal distribution takes runs that "
         "met for ones that needed more than their gap.",
     )
 
 
-def probability_table(measure: str, level: float) -> Table[Sequence[Group]]:
+def probability_table(measure: str, level: float) -> Sheet:
     """The table of probabilities of contact."""
     sure = f"{100 * level:g} %\nfrom"
-    return Table(
-        name="separation",
-        title="Probability of contact",
-        place=0,
-        stages=(),
+    return Sheet(
         columns=(
             *_keys(measure),
             Column("rule", "rule", doc="rule that gives the gap; empty for a gap that is asked for"),
@@ -165,7 +156,6 @@ def probability_table(measure: str, level: float) -> Table[Sequence[Group]]:
             Column("high", "to", "-", "short", doc="exact interval of the probability"),
             Column("lognormal", "lognormal", "-", "short", doc="probability by the fitted distribution"),
         ),
-        rows=lambda groups: probabilities(groups, Options()),
         note="Rules take the mean peaks of the runs of a case and level in which nothing met. The interval "
         "is that of Clopper and Pearson.",
     )

@@ -9,7 +9,7 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from pound_deck.model import Units
 from pound_solve.numerics.types import Array, Index
 from pound_solve.report.text import WIDTH, printed
 from pound_solve.results.form import ResultsError
-from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import DONE, RUN, Sweep
 from pound_solve.results.whole_file import whole
 from pound_solve.statistics.curves import (
@@ -186,37 +186,16 @@ def fractiles(sweep: Sweep) -> Iterator[Row]:
                 yield name, key, len(known), *fractiles_of(known).tolist()
 
 
-class _Worst(NamedTuple):
-    """Largest finite value of a quantity, the index of its run, and its label."""
-
-    name: str
-    place: int
-    value: float
-    label: str
-
-
-def _worst(sweep: Sweep) -> Iterator[_Worst]:
+def worst(sweep: Sweep) -> Iterator[Row]:
+    """One row for each quantity: its largest finite value, where it is, and its run."""
+    titles = _titles(sweep)
     for name, values in _shown(sweep):
         at = int(np.nanargmax(np.where(np.isfinite(values), values, np.nan)))
-        variable = sweep.variables[name]
-        label = ""
+        variable, label = sweep.variables[name], ""
         if variable.axis:
             label = sweep.labels[variable.axis][int(np.nanargmax(np.abs(variable.values[at])))]
-        yield _Worst(name, at, float(values[at]), label)
-
-
-def worst(sweep: Sweep) -> Iterator[Row]:
-    """One row for each quantity."""
-    titles = _titles(sweep)
-    for w in _worst(sweep):
-        unit = sweep.variables[w.name].unit
-        yield (
-            w.name,
-            f"{w.value:.5g} {unit}".removesuffix(" -"),
-            w.label,
-            int(sweep[RUN][w.place]),
-            titles[w.place],
-        )
+        value = f"{values[at]:.5g} {variable.unit}".removesuffix(" -")
+        yield name, value, label, int(sweep[RUN][at]), titles[at]
 
 
 def _fractiles(sweep: Sweep, units: Units) -> list[str]:
@@ -246,24 +225,15 @@ def _checks(sweep: Sweep, units: Units) -> Iterator[str]:
 
 
 _RUN_COLUMN: Final = Column("run", fmt="int", doc="number of the run", zero="...")
-FAILURES: Final = Table(
-    name="failures",
-    title="Runs without all results",
-    place=0,
-    stages=(),  # it is printed, not stored
+FAILURES: Final = Sheet(
     columns=(
         _RUN_COLUMN,
         Column("title", "case, record, level", doc="what tells the run from others"),
         Column("status", doc="stopped, failed or missing"),
         Column("reason", doc="why"),
-    ),
-    rows=failures,
+    )
 )
-FRACTILE_TABLE: Final = Table(
-    name="fractiles_of_runs",
-    title="Fractiles of the runs",
-    place=0,
-    stages=(),
+FRACTILE_TABLE: Final = Sheet(
     columns=(
         Column("group", "case, level", doc="runs that are taken together"),
         Column("runs", fmt="int", doc="runs that tell"),
@@ -271,28 +241,15 @@ FRACTILE_TABLE: Final = Table(
             Column(f"q{n}", f"{100 * q:.0f} %", "", "short", doc="not exceeded")
             for n, q in enumerate(FRACTILES)
         ),
-    ),
-    rows=fractiles,
+    )
 )
-WORST: Final = Table(
-    name="worst_runs",
-    title="Worst runs",
-    place=0,
-    stages=(),
+WORST: Final = Sheet(
     columns=(
         Column("quantity", doc="quantity of the sweep"),
         Column("value", "largest", doc="largest value of all runs that did not stop"),
         Column("label", "where", doc="its label"),
         _RUN_COLUMN,
         Column("title", "case, record, level", doc="what tells the run from others"),
-    ),
-    rows=worst,
+    )
 )
-DOUBTS: Final = Table(
-    name="doubts",
-    title="Checks that call for a look",
-    place=0,
-    stages=(),
-    columns=(_RUN_COLUMN, Column("doubt", "check", doc="check and its verdict")),
-    rows=lambda rows: rows,
-)
+DOUBTS: Final = Sheet(columns=(_RUN_COLUMN, Column("doubt", "check", doc="check and its verdict")))

@@ -7,6 +7,7 @@ name of the table, from the results to the parts that are printed one below the 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import Final
 
@@ -28,12 +29,9 @@ SHAPED: Final[Mapping[str, View]] = MappingProxyType(
 )
 ECHO: Final[Mapping[str, View]] = MappingProxyType(
     {
-        "nodes": echo.nodes,
-        "elements": echo.elements,
+        **{name: partial(echo.ranges, name) for name in ("nodes", "elements")},
+        **{name: partial(echo.equal, name) for name in ("masses", "loads", "member_loads")},
         "properties": echo.properties,
-        "masses": echo.masses,
-        "loads": echo.loads,
-        "member_loads": echo.member_loads,
     }
 )
 

@@ -13,31 +13,6 @@ from pound_solve.results.schema import Column
 FEW: Final = 1e-12  #: share of a range that a coordinate which does not change may still differ by
 
 
-def nodes(results: Results) -> list[Part]:
-    """Nodes, evenly spaced ones as ranges."""
-    return [_ranges(results, "nodes")]
-
-
-def elements(results: Results) -> list[Part]:
-    """Elements, those between evenly numbered nodes as ranges."""
-    return [_ranges(results, "elements")]
-
-
-def masses(results: Results) -> list[Part]:
-    """Masses, nodes of equal masses in one row."""
-    return [_equal(results, "masses")]
-
-
-def loads(results: Results) -> list[Part]:
-    """Loads, nodes of equal loads in one row."""
-    return [_equal(results, "loads")]
-
-
-def member_loads(results: Results) -> list[Part]:
-    """Loads on members, elements of equal loads in one row."""
-    return [_equal(results, "member_loads")]
-
-
 def properties(results: Results) -> list[Part]:
     """One row for each property set and kind: the items that are given, then those of default value."""
     sets: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
@@ -50,13 +25,13 @@ def properties(results: Results) -> list[Part]:
     return [part(columns, rows)]
 
 
-def _ranges(results: Results, name: str) -> Part:
+def ranges(name: str, results: Results) -> list[Part]:
     """Table of the deck with rows that step evenly merged into one."""
     columns, rows = _stored(results, name)
-    ranges = []
+    merged = []
     for first, last, count in stepping(rows):
-        ranges.append(tuple(_cell(c, a, b, count) for c, a, b in zip(columns, first, last)))
-    return part([Column(c.name, c.head, c.unit) for c in columns], ranges)
+        merged.append(tuple(_cell(c, a, b, count) for c, a, b in zip(columns, first, last)))
+    return [part([Column(c.name, c.head, c.unit) for c in columns], merged)]
 
 
 def _stored(results: Results, name: str) -> tuple[list[Column], list[tuple[Any, ...]]]:
@@ -81,11 +56,11 @@ def _cell(column: Column, first: Any, last: Any, count: int) -> str:
     return a if a == b else f"{a} to {b}"
 
 
-def _equal(results: Results, name: str) -> Part:
+def equal(name: str, results: Results) -> list[Part]:
     """Table of the deck with rows of equal values merged into one that lists their numbers."""
     (key, *columns), rows = _stored(results, name)
     groups: dict[tuple[Any, ...], list[int]] = {}
     for owner, *values in rows:
         groups.setdefault(tuple(values), []).append(owner)
     owners = Column(key.name, f"{key.name}s")
-    return part([owners, *columns], ((numbers(group), *values) for values, group in groups.items()))
+    return [part([owners, *columns], ((numbers(group), *values) for values, group in groups.items()))]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from pound_deck.files import opened
+from pound_solve.user_error import UserError
 
 try:
     import fcntl
@@ -15,8 +16,10 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 
-class BusyError(Exception):
+class BusyError(UserError):
     """Raised where another sweep writes the folder."""
+
+    status = 3
 
 
 @contextmanager

@@ -31,6 +31,7 @@ from pound_solve.loading.records.known import find, load
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.records import Suite, scaled
 from pound_solve.sweep.study.run import Case, Run, Shaking, digest_of
+from pound_solve.user_error import UserError
 
 MOST: Final = 10**6  #: runs
 ITEMS: Final = (
@@ -46,8 +47,10 @@ OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType({"ida": "pound-solve ida"
 Params = tuple[tuple[str, str], ...]
 
 
-class StudyError(Exception):
+class StudyError(UserError):
     """Raised where a study has mistakes; the text states all of them."""
+
+    has_places = True
 
     def __init__(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         super().__init__(render(diagnostics, files))

@@ -20,11 +20,6 @@ def rows(run: RunRecord) -> Iterator[Row]:
                 yield b.name, quantity, units.text(dimension), *extremes
 
 
-def remark(run: RunRecord) -> str:
-    """Remark on the instants that the envelopes are taken from."""
-    return how_sampled(run)
-
-
 TABLE = Table(
     name="base_envelope",
     title="Base shears and overturning moments",
@@ -37,7 +32,7 @@ TABLE = Table(
         *extreme_columns(""),
     ),
     rows=rows,
-    remark=remark,
+    remark=how_sampled,
     note="Force of each building on the ground: at its supports, and below its elements that end at "
     "the ground. It equals the inertia of the building and the loads on it. Contacts with other "
     "buildings, and mass-proportional and modal damping, are loads here. Moments are about the middle of "

@@ -22,11 +22,6 @@ def rows(run: RunRecord) -> Iterator[Row]:
                 yield node, quantity, units.text(dimension), *extremes
 
 
-def remark(run: RunRecord) -> str:
-    """Remark on the instants that the envelopes are taken from."""
-    return how_sampled(run)
-
-
 TABLE = Table(
     name="reaction_envelope",
     title="Reaction envelopes",
@@ -34,7 +29,7 @@ TABLE = Table(
     stages=(Stage.SAMPLES,),
     columns=(NODE, Column("quantity", doc="`force X`, `force Y` or `moment`"), UNIT, *extreme_columns("")),
     rows=rows,
-    remark=remark,
+    remark=how_sampled,
     note="Forces of the supports on the structure. Damping in proportion to stiffness and the inertia of a "
     "support's own mass are part of them; mass-proportional and modal damping act between the masses and "
     "the ground and pass by the supports.",

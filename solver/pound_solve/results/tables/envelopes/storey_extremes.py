@@ -22,11 +22,6 @@ def rows(run: RunRecord) -> Iterator[Row]:
         yield b.name, i, "floor acceleration", units.text("L/T^2"), *motion[n]
 
 
-def remark(run: RunRecord) -> str:
-    """Remark on the instants that the envelopes are taken from."""
-    return how_sampled(run)
-
-
 TABLE = Table(
     name="storey_extremes",
     title="Storeys to both sides",
@@ -40,7 +35,7 @@ TABLE = Table(
         *extreme_columns(""),
     ),
     rows=rows,
-    remark=remark,
+    remark=how_sampled,
     note="The quantities are those of the table of storeys, positive along x.",
     group="quantity",
 )

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from operator import attrgetter
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import StudyRecord
+from pound_solve.results.study_record import Study
 
 
-def rows(study: StudyRecord) -> Iterator[Row]:
+def rows(study: Study) -> Iterator[Row]:
     """One row for each target."""
     for a in study.advice:
         if a.trial is None:
             yield a.target, "", "", *[math.nan] * 3
         else:
             yield a.target, a.trial.method, a.trial.setting, a.trial.time, a.trial.error, a.sure
-
-
-def remark(study: StudyRecord) -> str:
-    """Remark with the advice in one sentence."""
-    return study.sentence
 
 
 TABLE = Table(
@@ -37,5 +33,5 @@ TABLE = Table(
         Column("sure", "error\nallowed for", "-", "short", doc="that error with a safety margin"),
     ),
     rows=rows,
-    remark=remark,
+    remark=attrgetter("sentence"),
 )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import StudyRecord
+from pound_solve.results.study_record import Study
 
 
-def rows(study: StudyRecord) -> list[Row]:
+def rows(study: Study) -> list[Row]:
     """One row for each trial that stopped early."""
     return [(t.method, t.setting, t.stopped) for t in study.trials if t.stopped]
 

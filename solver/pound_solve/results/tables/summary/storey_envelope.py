@@ -23,11 +23,6 @@ def rows(run: RunRecord) -> Iterator[Row]:
         yield b.name, i, floor.level, height, floor.mass, *peaks
 
 
-def remark(run: RunRecord) -> str:
-    """Remark on the instants that the envelopes are taken from."""
-    return how_sampled(run)
-
-
 TABLE = Table(
     name="storey_envelope",
     title="Storeys",
@@ -50,7 +45,7 @@ TABLE = Table(
         time_column("t_acceleration", "at time", "time of the largest acceleration"),
     ),
     rows=rows,
-    remark=remark,
+    remark=how_sampled,
     note="Displacements and accelerations of a floor are the means of its nodes, weighted by mass, along "
     "x; those of the base are the means of the feet. The shear is the sum of the forces of all elements "
     "that cross the storey.",
