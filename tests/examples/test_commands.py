@@ -236,7 +236,7 @@ def at_the_desk(
         "results.Results.open": opens,
         "results.sweep_file.Sweep.open": opens,
         "results.sweep_file.Sweep.is_of": lambda path: Path(path).name == "sweep.h5",
-        "assess.scenes.cases": started,
+        "assess.stability.scenes.cases": started,
         "loading.spectrum.response_spectrum": started,
         "results.whole_file.write_text": started,
         "sweep.execution.executors.engine": started,

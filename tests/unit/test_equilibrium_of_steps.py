@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from pound_solve.analyses.history import BALANCE
-from pound_solve.assess.scenes import cases
-from pound_solve.assess.scenes.case import METHOD, items
+from pound_solve.assess.stability.scenes import cases
+from pound_solve.assess.stability.scenes.case import METHOD, items
 from pound_solve.catalog import catalog
 from tiers import each_once
 from verification.cases import run_text

@@ -10,9 +10,9 @@ import pytest
 
 from decks import results_of
 from kernels import steps_alone
-from pound_solve.assess import scenes, stability
-from pound_solve.assess.scenes import case as scene_case
-from pound_solve.assess.scenes import contact, hysteresis, linear
+from pound_solve.assess.stability import isolated, judge, page, scenes
+from pound_solve.assess.stability.scenes import case as scene_case
+from pound_solve.assess.stability.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject, beyond, looked
 from pound_solve.cli.main import main
@@ -33,18 +33,18 @@ def chosen(case):
 
 
 def test_the_quick_part_of_the_matrix_has_no_fault(monkeypatch):
-    monkeypatch.setattr(stability, "methods", lambda: ["EXACT"])
-    rows = list(stability.matrix(chosen=chosen, limit=0.0))
-    assert [(r.case.scene, r.case.law, r.says) for r in rows if r.end == stability.FAULT] == []
+    monkeypatch.setattr(judge, "methods", lambda: ["EXACT"])
+    rows = list(judge.matrix(chosen=chosen, limit=0.0))
+    assert [(r.case.scene, r.case.law, r.says) for r in rows if r.end == judge.FAULT] == []
     ends = [r.end for r in rows]
-    assert len(rows) >= 16 and ends.count(stability.RIGHT) > 0.8 * len(rows), ends
+    assert len(rows) >= 16 and ends.count(judge.RIGHT) > 0.8 * len(rows), ends
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", stability.FAMILIES)
+@pytest.mark.parametrize("family", judge.FAMILIES)
 def test_the_matrix_has_no_fault(family):
-    rows = list(stability.matrix((family,), lambda case: not case.heavy))
-    assert [(r.case.scene, r.case.law, r.method, r.says) for r in rows if r.end == stability.FAULT] == []
+    rows = list(judge.matrix((family,), lambda case: not case.heavy))
+    assert [(r.case.scene, r.case.law, r.method, r.says) for r in rows if r.end == judge.FAULT] == []
 
 
 @pytest.mark.slow
@@ -54,7 +54,7 @@ def test_study_prints_the_matrix(monkeypatch, capsys):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["study", "--stability", "--family", "linear", "--quick"]) == 0
     said, progress = capsys.readouterr()
-    runs = len(few) * len(stability.methods())
+    runs = len(few) * len(judge.methods())
     assert f"| rigid-body modes | {len(few)} |" in said and f"{runs} runs: {runs} right" in said
     assert f"\r {runs} of {runs}: rigid-body modes" in progress and progress.endswith("  \r")
 
@@ -63,17 +63,17 @@ def test_the_page_names_methods_and_scenes_of_stops_and_no_file():
     case = next(linear.linear_scenes())
     refused = "/tmp/x/case.inp:11:56: error P330: element 3 (POUND): needs mass\n  the line\n  hint: y"
     ends = [
-        ("CENTRAL", stability.STOPPED, "A502 at t = 0 s: the step 1 is above the limit 0.3"),
-        ("HHT", stability.STOPPED, "A502 at t = 0 s: the step 2 is above the limit 0.7"),
-        ("EXACT", stability.STOPPED, refused),
-        ("EXACT", stability.FAULT, "KeyError: 1"),
+        ("CENTRAL", judge.STOPPED, "A502 at t = 0 s: the step 1 is above the limit 0.3"),
+        ("HHT", judge.STOPPED, "A502 at t = 0 s: the step 2 is above the limit 0.7"),
+        ("EXACT", judge.STOPPED, refused),
+        ("EXACT", judge.FAULT, "KeyError: 1"),
     ]
-    said = stability.page([stability.JudgedRun(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
+    said = page.page([judge.JudgedRun(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
     scene = f"{case.scene}, {case.variant}"
     assert f"| 2 | CENTRAL, HHT | A502 at t = 0 s: the step 1 is above the limit 0.3 | {scene} |" in said
     assert f"| 1 | EXACT | P330: element 3 (POUND): needs mass | {scene} |" in said
     assert f"- {scene} by EXACT: KeyError: 1" in said and "case.inp" not in said
-    assert all(f"{end}: " in said for end in stability.ENDS)
+    assert all(f"{end}: " in said for end in page.ENDS)
 
 
 @pytest.mark.parametrize(
@@ -99,20 +99,20 @@ def judged(case, **given):
     """How a made-up run of a case is judged."""
 
     def run(case, deck, method):
-        return stability.Findings(**{"t": np.zeros(2), "u": np.zeros((2, 1)), **given})
+        return isolated.Findings(**{"t": np.zeros(2), "u": np.zeros((2, 1)), **given})
 
-    return stability.judge(run, case, "NEWMARK").end
+    return judge.judge(run, case, "NEWMARK").end
 
 
 def test_the_judge_tells_right_from_wrong():
     case = scene_case.Case("linear", "", "", "", "", within=0.1, right=lambda t: np.array([[0.0], [1.0]]))
     ends = np.array([[0.0], [1.05]]), np.array([[0.0], [1.2]])
-    assert judged(case, u=ends[0]) == stability.RIGHT
-    assert judged(case, u=ends[1]) == stability.FAULT
+    assert judged(case, u=ends[0]) == judge.RIGHT
+    assert judged(case, u=ends[1]) == judge.FAULT
     look = beyond(Subject.ENERGY, "residual", 2.0, 1e-9, "energy is lost or made")
-    assert judged(case, u=ends[1], looks=(look,)) == stability.FLAGGED
-    assert judged(case, stop="A503 at t = 1 s: why") == stability.STOPPED
-    assert judged(case, wrong="NaN or infinite values") == stability.FAULT
+    assert judged(case, u=ends[1], looks=(look,)) == judge.FLAGGED
+    assert judged(case, stop="A503 at t = 1 s: why") == judge.STOPPED
+    assert judged(case, wrong="NaN or infinite values") == judge.FAULT
 
 
 def test_an_answer_that_no_engineer_would_believe_excuses_no_error(tmp_path):
@@ -124,11 +124,11 @@ def test_an_answer_that_no_engineer_would_believe_excuses_no_error(tmp_path):
     deck.write_text(text)
     with results_of(deck) as results:
         assert {check.subject for check in looked(results.checks)} == {Subject.RESPONSE}
-    assert stability.solve(text, case.files).looks == ()
+    assert isolated.solve(text, case.files).looks == ()
 
 
 LINE = np.linspace(0.0, 1.0, 11)
-RIGHT_RUN = stability.Findings(
+RIGHT_RUN = isolated.Findings(
     t=LINE, u=LINE[:, None], f=LINE[:, None], swings=np.array([[1.0, 0.0]]), blows=np.array([2.0, 1e-3])
 )
 
@@ -140,23 +140,23 @@ def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
     def run(case, deck, method):
         return (RIGHT_RUN if deck == case.deck else nudged) if "REFINE" in method else off
 
-    return stability.judge(run, case, method)
+    return judge.judge(run, case, method)
 
 
 @pytest.mark.parametrize(
     ("method", "off", "end"),
     [
-        ("NEWMARK", {"f": 1.05 * LINE[:, None]}, stability.RIGHT),
-        ("NEWMARK", {"f": 1.2 * LINE[:, None]}, stability.FAULT),
-        ("NEWMARK", {"blows": np.array([2.0, 2e-3])}, stability.RIGHT),  # a touch, beside the other
-        ("NEWMARK", {"blows": np.array([2.4, 1e-3])}, stability.FAULT),
-        ("NEWMARK", {"swings": np.array([[1.01, 0.0]])}, stability.RIGHT),
-        ("AUTO", {"swings": np.array([[1.01, 0.0]])}, stability.FAULT),
-        ("AUTO", {"blows": np.array([2.01, 1e-3])}, stability.FAULT),
-        ("AUTO", {"u": 1.05 * LINE[:, None]}, stability.RIGHT),
-        ("EXACT", {"u": (1.0 + 1e-5) * LINE[:, None]}, stability.FAULT),
-        ("LAGUERRE", {"u": (1.0 + 1e-4) * LINE[:, None]}, stability.RIGHT),
-        ("LAGUERRE", {"u": (1.0 + 1e-2) * LINE[:, None]}, stability.FAULT),
+        ("NEWMARK", {"f": 1.05 * LINE[:, None]}, judge.RIGHT),
+        ("NEWMARK", {"f": 1.2 * LINE[:, None]}, judge.FAULT),
+        ("NEWMARK", {"blows": np.array([2.0, 2e-3])}, judge.RIGHT),  # a touch, beside the other
+        ("NEWMARK", {"blows": np.array([2.4, 1e-3])}, judge.FAULT),
+        ("NEWMARK", {"swings": np.array([[1.01, 0.0]])}, judge.RIGHT),
+        ("AUTO", {"swings": np.array([[1.01, 0.0]])}, judge.FAULT),
+        ("AUTO", {"blows": np.array([2.01, 1e-3])}, judge.FAULT),
+        ("AUTO", {"u": 1.05 * LINE[:, None]}, judge.RIGHT),
+        ("EXACT", {"u": (1.0 + 1e-5) * LINE[:, None]}, judge.FAULT),
+        ("LAGUERRE", {"u": (1.0 + 1e-4) * LINE[:, None]}, judge.RIGHT),
+        ("LAGUERRE", {"u": (1.0 + 1e-2) * LINE[:, None]}, judge.FAULT),
     ],
 )
 def test_forces_are_judged_and_auto_by_what_it_promises(method, off, end):
@@ -169,9 +169,9 @@ def test_nothing_is_judged_beyond_what_other_digits_of_the_masses_change():
     late[6:], early[4:] = 0.0, 0.0
     nudged = RIGHT_RUN._replace(u=late[:, None])
     row = compared("EXACT", RIGHT_RUN._replace(u=2.0 * late[:, None] - RIGHT_RUN.u), nudged)
-    assert row.end == stability.RIGHT and row.says == f"{stability.PARTLY}, up to t = 0.5"
-    assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None]), nudged).end == stability.FAULT
-    assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None])).end == stability.FAULT
+    assert row.end == judge.RIGHT and row.says == f"{judge.PARTLY}, up to t = 0.5"
+    assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None]), nudged).end == judge.FAULT
+    assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None])).end == judge.FAULT
 
 
 def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
@@ -184,9 +184,9 @@ def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
 
         return found
 
-    touching, parted = (stability.judge(run(x), case, "NEWMARK") for x in (grazed, RIGHT_RUN))
-    assert touching.end == stability.FAULT
-    assert parted.end == stability.RIGHT and parted.says == stability.PARTLY
+    touching, parted = (judge.judge(run(x), case, "NEWMARK") for x in (grazed, RIGHT_RUN))
+    assert touching.end == judge.FAULT
+    assert parted.end == judge.RIGHT and parted.says == judge.PARTLY
 
 
 def test_springs_are_not_judged_where_a_body_turns_unless_the_reference_has_no_steps():
@@ -200,33 +200,33 @@ def test_springs_are_not_judged_where_a_body_turns_unless_the_reference_has_no_s
         def run(case, deck, method):
             if method == "TAYLOR":
                 return RIGHT_RUN._replace(f=f[:, None])
-            return turning if by in method else stability.Findings(stop="A505 at t = 0 s: curved")
+            return turning if by in method else isolated.Findings(stop="A505 at t = 0 s: curved")
 
-        row = stability.judge(run, case, "TAYLOR")
-        assert (row.says == stability.PARTLY) is (row.end == stability.RIGHT)
+        row = judge.judge(run, case, "TAYLOR")
+        assert (row.says == judge.PARTLY) is (row.end == judge.RIGHT)
         return row.end
 
-    assert [end(late, "NEWMARK"), end(early, "NEWMARK")] == [stability.RIGHT, stability.FAULT]
-    assert end(late, "REFINE") == stability.FAULT
+    assert [end(late, "NEWMARK"), end(early, "NEWMARK")] == [judge.RIGHT, judge.FAULT]
+    assert end(late, "REFINE") == judge.FAULT
 
 
 def test_other_masses_show_a_touch_that_steps_take_for_rounding(monkeypatch):
     asked = []
-    monkeypatch.setattr(stability, "nudged", lambda deck, share: asked.append(share) or deck)
+    monkeypatch.setattr(judge, "nudged", lambda deck, share: asked.append(share) or deck)
     case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def run(case, deck, method):
         if "REFINE" in method:
-            return stability.Findings(stop="A505 at t = 0 s: curved")
+            return isolated.Findings(stop="A505 at t = 0 s: curved")
         return RIGHT_RUN if "NEWMARK" in method else RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
 
-    stability.judge(run, case, "TAYLOR")
-    assert asked == [stability.BLIND] and 5.0 * within_step.ALIKE * STILL < stability.BLIND < 1e-6
+    judge.judge(run, case, "TAYLOR")
+    assert asked == [judge.BLIND] and 5.0 * within_step.ALIKE * STILL < judge.BLIND < 1e-6
 
 
 def test_masses_are_nudged_by_their_share():
-    deck = stability.nudged(linear.one(""), 1e-3)
-    assert "\nGRAVITY 0.999000999" in deck and stability.nudged("NODES\n", 1e-3) == "NODES\n"
+    deck = judge.nudged(linear.one(""), 1e-3)
+    assert "\nGRAVITY 0.999000999" in deck and judge.nudged("NODES\n", 1e-3) == "NODES\n"
 
 
 @pytest.mark.parametrize(
@@ -239,7 +239,7 @@ def test_masses_are_nudged_by_their_share():
     ],
 )
 def test_a_clear_stop_has_number_time_and_cause(message, clear):
-    assert bool(stability.CLEAR.match(message)) is clear
+    assert bool(isolated.CLEAR.match(message)) is clear
 
 
 def test_exact_refuses_a_curved_law(tmp_path):
@@ -260,7 +260,7 @@ def test_a_spike_leaves_its_impulse_whatever_the_alphas(tmp_path, method):
     0.4 falls behind its end: 4 % of the impulse.
     """
     (case,) = (c for c in linear.linear_scenes() if c.variant == "a spike")
-    row = stability.judge(stability.Runner(0.0), case, method)
+    row = judge.judge(isolated.Runner(0.0), case, method)
     assert row.error == pytest.approx(0.04, abs=0.002) if method == "HHT" else row.error < 0.01, row.says
 
 

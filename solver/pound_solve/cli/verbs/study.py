@@ -11,7 +11,7 @@ from pound_solve.cli import common
 from pound_solve.cli.progress import WIDTH, Progress, StatusLine
 
 if TYPE_CHECKING:
-    from pound_solve.assess.scenes.case import Case
+    from pound_solve.assess.stability.scenes.case import Case
     from pound_solve.assess.study import Plan
 
 SUMMARY = "error against time of every method on this deck, and advice"
@@ -115,24 +115,24 @@ def _plan(args: argparse.Namespace) -> Plan:
 
 def _stability(args: argparse.Namespace) -> int:
     """Run the stability matrix and print its page; the status is 1 where a run failed by a fault."""
-    from pound_solve.assess import scenes, stability
+    from pound_solve.assess.stability import judge, page, scenes
 
-    families = (args.family,) if args.family else stability.FAMILIES
+    families = (args.family,) if args.family else judge.FAMILIES
     law = (args.law or "").upper()
 
     def chosen(case: Case) -> bool:
         return law in ("", case.law) and not (args.quick and case.heavy)
 
-    runs = sum(map(chosen, scenes.cases(families))) * len(stability.methods())
+    runs = sum(map(chosen, scenes.cases(families))) * len(judge.methods())
     if not runs:
         near = f"--family {args.family} has" if args.family else "there are"
         text = f"{near} no scenes with the law {args.law}: see pound-solve list"
         return common.complain(text, common.MISTAKES)
     progress, rows = Progress(False, args.interruption.check), []
-    for row in stability.matrix(families, chosen):
+    for row in judge.matrix(families, chosen):
         rows.append(row)
         doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"
         progress(len(rows), runs, doing[:WIDTH])
     progress.end()
-    print(stability.page(rows))
-    return int(any(row.end == stability.FAULT for row in rows))
+    print(page.page(rows))
+    return int(any(row.end == judge.FAULT for row in rows))

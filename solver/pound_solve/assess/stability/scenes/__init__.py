@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_solve.assess.scenes.case import Case
-from pound_solve.assess.scenes.contact import contact_scenes
-from pound_solve.assess.scenes.hysteresis import hysteresis_scenes
-from pound_solve.assess.scenes.linear import linear_scenes
+from pound_solve.assess.stability.scenes.case import Case
+from pound_solve.assess.stability.scenes.contact import contact_scenes
+from pound_solve.assess.stability.scenes.hysteresis import hysteresis_scenes
+from pound_solve.assess.stability.scenes.linear import linear_scenes
 from pound_solve.catalog import catalog
 
 

@@ -24,35 +24,24 @@ laws that turn at less than `BACK` of the largest rate, so forces of springs are
 from __future__ import annotations
 
 import math
-import multiprocessing
 import os
 import re
-import tempfile
-import time
-import warnings
-from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
-from multiprocessing.process import BaseProcess
-from pathlib import Path
 from queue import SimpleQueue
-from typing import Any, Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
-from pound_solve.assess.scenes import cases
-from pound_solve.assess.scenes.case import METHOD, STEP, STOREY, Case, every
-from pound_solve.assess.scenes.linear import KICK, one
+from pound_solve.assess.stability.isolated import LIMIT, Findings, Runner
+from pound_solve.assess.stability.scenes import cases
+from pound_solve.assess.stability.scenes.case import STEP, STOREY, Case, every
 from pound_solve.catalog import catalog
-from pound_solve.check import Check, Subject, looked
-from pound_solve.driver import run
+from pound_solve.check import Subject
 from pound_solve.integrate.events.within_step import ALIKE, BACK
 from pound_solve.integrate.protocol import STILL
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.results import Results
 
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 #: errors allowed, as shares of the largest value
@@ -61,41 +50,12 @@ FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast mod
 ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
 NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
 BLIND: Final = 10.0 * ALIKE * STILL  #: change of masses beside a reference by steps, at least
-LIMIT: Final = 180.0  #: seconds after which a case counts as endless
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
 MOST_STEPS: Final = 1e6  #: of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"
 PARTLY: Final = "compared as far as the answer is known"
 FAMILIES: Final = ("linear", "contact", "hysteresis")
 RIGHT, FLAGGED, STOPPED, FAULT = "right", "flagged", "stopped", "fault"  #: outcomes of a case
-MEANS: Final = {
-    RIGHT: "as the reference",
-    FLAGGED: "off, and a check of the report says so",
-    STOPPED: "refused or stopped in words",
-    FAULT: "all else, such as a wrong answer that no check flags",
-}
-#: the message of a stop has its number and time or stage, that of a refused deck its place
-CLEAR: Final = re.compile(r"A5\d\d (at t = \S+ \S+: |static analysis: )\w.{20,}|A50[15] \w.{20,}")
-REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
-REFUSED_AT: Final = re.compile(r"^.*?\.inp:\d+:\d+: error ")  #: in a file that is gone
-
-
-class Findings(NamedTuple):
-    """Outcome of a run: times, displacements, velocities, forces of springs; the largest deformations of
-    springs, positive and negative, shape (n_springs, 2); the largest forces of contacts; the message of a
-    stop or refusal; checks of the numbers with the verdict "look"; what is wrong with it; seconds.
-    """
-
-    t: Array = np.zeros(0)
-    u: Array = np.zeros(0)
-    v: Array = np.zeros((0, 0))
-    f: Array = np.zeros((0, 0))
-    swings: Array = np.zeros((0, 2))
-    blows: Array = np.zeros(0)
-    stop: str = ""
-    looks: tuple[Check, ...] = ()
-    wrong: str = ""
-    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -121,113 +81,6 @@ class JudgedRun:
     error: float
     says: str
     seconds: float
-
-
-def motion(results: Results) -> dict[str, Array]:
-    """Quantities of a run that are compared, by their names in `Findings`."""
-    tables = {x: results.table(x) for x in ("spring_envelope", "contact_summary") if x in results.tables}
-    quantities = {}
-    if "node/u" in results.histories:
-        quantities = {"t": results.time.copy(), "u": results.history("node/u")[:, :, 0].copy()}
-        quantities["v"] = results.history("node/v")[:, :, 0].copy()
-        quantities["f"] = np.zeros((len(quantities["t"]), 0))
-    if "spring/force" in results.histories:
-        quantities["f"] = results.history("spring/force").copy()
-    if "spring_envelope" in tables:
-        springs = tables["spring_envelope"]
-        quantities["swings"] = np.column_stack([springs["deformation_max"], springs["deformation_min"]])
-    if "contact_summary" in tables:
-        quantities["blows"] = tables["contact_summary"]["peak_force"].copy()
-    return quantities
-
-
-def solve(deck: str, files: Mapping[str, str]) -> Findings:
-    """Run a deck in a temporary folder; every exception becomes part of the result."""
-    began = time.perf_counter()
-
-    def findings(**known: Any) -> Findings:
-        return Findings(**known, seconds=time.perf_counter() - began)
-
-    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
-        warnings.simplefilter("error")
-        path = Path(folder) / "case.inp"
-        for name, text in {**files, path.name: deck}.items():
-            (Path(folder) / name).write_text(text, encoding="utf-8")
-        try:
-            request = run.Request(str(path))  # no report is printed, which is half of a short run
-            results = run.solve(run.prepare(request), request.path(".h5"), None, began, request)
-        except run.DeckError as err:
-            text = str(err)
-            return (
-                findings(stop=text) if REFUSED.search(text) else findings(wrong=f"unclear refusal: {text}")
-            )
-        except Exception as err:
-            return findings(wrong=f"{type(err).__name__}: {err}")
-        with results:
-            stop, moved = results.message, motion(results)
-            # a response that no engineer would believe may be right, and excuses no error
-            looks = tuple(c for c in looked(results.checks) if c.subject is not Subject.RESPONSE)
-            bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
-        if bad:
-            return findings(**moved, wrong=f"NaN or infinite values in {', '.join(bad)}")
-        if stop and not CLEAR.match(stop):
-            return findings(**moved, wrong=f"unclear stop: {stop}")
-        return findings(**moved, stop=stop, looks=looks)
-
-
-def serve(line: Connection) -> None:
-    """Solve the decks that arrive on a connection; before, send None when the kernels are compiled."""
-    solve(one(KICK).replace(METHOD, "NEWMARK DT=0.1"), {})
-    line.send(None)
-    with suppress(EOFError):
-        while True:
-            line.send(solve(*line.recv()))
-
-
-class Runner:
-    """Runs decks in a process of its own, which may die or be ended; each deck is run once."""
-
-    def __init__(self, limit: float) -> None:
-        self.limit, self.kept = limit, dict[str, Findings]()
-        self.worker: tuple[BaseProcess, Connection] | None = None
-
-    def __call__(self, case: Case, deck: str, method: str) -> Findings:
-        """Run a deck with a method."""
-        text = deck.replace(METHOD, method)
-        if not self.limit:
-            return solve(text, case.files)
-        if text not in self.kept:
-            self.kept[text] = self._apart(text, case.files)
-        return self.kept[text]
-
-    def _apart(self, text: str, files: Mapping[str, str]) -> Findings:
-        if self.worker is None:
-            context = multiprocessing.get_context("spawn")
-            here, there = context.Pipe()
-            self.worker = context.Process(target=serve, args=(there,), daemon=True), here
-            self.worker[0].start()
-            there.close()  # so that the line ends with the process
-            here.recv()
-        process, line = self.worker
-        line.send((text, files))
-        wrong = f"no end within {self.limit:g} s"
-        try:
-            if line.poll(self.limit):
-                answer: Findings = line.recv()
-                return answer
-        except (EOFError, ConnectionError):
-            process.join()
-            wrong = f"the process died: exit code {process.exitcode}"
-        self.close()
-        return Findings(wrong=wrong, seconds=self.limit)
-
-    def close(self) -> None:
-        """End the process."""
-        if self.worker is not None:
-            self.worker[1].close()
-            self.worker[0].terminate()
-            self.worker[0].join()
-        self.worker = None
 
 
 def methods() -> list[str]:
@@ -459,64 +312,3 @@ def matrix(
 
 
 ENDS: Final = (RIGHT, FLAGGED, STOPPED, FAULT)
-
-
-def table(rows: Sequence[JudgedRun]) -> str:
-    """Counts of the outcomes, scene by method, as Markdown."""
-    by: dict[str, dict[str, list[JudgedRun]]] = defaultdict(lambda: defaultdict(list))
-    for row in rows:
-        by[row.case.family][row.case.scene].append(row)
-    lines = []
-    for family, scenes in by.items():
-        lines += [*_counts(family, scenes), ""]
-    return "\n".join([*lines, _total(rows)])
-
-
-def _counts(family: str, scenes: Mapping[str, Sequence[JudgedRun]]) -> list[str]:
-    """Table of one family: a line for each scene, a column for each method."""
-    names = methods()
-    lines = [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
-    for scene, cells in scenes.items():
-        ends = [Counter(r.end for r in cells if r.method == m) for m in names]
-        texts = [" / ".join(str(e[x]) for x in ENDS) for e in ends]
-        lines.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
-    return lines
-
-
-def _total(rows: Sequence[JudgedRun]) -> str:
-    """Text with the number of all cases and outcomes."""
-    ends, alone = Counter(r.end for r in rows), sum(r.says == ALONE for r in rows)
-    counts = ", ".join(f"{ends[e]} {e}" for e in ENDS)
-    n = len({id(r.case) for r in rows})
-    text = f"{n} cases, {len(rows)} runs: {counts}. Of those right {alone} are known by their energy alone"
-    partly = sum(r.end == RIGHT and r.says.startswith(PARTLY) for r in rows)
-    return text + (f", {partly} in part, as far as the answer is known." if partly else ".")
-
-
-def stops(rows: Sequence[JudgedRun]) -> str:
-    """Stops by kind, with count, methods and an example; then runs known in part, and all faults."""
-    kinds: dict[str, list[tuple[str, JudgedRun]]] = defaultdict(list)
-    for row in rows:
-        if row.end == STOPPED:
-            text = REFUSED_AT.sub("", row.says.split("\n")[0])
-            kinds[re.sub(r"[-+\d.e]*\d[-+\d.e]*", "0", text)].append((text, row))
-    lines = ["| stops | by | the first of them | in the scene |", "|---|---|---|---|"]
-    for kind in sorted(kinds.values(), key=len, reverse=True):
-        (text, first), by = kind[0], ", ".join(dict.fromkeys(row.method for _, row in kind))
-        lines.append(f"| {len(kind)} | {by} | {text} | {_scene(first)} |")
-    lines += [
-        f"- {_scene(r)} by {r.method}: {r.says}"
-        for r in rows
-        if r.end == FAULT or (r.end == RIGHT and r.says.startswith(PARTLY))
-    ]
-    return "\n".join(lines)
-
-
-def _scene(row: JudgedRun) -> str:
-    return ", ".join(x for x in (row.case.scene, row.case.variant, row.case.law) if x)
-
-
-def page(rows: Sequence[JudgedRun]) -> str:
-    """Counts and stops, for the terminal and the manual."""
-    cells = "; ".join(f"{end}: {MEANS[end]}" for end in ENDS)
-    return f"{table(rows)}\n\nThe cells count {' / '.join(ENDS)}. {cells}.\n\n{stops(rows)}"

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from pound_solve.assess.scenes.case import JUMP, OMEGA, SPIKE, STOREY, ZEROS, Case, damped
+from pound_solve.assess.stability.scenes.case import JUMP, OMEGA, SPIKE, STOREY, ZEROS, Case, damped
 from pound_solve.numerics.types import Array
 
 ONE: Final = """UNITS kN m s

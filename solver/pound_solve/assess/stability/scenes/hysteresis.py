@@ -6,7 +6,17 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from pound_deck.schema import Spec
-from pound_solve.assess.scenes.case import JUMP, SPIKE, STEP, STOREY, ZEROS, Case, damped, every, items
+from pound_solve.assess.stability.scenes.case import (
+    JUMP,
+    SPIKE,
+    STEP,
+    STOREY,
+    ZEROS,
+    Case,
+    damped,
+    every,
+    items,
+)
 from pound_solve.numerics.types import Array
 
 STOREYS: Final = """UNITS kN {length} s

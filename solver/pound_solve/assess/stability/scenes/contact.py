@@ -10,7 +10,17 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Spec
-from pound_solve.assess.scenes.case import JUMP, OMEGA, SPIKE, STEP, STOREY, ZEROS, Case, damped, items
+from pound_solve.assess.stability.scenes.case import (
+    JUMP,
+    OMEGA,
+    SPIKE,
+    STEP,
+    STOREY,
+    ZEROS,
+    Case,
+    damped,
+    items,
+)
 from pound_solve.numerics.types import Array
 
 
