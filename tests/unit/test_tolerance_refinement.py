@@ -16,7 +16,8 @@ from pound_solve.integrate.convergence.compared import RESPONSES, Peak
 from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.series import laguerre
 from pound_solve.results import Results
-from unit.test_stepping import error_against, estimated, figures, run
+from pounding_frames import figures, run
+from unit.test_auto import error_against, estimated
 
 pytestmark = FAST
 

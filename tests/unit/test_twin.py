@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from decks import results_of
 from kernels import FAST
 from pound_solve.check import Check, Subject
 from pound_solve.integrate.closed_form import exact
@@ -15,7 +16,6 @@ from pound_solve.integrate.convergence import twin
 from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.series import taylor
 from pound_solve.results import Results
-from unit.test_stepping import results_of
 
 pytestmark = FAST
 
