@@ -159,6 +159,7 @@ def test_the_version_and_the_help_need_no_numbers():
             "pound_solve",
             "pound_solve.deck",
             "pound_solve.interruption",
+            "pound_solve.user_error",
             "pound_solve.modules",
             "pound_solve.numerics",
             "pound_solve.numerics.threads",
@@ -173,7 +174,18 @@ def test_a_report_needs_no_numerics(tmp_path):
     assert not libraries(modules) & (NUMERICS | {"lark", "matplotlib"})
     rooms = {name.split(".")[1] for name in modules if name.startswith("pound_solve.")}
     assert rooms <= {
-        *("check", "cli", "deck", "interruption", "modules", "numerics", "report", "results", "version")
+        *(
+            "check",
+            "cli",
+            "deck",
+            "interruption",
+            "modules",
+            "numerics",
+            "report",
+            "results",
+            "user_error",
+            "version",
+        )
     }
     assert {name for name in modules if name.startswith("pound_solve.numerics.")} == {
         "pound_solve.numerics.threads",

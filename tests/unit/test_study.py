@@ -18,7 +18,7 @@ from pound_solve.assess.study import Plan
 from pound_solve.cli.main import main
 from pound_solve.driver import run
 from pound_solve.results import Results
-from pound_solve.results.study_record import Reference, Trial
+from pound_solve.results.study_record import Reference, Trial, order
 from tiers import at_night
 
 pytestmark = pytest.mark.full
@@ -109,9 +109,9 @@ def test_a_reference_needs_three_runs():
 
 
 def test_the_order_is_that_between_two_rungs_by_the_steps_they_took():
-    assert advice.order(trial(10, 0.09), trial(30, 0.01)) == pytest.approx(2.0)
-    assert math.isnan(advice.order(trial(10, 0.0), trial(20, 0.01)))
-    assert math.isnan(advice.order(trial(10, 0.1), trial(10, 0.01)))
+    assert order(trial(10, 0.09), trial(30, 0.01)) == pytest.approx(2.0)
+    assert math.isnan(order(trial(10, 0.0), trial(20, 0.01)))
+    assert math.isnan(order(trial(10, 0.1), trial(10, 0.01)))
 
 
 def test_a_tolerance_has_no_order():
@@ -166,7 +166,7 @@ def test_no_step_is_named_where_no_contact_closed(tmp_path):
 def test_errors_fall_with_the_order_of_the_methods_and_both_references_agree(two, studied):
     for method in ("NEWMARK", "CENTRAL"):
         rungs = [t for t in studied.trials if t.method == method]
-        orders = [advice.order(a, b) for a, b in zip(rungs[-3:], rungs[-2:])]
+        orders = [order(a, b) for a, b in zip(rungs[-3:], rungs[-2:])]
         assert orders == pytest.approx([2.0, 2.0], abs=0.05)
         assert len({t.collisions for t in rungs}) == 1
     assert studied.trials[0].error < 1e-13  # EXACT: no finer grid changes it
