@@ -17,6 +17,8 @@ from pound_solve.numerics import threads
 
 threads.one()  # before a test imports numpy
 
+from pound_solve.numerics.providers import provider  # noqa: E402
+
 if not Path(pound_solve.__file__).is_relative_to(Path(__file__).parents[1]):
     pytest.exit(
         f"these tests would test {pound_solve.__file__}: install this checkout, or set PYTHONPATH", 2
@@ -36,3 +38,13 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+@pytest.fixture(autouse=True)
+def provider_of_the_process() -> Generator[None]:
+    """Choose what makes kernels ready before a test may set POUND_COMPILE, and again after one that has
+    forgotten the choice: else what such a test sets would hold for all tests that follow.
+    """
+    provider()
+    yield
+    provider()

@@ -136,8 +136,7 @@ class Binder:
             value = self._default(f, draft) if item is None else self._value(f, item, draft)
         except Mistake as error:
             draft.whole, draft.values[f.name] = False, None
-            if error.diagnostic:
-                self.report.append(error.diagnostic)
+            error.keep(self.report)
             if f.kind is Kind.FAMILY:
                 chosen = self.read.catalog.family(f.family).values()
                 draft.lost |= {g.name for s in chosen for g in s.fields}

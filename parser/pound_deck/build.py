@@ -116,8 +116,7 @@ def _kind(name: str, row: Row, binder: Binder) -> Card | None:
             raise _no_kind(name, row, specs)
         kind = binder.read.choice(items[at].parts[0], specs, codes, "this card's kind")
     except Mistake as error:
-        if error.diagnostic:
-            binder.report.append(error.diagnostic)
+        error.keep(binder.report)
         return None
     return binder.card(specs[kind], items[at + 1 :], row.span, label)
 

@@ -78,8 +78,7 @@ def parse(lines: Iterable[Line], report: list[Diagnostic]) -> Iterator[Row]:
             try:
                 items = parse_items(line, shapes)
             except Mistake as error:
-                if error.diagnostic:
-                    report.append(error.diagnostic)
+                error.keep(report)
         yield Row(word, items, line, line.span)
 
 

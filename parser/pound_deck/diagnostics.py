@@ -36,6 +36,11 @@ class Mistake(Exception):
         super().__init__(diagnostic.message if diagnostic else "already reported")
         self.diagnostic = diagnostic
 
+    def keep(self, report: list[Diagnostic]) -> None:
+        """Add the diagnostic, if there is one, to a report."""
+        if self.diagnostic:
+            report.append(self.diagnostic)
+
 
 def mistake(code: str, message: str, span: Span, hint: str = "") -> Mistake:
     """Make a Mistake with a new Diagnostic."""

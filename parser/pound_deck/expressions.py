@@ -77,26 +77,16 @@ def _round(x: float) -> float:
     return math.copysign(math.floor(abs(x) + 0.5), x)
 
 
-_MANY: Final = 1000
-#: name: least and most number of values, function
-FUNCTIONS: Final[Mapping[str, tuple[int, int, Callable[..., float]]]] = {
-    "SQRT": (1, 1, math.sqrt),
-    "SIN": (1, 1, math.sin),
-    "COS": (1, 1, math.cos),
-    "TAN": (1, 1, math.tan),
-    "ASIN": (1, 1, math.asin),
-    "ACOS": (1, 1, math.acos),
-    "ATAN": (1, 1, math.atan),
-    "EXP": (1, 1, math.exp),
-    "LOG": (1, 1, math.log),
-    "LOG10": (1, 1, math.log10),
-    "ABS": (1, 1, abs),
-    "MIN": (1, _MANY, min),
-    "MAX": (1, _MANY, max),
-    "FLOOR": (1, 1, math.floor),
-    "CEIL": (1, 1, math.ceil),
-    "ROUND": (1, 1, _round),
-    "INT": (1, 1, math.trunc),
+_OF_MATH: Final = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "log10")
+_OF_MANY: Final = {"MIN": min, "MAX": max}  #: take one value or more
+FUNCTIONS: Final[Mapping[str, Callable[..., float]]] = {
+    **{name.upper(): getattr(math, name) for name in _OF_MATH},
+    "ABS": abs,
+    **_OF_MANY,
+    "FLOOR": math.floor,
+    "CEIL": math.ceil,
+    "ROUND": _round,
+    "INT": math.trunc,
 }
 #: names that no PARAM can have
 RESERVED: Final = frozenset(FUNCTIONS) | {"PI", "TO", "BY", "NAN", "INF", "INFINITY"}
@@ -178,11 +168,12 @@ def _call(step: Step, numbers: list[float]) -> float:
         raise mistake(
             "P226", f"there is no function {step.text}", step.span, suggest(name, FUNCTIONS) or _CALLS
         )
-    least, most, function = FUNCTIONS[name]
-    if not least <= len(numbers) <= most:
-        takes = "one value" if most == 1 else "one or more values"
+    if name in _OF_MANY and numbers:
+        return float(_OF_MANY[name](numbers))
+    if len(numbers) != 1:
+        takes = "one or more values" if name in _OF_MANY else "one value"
         raise mistake("P226", f"{step.text} takes {takes}, not {len(numbers)}", step.span, _CALLS)
-    return float(function(*numbers) if most == 1 else function(numbers))
+    return float(FUNCTIONS[name](*numbers))
 
 
 def _operate(sign: str, numbers: list[float]) -> float:
@@ -263,6 +254,5 @@ def _value(
     try:
         return evaluate(definition.value, known)
     except Mistake as error:
-        if error.diagnostic:
-            report.append(error.diagnostic)
+        error.keep(report)
         return None

@@ -23,17 +23,7 @@ _NUMBER: Final = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 _PERCENT: Final = re.compile(rf"(?<![\w.]){_NUMBER}\s*$")
 _WITH_UNIT: Final = re.compile(rf"{_NUMBER}[A-Za-z]+\d?$")
 _NO_VALUE: Final = re.compile(r"(?<![\w.])([A-Za-z_][\w.]*)(\s*=)(\s+[A-Za-z_][\w.]*)?$")
-_LOOKALIKES: Final = {
-    "−": "-",
-    "–": "-",
-    "—": "-",
-    "“": '"',
-    "”": '"',
-    "„": '"',
-    "‘": "'",
-    "’": "'",
-    "×": "*",
-}
+_LOOKALIKES: Final = dict(zip("−–—“”„‘’×", '---"""\'\'*'))
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,7 @@ def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft
             member = _member(row, last, kinds, before, nodes)
             between = _between(before, member, nodes, draft) if before else []
         except Mistake as error:
-            if error.diagnostic:
-                draft.report.append(error.diagnostic)
+            error.keep(draft.report)
             continue
         members |= {m.id: m for m in (*between, member)}
         before = member

@@ -162,8 +162,7 @@ def _translate(
         try:
             step()
         except Mistake as error:
-            if error.diagnostic:
-                draft.report.append(error.diagnostic)
+            error.keep(draft.report)
 
     attempt(lambda: header.write(control, draft))
     points = {}

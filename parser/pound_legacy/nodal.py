@@ -24,8 +24,7 @@ def _lines(
             if id_ not in nodes:
                 raise mistake("L608", f"there is no node {id_}", row.items[0].span, "correct the number")
         except Mistake as error:
-            if error.diagnostic:
-                draft.report.append(error.diagnostic)
+            error.keep(draft.report)
             continue
         lines.append((row, id_, values))
     return lines

@@ -45,7 +45,7 @@ def read(rows: Rows, last: int, draft: Draft) -> dict[int, Node]:
         try:
             node = _node(row, last, before)
         except Mistake as error:
-            _keep(error, draft)
+            error.keep(draft.report)
             continue
         if before is not None and node.id > before.id + 1:
             nodes |= {n.id: n for n in _between(before, node, draft)}
@@ -108,7 +108,7 @@ def write(nodes: dict[int, Node], draft: Draft) -> None:
         try:
             items, notes = _slaved(node, nodes, draft)
         except Mistake as error:
-            _keep(error, draft)
+            error.keep(draft.report)
             continue
         fixed = "".join(c for c, code in zip(_LETTERS, node.codes) if code == _FIXED)
         text = f"{node.id:6} {number(node.x):>12} {number(node.y):>12}"
@@ -140,11 +140,6 @@ def _slaved(node: Node, nodes: dict[int, Node], draft: Draft) -> tuple[str, list
     return f"  SLAVED={letters} MASTER={master}", notes
 
 
-def _keep(error: Mistake, draft: Draft) -> None:
-    if error.diagnostic:
-        draft.report.append(error.diagnostic)
-
-
 def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: Draft) -> None:
     """Add the lines of DRIFT: each storey between neighbours in the list, which holds as many nodes as
     NLEVEL says, at its `place` among the control lines.
@@ -157,7 +152,7 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
             try:
                 id_ = item.whole("a node of DRIFT")
             except Mistake as error:
-                _keep(error, draft)
+                error.keep(draft.report)
                 continue
             if id_ not in nodes:
                 text = f"DRIFT names node {id_}, which NODES do not hold"

@@ -36,7 +36,7 @@ def read(
             head = rows.next(f"property set {expected}")
             kind = _kind(head, expected)
         except Mistake as error:
-            _keep(error, draft)
+            error.keep(draft.report)
             return
         note = " ".join(item.text for item in head.items[2:])[:60].strip("\"'")
         of_kind = [m for m in members.values() if m.kind == expected]
@@ -44,7 +44,7 @@ def read(
         try:
             READERS[kind](PropertySet(expected, rows, places, elastic, catalog, draft), note)
         except Mistake as error:
-            _keep(error, draft)
+            error.keep(draft.report)
             _skip(rows)
     if rows.more:
         text = "lines follow the last property set that NTYPE counts"
@@ -77,8 +77,3 @@ def _skip(rows: Rows) -> None:
 
 def _begins(row: Row) -> bool:
     return len(row.items) > 1 and row.items[0].numeric and not row.items[1].numeric
-
-
-def _keep(error: Mistake, draft: Draft) -> None:
-    if error.diagnostic:
-        draft.report.append(error.diagnostic)

@@ -170,6 +170,7 @@ NUMERICS = (
 #: `pound_deck.files`, which refuses pipes and devices
 OF_THE_PROGRAM = {
     "cards.py",
+    "messages.py",
     "numerics/digest.py",
     "sweep/execution/limits.py",
     "report/html/__init__.py",

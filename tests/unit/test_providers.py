@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import struct
 from collections.abc import Iterator
@@ -154,3 +155,12 @@ def test_the_report_says_how_kernels_run(tmp_path: Path) -> None:
     with interpreted():
         results = pound_solve.run(deck)
     assert dict(results.table("run_figures").tolist())["kernels"] == "as Python, which was asked for"
+
+
+def test_no_function_of_a_rule_is_handed_on() -> None:
+    """Numba cannot keep a function to which another one is handed: it would compile it in every process."""
+    tree = ast.parse(Path(functions.__file__).read_text(encoding="utf-8"))
+    calls = [x.func for x in ast.walk(tree) if isinstance(x, ast.Call)]
+    named = [x for x in ast.walk(tree) if isinstance(x, ast.Name) and isinstance(x.ctx, ast.Load)]
+    used = [x for x in named if x.id == "function_of_rule"]
+    assert used and all(x in calls for x in used)

@@ -13,6 +13,7 @@ from pound_solve.integrate.protocol import LawValues, Start
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
+from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
 
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
@@ -131,8 +132,8 @@ def energies(
         mass, stiffness = system.structure.mass, system.structure.stiffness
         u = system.expanded(u.T, system.excitation.values(t).T).T
         v = system.expanded(v.T, system.excitation.values(t, 1).T, 1).T
-    contact = np.array([s.role.contact_energy for s in system.structure.laws], bool)
-    damper = np.array([s.role.damping_energy for s in system.structure.laws], bool)
+    contact = np.array([s.role.collides for s in system.structure.laws], bool)
+    damper = np.array([s.role is Role.DAMPER for s in system.structure.laws], bool)
     table = np.zeros((len(t), len(ENERGIES)))
     table[:, 0], table[:, 3], table[:, 5] = works.T
     table[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)

@@ -26,7 +26,6 @@ from pound_solve.laws.automaton import (
     SmoothNumbers,
     TransitionFunction,
     rate_independent,
-    rate_power,
 )
 from pound_solve.numerics.jit import Function
 from pound_solve.numerics.providers import provider
@@ -231,8 +230,13 @@ def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
 
 
 def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power computed from the curve of a rule."""
-    return rate_power(function_of_rule, p[:parameters], at, m[:variables], d, v)
+    """Power of the rate-dependent part of a rule's curve, see `automaton.rate_power`; numba cannot keep a
+    function to which another one is handed.
+    """
+    moving = function_of_rule(p[:parameters], at, m[:variables], d, d, v)
+    resting = function_of_rule(p[:parameters], at, m[:variables], d, d, 0.0)
+    power: float = (moving[0] - resting[0]) * v
+    return power
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:

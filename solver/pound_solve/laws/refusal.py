@@ -1,4 +1,4 @@
-"""How a law refuses the values of its card."""
+"""How laws, elements and damping refuse the values of a card."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ class ItemError(ValueError):
     message : str
         What is wrong, and what would be right.
     item : str
-        Name of the item at fault, at whose place the message is told.
+        Name of the item at fault, at whose place the message is told; empty for the card.
     """
 
-    def __init__(self, message: str, item: str) -> None:
+    def __init__(self, message: str, item: str = "") -> None:
         super().__init__(message)
         self.item = item

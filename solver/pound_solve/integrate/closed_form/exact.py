@@ -88,7 +88,7 @@ class Exact(EventDrivenRun):
                     f"{parts} parts", "solved apart", "each on its own while no closed contact joins them"
                 )
             )
-        contact = np.array([s.role.contact_energy for s in self.laws], bool)
+        contact = np.array([s.role.collides for s in self.laws], bool)
         self.work = DeferredWork(self.energy, system.constant, contact)
         self.rigid = RigidInstants(self, self.subsystems.rigid)
         self.samples = DeferredSamples(system, self.subsystems.rigid, self.recorder)
@@ -333,7 +333,7 @@ class Exact(EventDrivenRun):
         entry = np.array([work.input, work.damping, 0.0])
         for law, loss in work.laws:
             self.energy.dashpot_losses[law] += loss
-            entry[2 if self.laws[law].role.contact_energy else 1] += loss
+            entry[2 if self.laws[law].role.collides else 1] += loss
         self.work.add(entry)
 
     def outcome(self) -> Outcome:  # noqa: D102

@@ -219,7 +219,7 @@ class Laplace(EventDrivenRun):
         for law, branch in enumerate(self.branches):
             loss = float(branch.damping * rate[law] ** 2 @ weight)
             self.energy.dashpot_losses[law] += loss
-            if self.laws[law].role.contact_energy:
+            if self.laws[law].role.collides:
                 lost += loss
             else:
                 damping += loss

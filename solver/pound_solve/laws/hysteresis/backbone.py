@@ -54,16 +54,8 @@ LEAST = 0.01  #: share of the yield force that is left in the end
 FORM, GONE, BY_CYCLE, PARAMETERS = 8, 9, 10, 11
 #: internal variables: where the backbone was met; changes of the yielding side, with its sign
 MET, CHANGES, VARIABLES = 2, 4, 5
-FORMS = {
-    "NONE": 0,
-    "EACH": 1,
-    "CYCLES": 2,
-    "LARGEST": 3,
-    "EACH_RCYC": 4,
-    "EACH_SUDDEN": 5,
-    "LARGEST_RCYC": 6,
-    "LARGEST_SUDDEN": 7,
-}  #: forms of the loss by Ruaumoko's codes
+_WORDS = "NONE EACH CYCLES LARGEST EACH_RCYC EACH_SUDDEN LARGEST_RCYC LARGEST_SUDDEN"
+FORMS = {word: code for code, word in enumerate(_WORDS.split())}  #: forms of the loss by Ruaumoko's codes
 _CYCLES, _LARGEST, _EACH_SUDDEN, _LARGEST_RCYC, _LARGEST_SUDDEN = 2.0, 3.0, 5.0, 6.0, 7.0
 _COUNTING = 4.0  #: the first form that counts cycles beside the ductility
 

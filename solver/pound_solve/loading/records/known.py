@@ -100,27 +100,16 @@ _UNAM: Final = (
     "UNAM accelerogram database RAII-UNAM, Instituto de Ingenieria (station SCT1, 19 September 1985)"
 )
 _GEONET: Final = "GeoNet strong-motion data, www.geonet.org.nz"
+_OF_PEER: Final = (
+    "elcentro imperial lomaprieta lomap corralitos gilroy capitola northridge sylmar rinaldi kobe takatori "
+    "tabas chichi taft pacoima rsn"
+)
 #: where famous records that are not shipped may be had, by a part of their name
 _SOURCES: Final[Mapping[str, str]] = MappingProxyType(
     {
         **dict.fromkeys(("mexico", "sct", "michoacan"), _UNAM),
         **dict.fromkeys(("kaikoura", "darfield", "christchurch", "canterbury", "v1a", "v2a"), _GEONET),
-        **dict.fromkeys(
-            (
-                "elcentro",
-                "imperial",
-                "lomaprieta",
-                "lomap",
-                "corralitos",
-                "gilroy",
-                "capitola",
-                "northridge",
-            ),
-            _PEER,
-        ),
-        **dict.fromkeys(
-            ("sylmar", "rinaldi", "kobe", "takatori", "tabas", "chichi", "taft", "pacoima", "rsn"), _PEER
-        ),
+        **dict.fromkeys(_OF_PEER.split(), _PEER),
     }
 )
 

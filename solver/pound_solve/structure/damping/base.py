@@ -10,6 +10,7 @@ import numpy as np
 
 from pound_deck.model import Card, Element
 from pound_deck.schema import Field, Kind
+from pound_solve.laws.refusal import ItemError
 from pound_solve.numerics import matrices
 from pound_solve.numerics.modes import Modes
 from pound_solve.numerics.types import Array
@@ -139,12 +140,8 @@ class Group:
     dashpots: Dashpots | None = None
 
 
-class DampingError(Exception):
+class DampingError(ItemError):
     """Contradictory damping; `item` names the field at fault."""
-
-    def __init__(self, message: str, item: str = "") -> None:
-        super().__init__(message)
-        self.item = item
 
 
 def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext) -> Array:

@@ -38,7 +38,9 @@ class Role(Enum):
 
     @property
     def collides(self) -> bool:
-        """Whether its closures are collisions; it joins its nodes only while it is closed."""
+        """Whether its closures are collisions; it joins its nodes only while it is closed.  Its losses are
+        lost in contacts, while those of springs by slip are hysteretic, and those of dashpots damping.
+        """
         return self is Role.CONTACT
 
     @property
@@ -47,18 +49,6 @@ class Role(Enum):
         damping model adds to a spring are no part of the spring's force.
         """
         return self in (Role.CONTACT, Role.DAMPER)
-
-    @property
-    def contact_energy(self) -> bool:
-        """Whether its losses count as lost in contacts: else those by slip are hysteretic, and those in
-        dashpots belong to damping.
-        """
-        return self is Role.CONTACT
-
-    @property
-    def damping_energy(self) -> bool:
-        """Whether all its losses belong to damping, those of a constant force too."""
-        return self is Role.DAMPER
 
 
 @dataclass(frozen=True)
@@ -264,12 +254,8 @@ class ElementContext:
     stiffness_along: Callable[[int, tuple[float, float]], dict[int, float]]
 
 
-class ElementError(Exception):
+class ElementError(ItemError):
     """An element that cannot be built; `item` names the field of the card at fault."""
-
-    def __init__(self, message: str, item: str = "") -> None:
-        super().__init__(message)
-        self.item = item
 
     @classmethod
     def of_law(cls, refusal: ValueError, item: str) -> Self:

@@ -76,12 +76,20 @@ class Case:
 
 
 def powers(unit: str, n: float) -> tuple[float, float]:
-    """Exponents of force and length in a unit such as F/L^1.5; N in the unit stands for `n`."""
-    match = re.fullmatch(r"(F)?(?:(/?)L(?:\^([0-9.]+|N))?)?", unit)
-    if not match or not unit:
+    """Exponents of force and length in a unit such as F/L^1.5 or L/T; N in the unit stands for `n`.
+
+    Raises
+    ------
+    ValueError
+        A unit of another form.
+    """
+    if unit in ("", "-"):
         return 0.0, 0.0
+    match = re.fullmatch(r"(F)?(?:(/?)L(?:\^([0-9.]+|N))?)?(?:/T(?:\^2)?)?", unit)
+    if not match:
+        raise ValueError(f"how to scale the unit {unit} is not known")
     size = (n if match[3] == "N" else float(match[3] or 1.0)) if "L" in unit else 0.0
-    return float(unit[0] == "F"), -size if match[2] else size
+    return float(match[1] == "F"), -size if match[2] else size
 
 
 def items(spec: Spec, length: float = 1.0, force: float = 1.0, **given: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
+from pound_solve.structure.elements.base import Role
 
 
 def rows(run: RunRecord) -> list[Row]:
@@ -15,7 +16,7 @@ def rows(run: RunRecord) -> list[Row]:
     slaved = sum(len(set(n.slaved) - set(n.fixed)) for n in nodes)
     internal = sum(d >= 3 for _, d in structure.dofs.free)
     contacts = sum(x.role.collides for x in structure.laws)
-    dampers = sum(x.role.damping_energy for x in structure.laws)
+    dampers = sum(x.role is Role.DAMPER for x in structure.laws)
     counts = {
         "nodes": len(nodes),
         "elements": len(structure.model.elements),
