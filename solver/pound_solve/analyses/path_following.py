@@ -51,9 +51,8 @@ JUMP = 1e-12  #: share of its terms above which a force has changed at once
 NEAR = 1e-13  #: share of its terms below which an event is reached
 FAINT = 1e-6  #: share of the stiffness it will have below which a curved contact has only just closed
 INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
-ITERATIONS = (
-    80  #: of Newton's method to one point; it comes back to a contact of overlap^n by 1 - 1/n a time
-)
+#: of Newton's method to one point; it comes back to a contact of overlap^n by 1 - 1/n a time
+ITERATIONS = 80
 MOST_CHANGES = 10_000
 MOST_RETURNS = 5  #: of all laws to the same branches at one point
 
@@ -538,7 +537,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
 
     Raises
     ------
-    Unstable
+    InstabilityError
         K is not positive definite on what the load moves.
     """
     held = used_rows(k)
@@ -595,7 +594,7 @@ def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) 
 
     Raises
     ------
-    Unstable
+    InstabilityError
         The control does not fix the motion.
     """
     at = np.flatnonzero(used_rows(k) | (push != 0.0) | (control != 0.0))

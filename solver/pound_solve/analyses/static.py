@@ -71,7 +71,7 @@ def solve(structure: Structure) -> StaticState:
 
     Raises
     ------
-    Unstable
+    InstabilityError
         A loaded part is a mechanism or buckles, from the start or after yielding.
     """
     state = loaded(structure)

@@ -1,4 +1,4 @@
-r"""Whether the answer hangs on rounding where laws give way at one instant.
+r"""Whether the answer depends on rounding where laws give way at one instant.
 
 Between laws in series the split of the deformation follows from the tangent stiffness of the unknowns
 without mass, which inertia does not hold.  If it is positive definite with the tangents of *all* laws that

@@ -105,9 +105,8 @@ class BranchKind(IntEnum):
     VISCOUS = 3  #: the rate alone makes the force
     OPEN = 4  #: without force: a contact that is open, a spring that is slack or has failed
     PRESSED = 5  #: a closed contact; its entry is a collision
-    RELEASED = (
-        6  #: a contact without force and with overlap left; pressed again, the same collision goes on
-    )
+    #: a contact without force and with overlap left; pressed again, the same collision goes on
+    RELEASED = 6
     HELD = 7  #: a closed rigid contact: the deformation is constant, the force a reaction
 
     @property

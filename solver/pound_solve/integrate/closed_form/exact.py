@@ -147,9 +147,9 @@ class Exact(EventDrivenRun):
             self._check_progress(float(window.lengths[0]), goal - self.t)
         dense = self._dense_output(window.lengths, window.starts)
         if dense.intervals > 1 and self.runs_away(dense.end[1]):
-            self._release()  # the works that wait may have put in what it moves with
+            self._release()  # the deferred works may be the energy that it moves with
             if self.runs_away(dense.end[1]):
-                self.windows.narrow()  # so that a stop is told at the first goal
+                self.windows.narrow()  # so that a stop is reported at the first goal
                 return cursor
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
@@ -292,7 +292,7 @@ class Exact(EventDrivenRun):
         if self.work.entries > MAX_DEFERRED or ends or grows:
             self._release()
             if count:
-                self.t = float(self.goals[cursor + count - 1])  # where a stop is told
+                self.t = float(self.goals[cursor + count - 1])  # where a stop is reported
                 self.stop_growth(dense.motions_at_ends(np.array([count - 1]))[1][:, 0])
 
     def _release(self) -> None:

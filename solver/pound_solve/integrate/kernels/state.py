@@ -20,9 +20,8 @@ DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL, SHORT, LOOSE, STRIKE =
 #: ``K + C / e``, e a tiny time, over the massless unknowns
 WHOLE, PART, MASS, MASSLESS = range(4)
 TURN, STIFFNESS = -2, -1  #: columns of `Laws.internal` beside the rule's own (see `SecantLaw`)
-LOGGED = (
-    10  #: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
-)
+#: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
+LOGGED = 10
 
 
 class Run(Protocol):

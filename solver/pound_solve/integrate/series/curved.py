@@ -34,9 +34,8 @@ from pound_solve.laws.automaton import GAP
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
-APART, PRESSED, RELEASED = range(
-    3
-)  #: no overlap beyond rounding; a force acts; the force would be tensile, and is zero
+#: no overlap beyond rounding; a force acts; the force would be tensile, and is zero
+APART, PRESSED, RELEASED = range(3)
 TOUCH = 1e-12  #: overlap that counts as none, over the largest deformation
 RIGHT = 1e-10  #: share of the force that the last of its terms may be
 NEAR = 0.4  #: length of the first step after a touch, as a share of the time since touch

@@ -237,7 +237,7 @@ def evaluate_motion(c: Array, terms: int, s: float, h: float, order: int, out: A
         out[i] = 0.0
     k = terms
     while k >= order:
-        # four terms at once: rows are read and written more slowly than they are reckoned with
+        # four terms at once: to read and write a row takes longer than the arithmetic
         f0, f1 = derivative_factor(k, order, h), derivative_factor(k - 1, order, h)
         f2, f3 = derivative_factor(k - 2, order, h), derivative_factor(k - 3, order, h)
         s2, s3, s4 = s * s, s * s * s, s * s * s * s

@@ -149,15 +149,9 @@ def add_works(
         add_law_losses(laws, series, terms, s, h, weight, moved, works, rules)
         put += weight * string_power(laws, series, terms, s, h)
         if moved:
-            for order in range(3):
-                motion = (
-                    trial.displacement
-                    if order == 0
-                    else trial.velocity
-                    if order == 1
-                    else trial.acceleration
-                )
-                evaluate_motion(series.motion, terms, s, h, order, motion)
+            evaluate_motion(series.motion, terms, s, h, 0, trial.displacement)
+            evaluate_motion(series.motion, terms, s, h, 1, trial.velocity)
+            evaluate_motion(series.motion, terms, s, h, 2, trial.acceleration)
             supplied, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
             put += weight * supplied
             works.damping += weight * lost
@@ -445,7 +439,7 @@ def step_to_goal(
         else:
             terms, fit = expand_series(sim, series, coefs, t - begin, h)
             least, room = CUT, TERMS / terms  # terms that were not needed make room for a longer step
-        if not fit >= least:  # what is known of the motion from terms far too large misleads
+        if not fit >= least:  # terms far too large say nothing about the motion
             shorten_step(lengths, h, fit)
             pause -= 1
             continue
@@ -489,9 +483,7 @@ def reach_goal(
         return DONE
     from_modes(sim.laws, series.modal, step)
     series.modal.is_present[0] = 0
-    why = step_to_goal(
-        sim, rules, series, coefs, begin, goal, pause
-    )  # fmt: skip
+    why = step_to_goal(sim, rules, series, coefs, begin, goal, pause)
     if why == DONE:
         multiply(sim.linear.mass, step.now.velocity, step.product)
         kinetic = 0.5 * dot(step.now.velocity, step.product)

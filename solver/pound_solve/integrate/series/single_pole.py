@@ -47,9 +47,8 @@ from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
 LAST = 6  #: number of the last term of a series
-ROOT = (
-    2  #: number of the root of that polynomial, from the least, that 1/gamma is: so the method is A-stable
-)
+#: number of the root of that polynomial, from the least, that 1/gamma is: so the method is A-stable
+ROOT = 2
 GROW = 2.0  #: how much longer than the last a step may be
 SAFE = 0.5  #: share of the error that a step is made for
 NOISE = 1e-24  #: share of the energy of a state that the rounding of a term may have

@@ -40,31 +40,34 @@ from pound_solve.laws.automaton import (
 )
 from pound_solve.laws.mirror import inward, pair, side
 
+# parameters of a law, after a stiffness of zero: dashpot and exponent; for both directions the largest
+# forces, the rates at which they are reached, and the ends of the play
+C, ALPHA, MOST, MOST_MINUS, FAST, FAST_MINUS, FROM, FROM_MINUS = range(1, 9)
 PLAY, MOVING, LIMITED = 0, 1, 3  #: branches of an extending damper; those of a shortening one are one more
 CORE = 1e-12  #: rate up to which the force is straight, as a share of the rate one, at which it is C
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """In the play, or without one; the internal variable is the side of the play."""
-    return (PLAY if p[7] > p[8] else MOVING), (0.0,)
+    return (PLAY if p[FROM] > p[FROM_MINUS] else MOVING), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Events: a reversal, the limit is reached or no longer, the play begins or ends."""
     if at == PLAY:
-        return linear(0.0, 0.0, above(p[7]), below(p[8]))
+        return linear(0.0, 0.0, above(p[FROM]), below(p[FROM_MINUS]))
     s = side(at)
-    fast = p[5] if s > 0.0 else p[6]
-    play = inward(m[0], p[7] if m[0] > 0.0 else -p[8]) if m[0] != 0.0 else NEVER
+    fast = p[FAST] if s > 0.0 else p[FAST_MINUS]
+    play = inward(m[0], p[FROM] if m[0] > 0.0 else -p[FROM_MINUS]) if m[0] != 0.0 else NEVER
     if at >= LIMITED:
-        return linear(0.0, s * (p[3] if s > 0.0 else p[4]), (0.0, -s, fast), play)
+        return linear(0.0, s * (p[MOST] if s > 0.0 else p[MOST_MINUS]), (0.0, -s, fast), play)
     return linear(0.0, 0.0, (0.0, -s, -CORE), (0.0, s, -fast) if fast < math.inf else NEVER, play)
 
 
 def engaged(p: Numbers, v: float) -> int:
     """Branch of a damper that moves at the rate `v`."""
     s = 1.0 if v >= 0.0 else -1.0
-    return pair(LIMITED if s * v > (p[5] if s > 0.0 else p[6]) else MOVING, s)
+    return pair(LIMITED if s * v > (p[FAST] if s > 0.0 else p[FAST_MINUS]) else MOVING, s)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -94,8 +97,8 @@ def curve(
         return 0.0, 0.0, 0.0, 0.0
     s = side(at)
     if at >= LIMITED:
-        return s * (p[3] if s > 0.0 else p[4]), 0.0, 0.0, 0.0
-    c, alpha = p[1], p[2]
+        return s * (p[MOST] if s > 0.0 else p[MOST_MINUS]), 0.0, 0.0, 0.0
+    c, alpha = p[C], p[ALPHA]
     if alpha < 1.0 and s * v < CORE:
         slope = c * CORE ** (alpha - 1.0)
         return slope * v, 0.0, slope, 0.0
@@ -113,7 +116,7 @@ def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Force as a power of the rate, see `Rule`."""
     moving = at != PLAY and at < LIMITED
-    return (side(at) * p[1] if moving else 0.0), p[2], 0.0, 0.0, 0.0, 0.0
+    return (side(at) * p[C] if moving else 0.0), p[ALPHA], 0.0, 0.0, 0.0, 0.0
 
 
 RULE = Rule(

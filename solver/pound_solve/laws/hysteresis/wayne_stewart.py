@@ -48,12 +48,18 @@ SLACK, FAILED, UNLOADING = 0, 1, 2
 #: the first of each pair of branches: positive side, negative side
 ELASTIC, YIELDING, BEYOND, PINCHED, RELOADING = 3, 5, 7, 9, 11
 
+# parameters of a law: stiffness, yield forces and share of hardening; ultimate forces, intercept of the
+# pinched line, slope beyond the ultimate force and ends of the slack; numbers of the target and of the
+# stiffness of reloading, and slopes of the pinched and the unloading lines (slopes as shares of K)
+K, FY, FY_MINUS, R, FU, FU_MINUS, INTERCEPT, TRI = range(8)
+GAP_PLUS, GAP_MINUS, BETA, ALPHA, PINCH, UNLOAD = range(8, 14)
+
 Line = tuple[float, float]  #: slope and force at zero deformation
 
 
 def is_slack(p: Numbers) -> bool:
     """Whether there is a slack: at a width of zero, joints without mass would lose their hold at rest."""
-    return p[8] > p[9]
+    return p[GAP_PLUS] > p[GAP_MINUS]
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -63,11 +69,11 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
     """Slackness, deformations at yield and at the ultimate force, line to it and line beyond (mirrored)."""
-    k, r, tri = p[0], p[3], p[7]
+    k, r, tri = p[K], p[R], p[TRI]
     if s > 0.0:
-        fy, fu, gap = p[1], p[4], p[8]
+        fy, fu, gap = p[FY], p[FU], p[GAP_PLUS]
     else:
-        fy, fu, gap = -p[2], -p[5], -p[9]
+        fy, fu, gap = -p[FY_MINUS], -p[FU_MINUS], -p[GAP_MINUS]
     dy = gap + fy / k
     # without hardening the ultimate force is the yield force
     du = dy + (fu - fy) / (r * k) if r > 0.0 else dy
@@ -81,22 +87,22 @@ def first_yield(p: Numbers) -> tuple[float, float]:
 
 def pinched(p: Numbers) -> Line:
     """Line that a side is reloaded along first."""
-    return p[12] * p[0], p[6]
+    return p[PINCH] * p[K], p[INTERCEPT]
 
 
 def unloading(p: Numbers) -> float:
     """Stiffness of the lines that lead from the path of one side to that of the other."""
-    return p[13] * p[0]
+    return p[UNLOAD] * p[K]
 
 
 def steepest(p: Numbers) -> float:
     """Stiffness of the steepest line."""
-    return max(p[0], unloading(p))
+    return max(p[K], unloading(p))
 
 
 def reloading(p: Numbers, s: float, m: Numbers) -> tuple[float, float, float]:
     """Target deformation and the line towards it: slope and force at zero deformation."""
-    k, beta, alpha = p[0], p[10], p[11]
+    k, beta, alpha = p[K], p[BETA], p[ALPHA]
     gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
     most = m[0] if s > 0.0 else m[1]
     if most == 0.0:
@@ -138,9 +144,9 @@ def upper_end(p: Numbers, s: float, m: Numbers, foot: float) -> tuple[float, flo
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Nothing; along the backbone; between the paths of both sides; along a side's pinched path."""
-    k = p[0]
+    k = p[K]
     if at == SLACK:
-        return linear(0.0, 0.0, above(p[8]), below(p[9]))
+        return linear(0.0, 0.0, above(p[GAP_PLUS]), below(p[GAP_MINUS]))
     if at == FAILED:
         return linear(0.0, 0.0)
     if at == UNLOADING:
@@ -209,7 +215,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     if at < UNLOADING or f == 0.0:
         return 0.0
     if ELASTIC <= at < YIELDING:
-        return 0.5 * f * f / p[0]
+        return 0.5 * f * f / p[K]
     s = -1.0 if f > 0.0 else 1.0
     ku = unloading(p)
     slope, f0 = pinched(p)

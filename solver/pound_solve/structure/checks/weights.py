@@ -22,10 +22,10 @@ NEWTON: Final[Mapping[str, float]] = MappingProxyType(
 MATERIALS: Final = ((15e9, 60e9, 24e3), (180e9, 220e9, 77e3))
 EARTH: Final = 9.81  #: [m/s^2]
 SPUN: Final = 0.1  #: share of gravity by which that of a model in a centrifuge differs at least
-#: share of the bare beams and columns in all weight; slabs and walls make it 0.1 to 0.45, and masses in
-#: place of weights ten times that
+#: share of beams and columns in the whole weight: 0.1 to 0.45 with slabs and walls, ten times that where
+#: masses are written in place of weights
 BARE: Final = 0.6
-#: strain of columns under all weight; design stresses of concrete, steel and timber make 0.0003 to 0.0008
+#: strain of columns under the whole weight: 0.0003 to 0.0008 at design stresses of concrete, steel, timber
 SQUASHED: Final = 1e-3
 #: strength of the lowest storey over the weight; sliding bearings have 0.02, walls of one storey 3
 WEAKEST, STRONGEST = 0.002, 20.0

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
-from pound_solve.structure.elements.base import Role
 
 
 def rows(run: RunRecord) -> list[Row]:
     """Counts; those of the degrees of freedom add up to the unknowns."""
+    from pound_solve.structure.elements.base import Role  # not needed to read a report
+
     structure = run.structure
     nodes, moved = structure.model.nodes.values(), len(structure.dofs.moved)
     fixed = sum(len(n.fixed) for n in nodes) - moved
