@@ -11,9 +11,8 @@ from typing import Final
 from pound_legacy.lines import Row, row
 
 HEAD: Final = 20_000  #: characters that decide
-_LINES = (
-    14  #: data lines that are looked at: the title, up to six of control and some that are out of place
-)
+#: data lines that are looked at: the title, up to six of control and some that are out of place
+_LINES = 14
 _LEAST = 6  #: items of a control line
 _CONTROL_2D = 4  #: control lines of a plane deck
 

@@ -19,13 +19,8 @@ from pound_solve.editor.reading import Reading
 
 MOST: Final = 1000  #: nodes or elements
 _CARDS: Final = frozenset(spec.name for spec in CARDS)
-_NUMBERS: Final = (
-    Kind.REAL,
-    Kind.INT,
-    Kind.NODE,
-    Kind.NODES,
-    Kind.ELEMENTS,
-)  #: kinds that take expressions
+#: kinds that take expressions
+_NUMBERS: Final = (Kind.REAL, Kind.INT, Kind.NODE, Kind.NODES, Kind.ELEMENTS)
 _PIECE: Final = re.compile(r"""(?:"[^"]*"?|'[^']*'?|[^\s"'])+""")
 _TIGHT: Final = re.compile(r"\s*=\s*")
 _OPEN: Final = re.compile(r"""[^"']*("[^"]*|'[^']*)$""")

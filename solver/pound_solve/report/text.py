@@ -31,9 +31,8 @@ _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
 _DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant, by format
 _WHOLE: Final = 7  #: digits before the point from which on a number takes an exponent
-_DUST: Final = (
-    1e-12  #: share of the largest value of a block of a column below which rounding prints as zero
-)
+#: share of the largest value of a block of a column below which rounding prints as zero
+_DUST: Final = 1e-12
 
 _TINY: Final = 1e-300  #: prints as zero in any case
 

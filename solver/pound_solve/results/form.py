@@ -20,9 +20,8 @@ SEALED_SINCE: Final = (2, 0)
 HEAD: Final = ("filetype", "format_version", "program_version", "title", "units", "status", "message")
 DIGEST: Final = "digest"  #: name of the attribute by which a part is known to be as it was written
 DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same of what differs between two runs of a deck
-IDENTITY: Final = (
-    "identity"  #: name of the text in the group of the saved state that says what it belongs to
-)
+#: name of the text in the group of the saved state that says what it belongs to
+IDENTITY: Final = "identity"
 #: attributes that other programs need to see the axes of a history; they repeat what its own attributes say
 FOR_OTHERS: Final = frozenset(
     ("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "coordinates", "units", "long_name")

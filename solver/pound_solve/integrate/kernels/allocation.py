@@ -25,9 +25,8 @@ from pound_solve.structure.reduction import ReducedSystem
 #: samples and transitions kept between two visits of Python, which cost 2 ms each
 SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
 MOST_HELD = 2**20  #: numbers of one kind in those samples at most, except that two samples always fit
-FEWEST_SHOWN = (
-    64  #: motions of one step, and of whole steps between two visits, that envelopes see at least
-)
+#: motions of one step, and of whole steps between two visits, that envelopes see at least
+FEWEST_SHOWN = 64
 ROUNDING = 16.0 * float(np.finfo(float).eps)  #: share of a force that solving for it loses
 INSTANT = 1e-6  #: longest time e by which massless velocities are found, as a share of the longest step
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries

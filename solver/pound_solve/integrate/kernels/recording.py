@@ -48,9 +48,8 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     if laws.viscous[law] and laws.damping[law] != 0.0:  # damping is no part of a spring's force
         value += laws.damping[law] * v
         slope += laws.damping[law] * row_product(laws.rows, law, now.acceleration)
-        if touches_massless(
-            linear, laws, law
-        ):  # its acceleration is a jump of its velocity over a step, or a part
+        # the acceleration of an unknown without mass is a jump of its velocity over a step, or a part
+        if touches_massless(linear, laws, law):
             slope = 0.0
     return value, slope
 

@@ -232,9 +232,8 @@ def change_branches(
     stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
     change_branch(sim, rules, series, now, event)
     note_ties(sim, rules, event.law, stiffness, offset)
-    for i in range(
-        len(laws.rule) if len(series.massless.unknown) == 0 else 0
-    ):  # else `settle_state` decides
+    # with unknowns without mass `settle_state` decides
+    for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):
         if i != event.law and series.rigid.number[i] < 0:
             other = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
             if other.law >= 0 and other.event_index >= 0 and other.time <= event.time + instant / h:

@@ -64,9 +64,8 @@ def solve_part(
     laws, run = sim.laws, sim.run
     for halvings in range(MOST_HALVINGS + 1):
         if at == PART:
-            if (
-                laws.curved.any()
-            ):  # what is tried from here on moves the tangents away from the factor at hand
+            # trials from here on move the tangents of curved laws away from the factor at hand
+            if laws.curved.any():
                 run.updates = REFRESH + 1
             why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:

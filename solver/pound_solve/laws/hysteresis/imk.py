@@ -47,9 +47,8 @@ from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
 FAILED = 0
-BRANCHES = BranchKind.OPEN.named(
-    STRENGTHLESS
-)  #: the rules' own come in pairs after it: positive side, negative side
+#: the rules' own come in pairs after it: positive side, negative side
+BRANCHES = BranchKind.OPEN.named(STRENGTHLESS)
 
 # Internal variables: five numbers of each side, mirrored (the first two are F_y and F_ref), then the
 # unloading stiffness now and at the start of the excursion, where it started, the energy of the finished

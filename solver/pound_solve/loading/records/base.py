@@ -22,9 +22,8 @@ import numpy as np
 from pound_solve.numerics.types import Array
 
 HEAD: Final = 4096  #: characters that a sniffer sees at most
-LEAST: Final = (
-    1e-9  #: bounds of steps, rates and factors of headers: beyond them, a number is no such thing
-)
+#: bounds of steps, rates and factors of headers: beyond them, a number is no such thing
+LEAST: Final = 1e-9
 MOST: Final = 1e9
 
 

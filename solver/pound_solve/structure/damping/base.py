@@ -21,9 +21,8 @@ BUILDING = Field(
     default="",
     doc="name of the building to damp by its own modes; omitted: the whole structure",
 )
-NODES = Field(
-    "NODES", Kind.NODES, default=None, doc="all nodes of one building, in place of its name"
-)  #: of the models that are made of modes
+#: of the models that are made of modes
+NODES = Field("NODES", Kind.NODES, default=None, doc="all nodes of one building, in place of its name")
 
 
 @dataclass(frozen=True)
@@ -84,13 +83,14 @@ class DampingContext:
         return np.asarray((weighted * rates) @ weighted.T)
 
 
+#: of the models that are made of modes
 AFTER = Field(
     "AFTER",
     Kind.WORD,
     default="REST",
     words=("REST", "STATIC"),
     doc="modes of the structure at rest, or of the loaded structure, as in MODAL AFTER=STATIC",
-)  #: of the models that are made of modes
+)
 
 
 class Chosen(NamedTuple):
