@@ -434,7 +434,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     monkeypatch.setattr(step_refinement.StepRefinement, "least_cost", least_cost)
     found = run(tmp_path, "AUTO TOL=1e-5")
     assert found.status == "done" and len(others) > 3 and spent
-    assert sum(spent) <= 0.5 * (others[-1] + trial.REST + trial.loading()) * (1 + 1e-12)
+    assert sum(spent) <= 0.5 * (others[-1] + trial.COST_OF_REST + trial.loading()) * (1 + 1e-12)
 
 
 @pytest.mark.parametrize(("code", "status"), [("A503", "done"), ("A501", "stopped")])

@@ -136,7 +136,7 @@ def test_bends_are_no_fewer_than_extremes(c: Array) -> None:
     steps = np.diff(on(c, np.linspace(0.0, 1.0, 400)))
     seen = steps[np.abs(steps) > 10 * noise(c)]
     turns = int((np.diff(np.sign(seen)) != 0).sum())
-    noise_here = polynomial_roots.NOISE * float(np.abs(c).sum())
+    noise_here = polynomial_roots.COEFFICIENT_ROUNDING * float(np.abs(c).sum())
     first, count = polynomial_roots.sign_changes(p, terms, CELLS, noise_here)
     assert count >= turns
     if count == 0 and len(seen):

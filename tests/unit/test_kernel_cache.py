@@ -13,7 +13,7 @@ from kernels import NUMBA
 from pound_solve.cli.progress import StatusLine
 from pound_solve.numerics import jit, kernel_cache
 from pound_solve.numerics.digest import digest
-from pound_solve.numerics.kernel_cache import NOT_KEPT, UNUSED, VARIABLE, Place
+from pound_solve.numerics.kernel_cache import MAX_AGE, NOT_KEPT, VARIABLE, Place
 
 POSIX = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owners here")
 OWN = f"pound-solve-{os.getuid() if hasattr(os, 'getuid') else 0}"
@@ -124,7 +124,7 @@ def test_nobody_elses_code_is_loaded(places: Path, monkeypatch: pytest.MonkeyPat
 
 def test_versions_that_no_run_uses_any_more_go(places: Path) -> None:
     root = kernel_cache.user_cache()
-    before = kernel_cache.time.time() - 1.01 * UNUSED
+    before = kernel_cache.time.time() - 1.01 * MAX_AGE
     names = {
         "0123456789abcdef": True,
         "0123456789abcdef-old-7": True,
@@ -142,7 +142,7 @@ def test_versions_that_no_run_uses_any_more_go(places: Path) -> None:
 def test_a_run_keeps_its_version_alive(places: Path) -> None:
     own = place().folder
     assert own is not None
-    before = kernel_cache.time.time() - 2 * UNUSED
+    before = kernel_cache.time.time() - 2 * MAX_AGE
     os.utime(own, (before, before))
     (own / "kernel").write_text("")
     assert place().folder == own and (own / "kernel").exists()
@@ -153,7 +153,7 @@ def test_two_processes_prune_at_once(places: Path, monkeypatch: pytest.MonkeyPat
     root = kernel_cache.user_cache()
     old = root / "0123456789abcdef"
     old.mkdir(parents=True)
-    before = kernel_cache.time.time() - 2 * UNUSED
+    before = kernel_cache.time.time() - 2 * MAX_AGE
     os.utime(old, (before, before))
     rename = Path.rename
 

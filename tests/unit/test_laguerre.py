@@ -32,7 +32,7 @@ from unit.test_taylor_massless import HELD, ZENER, hinged, of_first_order
 from unit.test_taylor_modal import LIGHT
 from verification.cases import Ran, run_text
 
-LAST, GAMMA = single_pole.LAST, single_pole.pole(single_pole.LAST, single_pole.ROOT)
+LAST, GAMMA = single_pole.LAST_TERM, single_pole.pole(single_pole.LAST_TERM, single_pole.ROOT)
 
 
 def by(text: str, tol: float, **params: object) -> Ran:

@@ -13,9 +13,9 @@ from decks import scene_of, structure_of
 from pound_solve.catalog import catalog
 from pound_solve.integrate.closed_form.decomposition import make_propagator
 from pound_solve.integrate.propagators.state_space import held_space, state_space
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.rigid.contacts import RigidContacts
-from pound_solve.integrate.rigid.instants import LOST, SLOW
+from pound_solve.integrate.rigid.instants import NO_REBOUND, REBOUND_ROUNDING
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError
@@ -120,7 +120,7 @@ def test_impacts_keep_momentum_and_never_win_energy(n: int, seed: int) -> None:
     es = rng.choice([0.0, 0.3, 0.8, 1.0], n - 1).tolist()
     r = RigidContacts(scene_of(row(masses.tolist(), v.tolist(), es)))
     rates = r.rows @ v
-    impulse, lost, after = r.impact(rates, np.ones(n - 1, bool), SLOW * np.abs(rates))
+    impulse, lost, after = r.impact(rates, np.ones(n - 1, bool), NO_REBOUND * np.abs(rates))
     w = v - r.velocity_change @ impulse
     scale = float(masses @ v**2)
     assert np.all(impulse >= 0.0) and lost.sum() >= -1e-14 * scale
@@ -191,7 +191,7 @@ def test_a_ball_bounces_by_the_closed_form_until_it_rests(method: str, e: float)
     assert c["approach_velocity"][few] == pytest.approx(v0 * e ** np.arange(few.sum()), rel=1e-10)
     assert np.isnan(c["t_end"][-1]) and (c["t_end"][:-1] == c["t_start"][:-1]).all()
     zeno = t0 + 2 * v0 / g * e / (1 - e)
-    slow = max(SLOW * v0, math.sqrt(2 * g * LOST * STILL * 2 * h))
+    slow = max(NO_REBOUND * v0, math.sqrt(2 * g * REBOUND_ROUNDING * EVENT_TOLERANCE * 2 * h))
     assert -1e-14 <= zeno - c["t_start"][-1] < 2 * slow * 2 / g / (1 - e) + 1e-14
     assert r.force[-1, 0] == c["peak_force"][-1] == pytest.approx(20.0, rel=1e-14)
     assert r.u[-1, 0, 1] == pytest.approx(-h, rel=1e-15) and r.v[-1, 0, 1] == 0.0

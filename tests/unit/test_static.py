@@ -574,4 +574,4 @@ def test_a_frame_that_makes_forces_is_found_out():
     assert np.abs(ground.balance(state.u, state.states)[-1][1:]).max() < 1e-12
     ground.structure.stiffness[ground.n :] *= 1.001
     assert ground.balance(state.u, state.states)[-1][1] == pytest.approx(-0.001, rel=1e-6)
-    assert equilibrium.ROUNDING < 1e-6
+    assert equilibrium.SUM_ROUNDING < 1e-6

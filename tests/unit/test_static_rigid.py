@@ -13,7 +13,7 @@ from decks import scene_of, solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.analyses.ties import Ties
-from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts, linear_forces
+from pound_solve.integrate.rigid.contacts import ACCELERATION_ROUNDING, RigidContacts, linear_forces
 from pound_solve.numerics.types import Array
 from verification.cases import run_text
 
@@ -402,4 +402,4 @@ ANALYSIS
     u = np.array([-3e-18, -0.02])
     inputs = np.zeros((3, system.inputs.shape[1]))
     free, size = contacts.free_accelerations(forces, u, np.zeros(2), inputs)
-    assert free == pytest.approx([1.5e-12], rel=1e-12) and abs(free[0]) < ROUNDING * size[0]
+    assert free == pytest.approx([1.5e-12], rel=1e-12) and abs(free[0]) < ACCELERATION_ROUNDING * size[0]

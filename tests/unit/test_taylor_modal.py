@@ -10,7 +10,7 @@ import pytest
 from kernels import interpreted
 from pound_solve.integrate.series import modal, modal_tables
 from pound_solve.integrate.series.modal import FOLLOWED, MODES
-from pound_solve.numerics.matrices import MOST_DENSE
+from pound_solve.numerics.matrices import MAX_DENSE
 from unit.test_taylor import item, same
 from verification.cases import ROOT, Ran, run_deck, run_text
 
@@ -69,7 +69,7 @@ def test_more_unknowns_than_plain_arrays_hold(monkeypatch: pytest.MonkeyPatch) -
     """Sparse matrices, with modes and without."""
     deck, params = ROOT / "examples" / "cole2011" / "distributed.inp", {"n": 80, "t": 0.8, "gap": 0.0005}
     r = run_deck(deck, params, "TAYLOR")
-    assert int(item(r, "unknowns")) > MOST_DENSE
+    assert int(item(r, "unknowns")) > MAX_DENSE
     monkeypatch.setattr(modal_tables, "WORTH", math.inf)
     same(r, run_deck(deck, params, "TAYLOR"), 1e-9)
     assert counts(r)[1] > 0

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.numerics.crests import BEFORE, Doubts
+from pound_solve.numerics.crests import SAMPLES_BESIDE, Doubts
 from pound_solve.numerics.types import Array, Flags, Index
 
 #: places in a cell: short of its end, at which a quantity may jump
@@ -40,7 +40,7 @@ _MOST = (_GRID_UP - 1.0) + _REST_UP + EXCESS * (2.0 * _GRID_UP - 1.0)
 
 
 def among_equals(t: Array, lengths: Array) -> Flags:
-    """Which cells have `BEFORE` cells of equal length before them and one more after them, without a gap,
+    """Which cells have `SAMPLES_BESIDE` cells of equal length before them and one more after them, no gap,
     shape (n,).
 
     Parameters
@@ -48,12 +48,12 @@ def among_equals(t: Array, lengths: Array) -> Flags:
     t, lengths : ndarray, shape (n,)
         Starts of the cells, rising, and times up to which the motion from there is smooth [T].
     """
-    slack, width = EQUAL * lengths[:-1], 2 * BEFORE + 1
+    slack, width = EQUAL * lengths[:-1], 2 * SAMPLES_BESIDE + 1
     joined = (np.abs(np.diff(lengths)) <= slack) & (np.abs(np.diff(t) - lengths[:-1]) <= slack)
     equals = np.zeros(len(t), bool)
     if len(t) > width:  # the sample at the end of the last one tells, too
         runs: Flags = np.all(np.lib.stride_tricks.sliding_window_view(joined, width), axis=1)
-        equals[BEFORE : BEFORE + len(runs)] = runs
+        equals[SAMPLES_BESIDE : SAMPLES_BESIDE + len(runs)] = runs
     return equals
 
 

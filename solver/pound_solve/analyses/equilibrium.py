@@ -16,8 +16,9 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.equations import fixed_dofs, rigid_motions
 from pound_solve.structure.structure import Structure
 
-DIGITS = 16 * 2.2e-16  #: share of the terms of a sum of forces that is the rounding of a solution
-ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
+#: share of the terms of a sum of forces that is the rounding of a solution
+SOLUTION_ROUNDING = 16 * 2.2e-16
+SUM_ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
 
 
 class SupportReactions:
@@ -102,7 +103,7 @@ class SupportReactions:
         moment = max(values[:-1, 2].max(), force * np.abs(self.rigid[2]).max(initial=0.0))
         s, (full, laws) = self.structure, self._at(u, states)
         terms = abs(s.stiffness) @ np.abs(full) + abs(s.law_rows).T @ np.abs(laws) + np.abs(s.loads)
-        off = np.maximum(values[-1] - DIGITS * (np.abs(self.rigid) @ terms), 0.0)
+        off = np.maximum(values[-1] - SOLUTION_ROUNDING * (np.abs(self.rigid) @ terms), 0.0)
         return float(max(off[:2].max() / (force or 1.0), off[2] / (moment or 1.0)))
 
     def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
@@ -142,4 +143,4 @@ class SupportReactions:
 def _above_rounding(a: Array, b: Array) -> Array:
     """a @ b, with zeros where nothing but rounding is left of its terms."""
     product = a @ b
-    return np.where(np.abs(product) > ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)
+    return np.where(np.abs(product) > SUM_ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)

@@ -37,7 +37,7 @@ BALANCE = "base shear and overturning moment less inertia and loads, over the la
 CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: that much a crest between two steps may be, at ten steps a period
-STILL = 1e-13  #: share of the size of a structure below which a displacement is rounding
+DISPLACEMENT_ROUNDING = 1e-13  #: share of the size of a structure below which a displacement is rounding
 BEARING = 0.25  #: height over that of the highest storey below which a drift is one of a bearing
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
@@ -168,12 +168,12 @@ class HistoryResult:
 
     def _rounding(self) -> float:
         """Energy below which there is no motion but rounding [F L]: the largest force of a spring or
-        contact times a share `STILL` of the structure's size.
+        contact times a share `DISPLACEMENT_ROUNDING` of the structure's size.
         """
         nodes = self.system.structure.model.nodes.values()
         size = float(np.ptp([(n.x, n.y) for n in nodes], axis=0).max())
         forces = (max(abs(f.high), abs(f.low)) for f in self.returned.peaks.force)
-        return STILL * size * max((f for f in forces if math.isfinite(f)), default=0.0)
+        return DISPLACEMENT_ROUNDING * size * max((f for f in forces if math.isfinite(f)), default=0.0)
 
     @property
     def _allowed(self) -> float:

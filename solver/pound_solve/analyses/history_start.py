@@ -14,7 +14,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
-ROUNDING = 1e-12  #: share of a deformation by which a rigid contact may be short of its gap
+GAP_ROUNDING = 1e-12  #: share of a deformation by which a rigid contact may be short of its gap
 
 
 def initial(structure: Structure) -> tuple[Array, Array]:
@@ -60,7 +60,7 @@ def begin(
 def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
     """State of a law that is driven from the deformation `d0` to `d1`, where it has a rate."""
     if law.rigid:  # it stays closed where it is not pulled open, and takes its force from the motion
-        closed = law.branch(state).held and d1 - law.p[2] >= -ROUNDING * max(abs(d0), law.p[2])
+        closed = law.branch(state).held and d1 - law.p[2] >= -GAP_ROUNDING * max(abs(d0), law.p[2])
         return law.transition(law.start(), 0, d1) if closed else law.start()
     return consistent(law, drive(law, state, d0, d1) if d0 != d1 else state, d1, rate)
 

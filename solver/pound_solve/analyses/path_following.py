@@ -45,16 +45,17 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import label
 from pound_solve.structure.structure import Structure
 
-NOISE = 1e-12  #: share of its terms below which a rate is rounding
-SOLVED = 1e-14  #: share of the fastest rate, both times the root of their stiffness, that is rounding
-JUMP = 1e-12  #: share of its terms above which a force has changed at once
-NEAR = 1e-13  #: share of its terms below which an event is reached
-FAINT = 1e-6  #: share of the stiffness it will have below which a curved contact has only just closed
+RATE_ROUNDING = 1e-12  #: share of its terms below which a rate is rounding
+#: share of the fastest rate, both times the root of their stiffness, that is rounding
+SOLUTION_ROUNDING = 1e-14
+FORCE_JUMP = 1e-12  #: share of its terms above which a force has changed at once
+EVENT_REACHED = 1e-13  #: share of its terms below which an event is reached
+JUST_CLOSED = 1e-6  #: share of the stiffness it will have below which a curved contact has only just closed
 INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
 #: of Newton's method to one point; it comes back to a contact of overlap^n by 1 - 1/n a time
 ITERATIONS = 80
-MOST_CHANGES = 10_000
-MOST_RETURNS = 5  #: of all laws to the same branches at one point
+MAX_CHANGES = 10_000
+MAX_RETURNS = 5  #: of all laws to the same branches at one point
 
 
 class InstabilityError(Exception):
@@ -201,7 +202,7 @@ class EquilibriumPath:
         secants = [
             _secant(s.law, x, size) if s.role.collides else 0.0 for s, x in zip(self.laws, self.states)
         ]
-        return np.where(tangents < FAINT * np.array(secants), secants, tangents)
+        return np.where(tangents < JUST_CLOSED * np.array(secants), secants, tangents)
 
     def tangent(self) -> Matrix:
         """Tangent stiffness, shape (n_free, n_free)."""
@@ -248,16 +249,16 @@ class EquilibriumPath:
         released = held - law.force(self.states[i], d)[0]
         if law.rigid:  # it opens without force
             self.ties = self._closed()
-        elif abs(released) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
+        elif abs(released) > FORCE_JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
             self._lost = self._lost + released * self.rows[i]
         self.changes += 1
-        if self.changes > MOST_CHANGES:
+        if self.changes > MAX_CHANGES:
             raise InstabilityError(
-                f"more than {MOST_CHANGES} changes of state of springs and contacts", "A507"
+                f"more than {MAX_CHANGES} changes of state of springs and contacts", "A507"
             )
         same = tuple(state[0] for state in self.states)
         self._here[same] += 1
-        if self._here[same] > MOST_RETURNS:
+        if self._here[same] > MAX_RETURNS:
             raise InstabilityError(
                 "there is no further equilibrium without a jump: "
                 f"element {self.laws[i].element} loses its strength "
@@ -326,14 +327,14 @@ class EquilibriumPath:
                         yield PathEvent(i, n), 0.0
                 elif a * v > abs(a) * least:
                     off = a * x + c
-                    reached = off > -NEAR * (abs(a) * terms + abs(c))
+                    reached = off > -EVENT_REACHED * (abs(a) * terms + abs(c))
                     yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
 
     def _blocking(self, motion: Array) -> PathEvent | None:
         """Event of the first open contact that touches and that a motion of a mechanism closes; None for
         none.
         """
-        rate, noise = self.rows @ motion, NOISE * (np.abs(self.rows) @ np.abs(motion))
+        rate, noise = self.rows @ motion, RATE_ROUNDING * (np.abs(self.rows) @ np.abs(motion))
         rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
         # the motion leaves those that press where they are, but for rounding
         rate[self._stiffnesses(self.deformations(self.u, self.factor)) > 0.0] = 0.0
@@ -381,12 +382,14 @@ class EquilibriumPath:
         rate = self.rows @ du - self.lead * rise
         terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise)
         fastest = float(np.abs(du / self._root).max(initial=0.0))
-        noise = np.maximum(NOISE * terms, SOLVED * fastest * (np.abs(self.rows) @ self._root))
+        noise = np.maximum(
+            RATE_ROUNDING * terms, SOLUTION_ROUNDING * fastest * (np.abs(self.rows) @ self._root)
+        )
         if at := list(self.ties.laws):
             k, push = self._stiffness(u, stiffness), self._push(stiffness)
             rate[at] = self.ties.forces(self._lost + rise * push - k @ du)
             most = np.abs(self._lost) + np.abs(rise * push) + np.abs(k) @ np.abs(du)
-            noise[at] = NOISE * self.ties.magnitudes(most)
+            noise[at] = RATE_ROUNDING * self.ties.magnitudes(most)
         return Rates(du, rise, rate, noise)
 
     def _move(self, u: Array, factor: float) -> None:
@@ -450,7 +453,9 @@ class EquilibriumPath:
             for a, b, c in branch.events:
                 reversal = a == 0.0
                 now, small = (
-                    (b * vi, abs(b) * least) if reversal else (a * di + c, NEAR * (abs(a) * size + abs(c)))
+                    (b * vi, abs(b) * least)
+                    if reversal
+                    else (a * di + c, EVENT_REACHED * (abs(a) * size + abs(c)))
                 )
                 values.append(0.0 if abs(now) <= small else now)
         return values

@@ -39,7 +39,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.analyses import static
-from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
+from pound_solve.analyses.equilibrium import SUM_ROUNDING, SupportReactions
 from pound_solve.analyses.load_pattern import LoadPattern
 from pound_solve.analyses.path_following import Change, EquilibriumPath, InstabilityError, Mark, PathEvent
 from pound_solve.analyses.static import StaticState
@@ -99,7 +99,7 @@ class PushoverResult:
     def check(self) -> Check:
         """Self-check: whether all forces balance."""
         about = "pushover, force out of balance over the largest"
-        return at_most(Subject.EQUILIBRIUM, about, self.unbalanced, ROUNDING, "forces do not balance")
+        return at_most(Subject.EQUILIBRIUM, about, self.unbalanced, SUM_ROUNDING, "forces do not balance")
 
     def add(self, point: CapacityPoint) -> None:
         """Add a point to the curve; it replaces the last one at the same displacement and factor."""

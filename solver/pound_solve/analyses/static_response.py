@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
+from pound_solve.analyses.equilibrium import SUM_ROUNDING, SupportReactions
 from pound_solve.analyses.static import StaticState
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
@@ -60,7 +60,7 @@ class StaticResponse:
         """Self-check: whether all forces balance."""
         about = "static forces and moments out of balance over the largest"
         told = "loads and reactions do not balance"
-        return at_most(Subject.EQUILIBRIUM, about, self.imbalance, ROUNDING, told)
+        return at_most(Subject.EQUILIBRIUM, about, self.imbalance, SUM_ROUNDING, told)
 
 
 def without_rounding(values: Array, kinds: Sequence[str]) -> Array:

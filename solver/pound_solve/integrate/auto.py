@@ -31,7 +31,7 @@ from pound_solve.integrate.convergence.compared import ALL, RESPONSE, tolerances
 from pound_solve.integrate.convergence.replay import Replay, Watch
 from pound_solve.integrate.convergence.step_refinement import StepRefinement
 from pound_solve.integrate.convergence.tolerance_refinement import ToleranceRefinement, UnfitError
-from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
+from pound_solve.integrate.intervals import MAX_UNKNOWNS, MIN_RADIANS, usual
 from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
     Outcome,
@@ -51,7 +51,8 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
-MAX_SERIES = 500_000  #: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
+#: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
+MAX_TAYLOR_STEPS = 500_000
 #: costs up to which TAYLOR is taken before runs whose errors have to be estimated: those of NEWMARK, and
 #: of LAGUERRE where it seems to cost less
 SERIES_FIRST, SERIES_ALWAYS = 1.0, 0.25
@@ -78,9 +79,9 @@ def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
     """
     length = usual(times)
     curved = any(s.law.curved or s.law.rigid for s in system.structure.laws)
-    small = system.size <= MOST_UNKNOWNS and not massless(system.mass).any()
+    small = system.size <= MAX_UNKNOWNS and not massless(system.mass).any()
     straight = system.excitation.coefs.shape[1] <= 2
-    if curved or not small or not straight or rate * length < WORTH:
+    if curved or not small or not straight or rate * length < MIN_RADIANS:
         return 0
     return int(np.isclose(np.diff(times), length, rtol=1e-9, atol=0.0).sum())
 
@@ -121,7 +122,7 @@ def by_few_series(problem: Problem[EnvelopeRecorder]) -> Outcome | None:
         return by_series(problem)
     replay, known = Replay(problem.recorder), len(system.decisions)
     try:
-        outcome = by_series(problem.recorded_by(replay), STEPS=MAX_SERIES)
+        outcome = by_series(problem.recorded_by(replay), STEPS=MAX_TAYLOR_STEPS)
     except Stop as stop:
         if stop.code == "A502":
             del system.decisions[known:]

@@ -6,10 +6,10 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 
-SAME = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
-FEW = 50  #: number of intervals of one length up to which tables do not pay
-MOST_UNKNOWNS = 200  #: of a part
-WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
+SAME_LENGTH = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
+FEW_INTERVALS = 50  #: number of intervals of one length up to which tables do not pay
+MAX_UNKNOWNS = 200  #: of a part
+MIN_RADIANS = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
 
 
 def usual(times: Array) -> float:
@@ -18,11 +18,11 @@ def usual(times: Array) -> float:
     Each is known to the rounding of the clock, and their mean far better: over thousands of periods that
     counts.
     """
-    if len(times) <= FEW:
+    if len(times) <= FEW_INTERVALS:
         return 0.0
     lengths = np.sort(np.diff(times))
-    ends = np.flatnonzero(np.diff(lengths, append=np.inf) > SAME * lengths) + 1
+    ends = np.flatnonzero(np.diff(lengths, append=np.inf) > SAME_LENGTH * lengths) + 1
     counts = np.diff(ends, prepend=0)
     most = int(np.argmax(counts))
     alike = lengths[ends[most] - counts[most] : ends[most]]
-    return float(alike.mean()) if len(alike) > FEW else 0.0
+    return float(alike.mean()) if len(alike) > FEW_INTERVALS else 0.0

@@ -18,13 +18,14 @@ from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+EVENT_TOLERANCE = 1e-12  #: share of its largest value below which an exit counts as not reached
+SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
-MOST_BETWEEN = 0.1  #: limit of such a share; a sine with seven steps in its period reaches it
-SHARP = 1e-2  #: share of a spring's largest force that rounding may make
-RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
+MAX_BETWEEN = 0.1  #: limit of such a share; a sine with seven steps in its period reaches it
+MAX_ROUNDING = 1e-2  #: share of a spring's largest force that rounding may make
+RUNAWAY_TEXT = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
-CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
+CHATTER_TEXT = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
 INTERRUPTED = "interrupted; what was computed up to then is kept"
 
 
@@ -347,11 +348,11 @@ def remedy(system: ReducedSystem) -> str:
     return "NEWMARK EVENTS=STEPPED"  # which passes over the changes
 
 
-def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> list[Check]:
+def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = EVENT_TOLERANCE) -> list[Check]:
     """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
     of which a share `still` of the largest is indistinguishable from zero.
     """
-    worst, place = SHARP, None
+    worst, place = MAX_ROUNDING, None
     for s, d, f in zip(laws, peaks.deformation, peaks.force):
         force = max(abs(f.high), abs(f.low))
         off = still * s.law.p[0] * max(abs(d.high), abs(d.low))
@@ -360,7 +361,9 @@ def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL
     if place is None:
         return []
     name = f"share of the force of element {place} that rounding of its deformation makes"
-    return [beyond(Subject.ROUNDING, name, worst, SHARP, "too stiff for the distance that it gives way")]
+    return [
+        beyond(Subject.ROUNDING, name, worst, MAX_ROUNDING, "too stiff for the distance that it gives way")
+    ]
 
 
 def between_check(peaks: Peaks) -> Check:
@@ -368,7 +371,7 @@ def between_check(peaks: Peaks) -> Check:
     their ends: wrong rates give peaks that never occurred.
     """
     told = "peaks lie far above both ends of a step; a shorter DT shows them"
-    return at_most(Subject.STEPS, BETWEEN, peaks.between, MOST_BETWEEN, told)
+    return at_most(Subject.STEPS, BETWEEN, peaks.between, MAX_BETWEEN, told)
 
 
 def refuse_rigid(problem: Problem[Recorder], method: str) -> None:

@@ -27,10 +27,10 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-ALONG = 1e-9  #: share of the largest change of a deformation below which a law counts as at rest
-LOST = 1e-9  #: share of a force's terms above which a change of branch has made it jump
-ARRIVED = 1e-13  #: share of the largest deformation that is no way any more
-BALANCED = 1e-14  #: share of the forces at a joint that their sum may be by rounding
+AT_REST = 1e-9  #: share of the largest change of a deformation below which a law counts as at rest
+FORCE_JUMP = 1e-9  #: share of a force's terms above which a change of branch has made it jump
+PATH_COMPLETE = 1e-13  #: share of the largest deformation that is no way any more
+JOINT_ROUNDING = 1e-14  #: share of the forces at a joint that their sum may be by rounding
 
 
 class JumpingRun(Protocol):
@@ -75,7 +75,7 @@ def falls(before: Branch, after: Branch, d: float) -> bool:
     ends = [abs(e.constant / e.d_factor) for e in before.events if e.d_factor != 0.0]
     reach = max(abs(d), *ends, 0.0)
     terms = sum(abs(b.stiffness * reach) + abs(b.force0) for b in (before, after))
-    return abs(before.force(d, 0.0) - after.force(d, 0.0)) > LOST * terms
+    return abs(before.force(d, 0.0) - after.force(d, 0.0)) > FORCE_JUMP * terms
 
 
 def share_of_way(event: EventFunction, d: float, move: float) -> float:
@@ -93,7 +93,7 @@ def first_on_way(branches: Sequence[Branch], d: Array, move: Array) -> tuple[flo
     and -1 where there is none.
     """
     first = 1.0, -1, -1
-    for i in np.flatnonzero(np.abs(move) > ALONG * np.abs(move).max(initial=0.0)).tolist():
+    for i in np.flatnonzero(np.abs(move) > AT_REST * np.abs(move).max(initial=0.0)).tolist():
         for e, event in enumerate(branches[i].events):
             share = share_of_way(event, float(d[i]), float(move[i]))
             if share < first[0]:
@@ -137,7 +137,7 @@ def release(run: JumpingRun, law: int) -> None:
             whole, at = system.all_dofs(run.u, run.t), columns[z]
             left -= members.forces(whole)[at]
             stiffness += dense(members.stiffness(whole)[np.ix_(at, at)])
-        if (np.abs(left) <= BALANCED * sizes(system, run.u, force)[z]).all():
+        if (np.abs(left) <= JOINT_ROUNDING * sizes(system, run.u, force)[z]).all():
             return
         try:
             np.linalg.cholesky(stiffness)
@@ -147,7 +147,7 @@ def release(run: JumpingRun, law: int) -> None:
                            "give it weight") from None  # fmt: skip
         way = np.linalg.solve(stiffness, left)
         move = rows[:, z] @ way
-        if np.abs(move).max(initial=0.0) <= ARRIVED * np.abs(d).max(initial=0.0):
+        if np.abs(move).max(initial=0.0) <= PATH_COMPLETE * np.abs(d).max(initial=0.0):
             return
         share, i, e = first_on_way(run.branches, d, move)
         run.u[z] += share * way

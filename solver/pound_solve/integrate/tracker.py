@@ -15,7 +15,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-SMALL = 1e-3  #: share of the largest peak of its unit below which a peak is not examined
+MINOR_PEAK = 1e-3  #: share of the largest peak of its unit below which a peak is not examined
 
 
 @dataclass
@@ -287,5 +287,5 @@ class ResponseTracker:
         share = np.divide(size - x.reached, size, out=np.zeros(len(size)), where=size > 0.0)
         for kind in np.unique(kinds):
             alike = kinds == kind
-            share[alike & (size < SMALL * size[alike].max())] = 0.0
+            share[alike & (size < MINOR_PEAK * size[alike].max())] = 0.0
         return float(share.max(initial=0.0))

@@ -1,9 +1,9 @@
 """EXACT within a budget: what AUTO spends on trying it is at most a third of the whole.
 
 What a trial has cost is lost where it does not end.  So all of them together cost no more than half
-(`SHARE`) of what is certain to be needed without them: the rest of the program, the loading of kernels,
-the runs with steps that were made, and the one that follows, or the run of TAYLOR.  A trial ends early
-where, at the rate so far, the run would cost more.
+(`TRIAL_SHARE`) of what is certain to be needed without them: the rest of the program, the loading of
+kernels, the runs with steps that were made, and the one that follows, or the run of TAYLOR.  A trial ends
+early where, at the rate so far, the run would cost more.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import EnvelopeRecorder, Outcome, Problem, Stop
 from pound_solve.numerics.providers import loading
 
-SHARE = 0.5  #: limit of the cost of all trials, as a share of the cost of the other methods
-REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
-CHECK = 0.2  #: share of a trial's budget after which its progress is checked
+TRIAL_SHARE = 0.5  #: limit of the cost of all trials, as a share of the cost of the other methods
+COST_OF_REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
+CHECKED_AFTER = 0.2  #: share of a trial's budget after which its progress is checked
 EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need
 #: decompositions that a trial may make (where combinations of stiffnesses do not return, more will come),
 #: and laws from which on it is not the first thing that is tried (combinations seldom return); both for the
 #: tolerance REFERENCE_TOL: for a smaller one they grow with the root, as the steps do
 MAX_DECOMPOSITIONS, MAX_LAWS, REFERENCE_TOL = 40, 12, 1e-3
-LEAST_OF_MANY = 1.0  #: what a run with more laws is assumed to cost at least
+MIN_COST_OF_MANY = 1.0  #: what a run with more laws is assumed to cost at least
 
 
 class ExactTrial:
@@ -50,7 +50,7 @@ class ExactTrial:
         laws = len(system.structure.laws)
         count = min(1 + laws, EXPECTED_DECOMPOSITIONS)
         self.cost = max(
-            count * costs.of_decomposition(system.size), LEAST_OF_MANY * (laws > self.ease * MAX_LAWS)
+            count * costs.of_decomposition(system.size), MIN_COST_OF_MANY * (laws > self.ease * MAX_LAWS)
         )
         if refused or system.size > condensed.MAX_UNKNOWNS:
             self.cost = np.inf
@@ -65,12 +65,16 @@ class ExactTrial:
         Stop
             The structure gives way, or an interrupt.
         """
-        budget = SHARE * (others + loading() + REST) - self.spent
+        budget = TRIAL_SHARE * (others + loading() + COST_OF_REST) - self.spent
         if self.cost >= budget:
             return None
         replay, decisions = Replay(self.problem.recorder), self.system.decisions
         known = len(decisions)
-        limits = {"COST": budget, "TRIAL": CHECK * budget, "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS}
+        limits = {
+            "COST": budget,
+            "TRIAL": CHECKED_AFTER * budget,
+            "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS,
+        }
         try:
             outcome = exact.integrate(self.problem.recorded_by(replay), limits)
         except costs.CostlyError as err:

@@ -33,12 +33,12 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-SOFT = 1e-9  #: share of the elastic stiffness below which a tangent counts as none
-TAKES_PART = 1e-6  #: share of the largest deformation of the motion that is not held
-SHOWN = 4  #: elements that are named
-HAIR = 1e-6  #: share of its yield deformation by which a spring goes beyond yield, or stays below
+NO_STIFFNESS = 1e-9  #: share of the elastic stiffness below which a tangent counts as none
+PARTICIPATION = 1e-6  #: share of the largest deformation of the motion that is not held
+MAX_NAMED = 4  #: elements that are named
+PERTURBATION = 1e-6  #: share of its yield deformation by which a spring goes beyond yield, or stays below
 CYCLES = 12  #: cycles after that, in which the forces are compared
-DIFFERS = 1e-3  #: share of the elastic force at yield above which the forces differ
+MAX_DIFFERENCE = 1e-3  #: share of the elastic force at yield above which the forces differ
 ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight between"
 
 
@@ -54,13 +54,13 @@ def remembers_yield(spring: LawSpring) -> bool:
         way = [0.3 * near, 0.8 * near, 4.0 * far, 0.5 * near, 0.9 * near]
         way += [x for n in range(CYCLES) for x in ((2.0 + n) * far, (2.5 + n) * near)]  # ever further
         forces = []
-        for d in (near * (1.0 - HAIR), near * (1.0 + HAIR)):
+        for d in (near * (1.0 - PERTURBATION), near * (1.0 + PERTURBATION)):
             state = drive(law, law.start(), 0.0, d)
             for goal in way:
                 state, d = drive(law, state, d, goal), goal
                 forces.append(law.force(state, d)[0])
         apart = np.abs(np.subtract(*np.reshape(forces, (2, -1))))
-        if (apart > DIFFERS * abs(law.p[0] * near)).any():
+        if (apart > MAX_DIFFERENCE * abs(law.p[0] * near)).any():
             return True
     return False
 
@@ -112,8 +112,8 @@ class Uniqueness:
             return
         self._known.add(key)
         damped = used_columns(self.system.law_rows[damping != 0.0])
-        elements = self._open(self._undamped & ~damped, stiffness, rising, SOFT) or self._open(
-            self._light, stiffness, rising, -SOFT
+        elements = self._open(self._undamped & ~damped, stiffness, rising, NO_STIFFNESS) or self._open(
+            self._light, stiffness, rising, -NO_STIFFNESS
         )
         if elements:
             self.first, self.elements = t, elements
@@ -151,7 +151,7 @@ class Uniqueness:
         values, motions = np.linalg.eigh(scaled(linear + (rows.T * stiffness) @ rows, factors))
         for stretch in (rows @ (factors[:, None] * motions[:, values < least])).T:
             share = np.sign(rising) * stretch / np.abs(stretch).max()
-            on, back = share > TAKES_PART, share < -TAKES_PART
+            on, back = share > PARTICIPATION, share < -PARTICIPATION
             if on.any() and back.any():
                 return sorted({system.structure.laws[i].element for i in np.flatnonzero(on | back)})
         return []
@@ -163,8 +163,8 @@ class Uniqueness:
                 self._tell(since, [first, *others])
         if not self.elements:
             return []
-        named = ", ".join(str(e) for e in self.elements[:SHOWN])
-        more = f" and {len(self.elements) - SHOWN} more" if len(self.elements) > SHOWN else ""
+        named = ", ".join(str(e) for e in self.elements[:MAX_NAMED])
+        more = f" and {len(self.elements) - MAX_NAMED} more" if len(self.elements) > MAX_NAMED else ""
         when = f"t = {self.first:.6g} {self.system.structure.model.units.time}"
         about = f"elements of which any may give way: {named}{more} at {when}"
         return [beyond(Subject.UNIQUENESS, about, len(self.elements), 0, ADVICE)]

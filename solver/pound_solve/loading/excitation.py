@@ -11,7 +11,8 @@ from pound_solve.loading.motions.base import Piecewise
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 
-INSTANT = 1e-13  #: share of a time, and of the unit of time, by which rounding may put it beside a break
+#: share of a time, and of the unit of time, by which rounding may put it beside a break
+CLOCK_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -60,13 +61,13 @@ class Excitation:
         """Indices of the intervals just after some times, shape (n_times,): a time that lies before a break
         by rounding only belongs to the interval that begins there.
         """
-        return self.pieces(t + INSTANT * np.maximum(1.0, t))
+        return self.pieces(t + CLOCK_ROUNDING * np.maximum(1.0, t))
 
     def pieces_before(self, t: Array) -> Index:
         """Indices of the intervals just before some times, shape (n_times,): a time that lies beyond a
         break by rounding only belongs to the interval that ends there.
         """
-        i = np.searchsorted(self.breaks, t - INSTANT * np.maximum(1.0, t), side="left") - 1
+        i = np.searchsorted(self.breaks, t - CLOCK_ROUNDING * np.maximum(1.0, t), side="left") - 1
         return np.clip(i, 0, len(self.coefs) - 1)
 
     def before_jumps(self, t: Array) -> Array:
@@ -78,7 +79,7 @@ class Excitation:
         change = np.abs(self.values_after(t[at]) - self.values(t[at], before=True))
         at = at[(change > 1e-9 * np.abs(self.coefs[:, 0]).max(axis=0, initial=0.0)).any(axis=1)]
         moved = t.copy()
-        moved[at] = self.breaks[after[at]] - 4.0 * INSTANT * np.maximum(1.0, t[at])
+        moved[at] = self.breaks[after[at]] - 4.0 * CLOCK_ROUNDING * np.maximum(1.0, t[at])
         return moved
 
     def local(self, piece: int, t: float) -> Array:

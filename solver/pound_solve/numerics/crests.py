@@ -20,14 +20,14 @@ from pound_solve.numerics.types import Array, Flags, Index
 DEGREE = 12  #: of the polynomial over a cell
 GROUP = 16  #: cells that are judged together
 AT_ONCE = 2**16  #: samples of several quantities that are looked at together, which a cache holds
-FINE = 48  #: cells of the grid on which the extreme of a polynomial is looked for
-NEWTON = 3  #: iterations to it
-BEFORE = 2  #: samples before and after them that tell how the quantity bends
+GRID_CELLS = 48  #: cells of the grid on which the extreme of a polynomial is looked for
+NEWTON_ITERATIONS = 3  #: iterations to it
+SAMPLES_BESIDE = 2  #: samples before and after them that tell how the quantity bends
 MARGIN = 1.5  #: over the change over a cell, by which a quantity may exceed its samples
 EXCESS = 0.5  #: share of a quantity's changes from node to node, by which it may exceed the largest there
-SPREAD = 1.5  #: over the range of its second differences, by which it may bend more
+CURVATURE_MARGIN = 1.5  #: over the range of its second differences, by which it may bend more
 
-_AROUND = np.arange(-BEFORE, GROUP + BEFORE + 1)
+_AROUND = np.arange(-SAMPLES_BESIDE, GROUP + SAMPLES_BESIDE + 1)
 
 _TURN = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
 #: places of the nodes in (0, 1): without the ends, at which a quantity may jump
@@ -35,7 +35,7 @@ NODES = 0.5 * (1.0 - np.cos(_TURN))
 #: coefficients of Chebyshev's polynomials from values at the nodes
 _FIT = 2.0 / (DEGREE + 1) * np.cos(np.arange(DEGREE + 1)[:, None] * (np.pi - _TURN))
 _FIT[0] *= 0.5
-_GRID = np.linspace(-1.0, 1.0, FINE + 1)
+_GRID = np.linspace(-1.0, 1.0, GRID_CELLS + 1)
 _ON_GRID = np.polynomial.chebyshev.chebvander(_GRID, DEGREE) @ _FIT
 
 
@@ -116,7 +116,7 @@ def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: In
         row, group = np.nonzero(most + reach > known[:, None])
         at = starts[group][:, None] + _AROUND
         bounds = _bounds(sign * values[row[:, None], np.clip(at, 0, count - 1)])
-        within = at[:, BEFORE : BEFORE + GROUP] < count
+        within = at[:, SAMPLES_BESIDE : SAMPLES_BESIDE + GROUP] < count
         which, cell = np.nonzero((bounds > known[row][:, None]) & within)
         doubtful = numbers[row[which]], starts[group[which]] + cell, bounds[which, cell]
         yield Doubts(np.full(len(which), sign), *doubtful)
@@ -136,14 +136,15 @@ def near(values: Array, best: Array) -> Flags:
 
 def _bounds(values: Array) -> Array:
     """Bounds of quantities over `GROUP` cells from their values at the starts and ends of these, with
-    `BEFORE` more samples on either side, shape (n, GROUP).
+    `SAMPLES_BESIDE` more samples on either side, shape (n, GROUP).
     """
     slope = values[:, 1:] - values[:, :-1]
     bend = slope[:, 1:] - slope[:, :-1]  # at all samples but the first and the last
     least = np.lib.stride_tricks.sliding_window_view(bend, 4, axis=1).min(axis=2)
     most = np.lib.stride_tricks.sliding_window_view(bend, 4, axis=1).max(axis=2)
-    bent = np.maximum(-least, 0.0) + SPREAD * (most - least)
-    begin, change = values[:, BEFORE : BEFORE + GROUP], slope[:, BEFORE : BEFORE + GROUP]
+    bent = np.maximum(-least, 0.0) + CURVATURE_MARGIN * (most - least)
+    cells = slice(SAMPLES_BESIDE, SAMPLES_BESIDE + GROUP)
+    begin, change = values[:, cells], slope[:, cells]
     # the top of a parabola through both ends
     at = np.clip(0.5 + np.divide(change, bent, out=np.sign(change), where=bent > 0.0), 0.0, 1.0)
     return np.asarray(begin + at * change + 0.5 * bent * at * (1.0 - at))
@@ -172,9 +173,11 @@ def crests(values: Array) -> tuple[Array, Array]:
     slope = np.polynomial.chebyshev.chebder(c)
     bend = np.polynomial.chebyshev.chebder(slope)
     y = x.copy()
-    for _ in range(NEWTON):
+    for _ in range(NEWTON_ITERATIONS):
         s, b = (np.polynomial.chebyshev.chebval(y, p, tensor=False) for p in (slope, bend))
-        y = np.clip(y - np.divide(s, b, out=np.zeros_like(s), where=b < 0.0), x - 2 / FINE, x + 2 / FINE)
+        y = np.clip(
+            y - np.divide(s, b, out=np.zeros_like(s), where=b < 0.0), x - 2 / GRID_CELLS, x + 2 / GRID_CELLS
+        )
     y = np.clip(y, -1.0, 1.0)
     best = np.polynomial.chebyshev.chebval(y, c, tensor=False)
     better = best > top

@@ -24,7 +24,7 @@ NAME, VARIABLE = "pound-solve", "POUND_CACHE"
 CURE = f"set {VARIABLE} to a folder that you may write to"
 NOT_KEPT = f"compiled kernels cannot be kept, every run compiles for a minute or two: {CURE}"
 ELSEWHERE = f"compiled kernels cannot be kept in {VARIABLE}={{}}, but in {{}}"
-UNUSED = 30 * 86400.0  #: age from which on a version that no run has used is deleted [s]
+MAX_AGE = 30 * 86400.0  #: age from which on a version that no run has used is deleted [s]
 OF_A_VERSION = re.compile("[0-9a-f]{16}(-old-.*)?")  #: names of its folder, and of one being deleted
 
 
@@ -112,7 +112,7 @@ def prune(root: Path) -> None:
     A folder is renamed first: of several processes that prune, one gets it.  A run that begins to use it at
     this moment makes it anew.
     """
-    limit = time.time() - UNUSED
+    limit = time.time() - MAX_AGE
     for old in root.iterdir():
         try:
             if not OF_A_VERSION.fullmatch(old.name) or old.is_symlink() or old.stat().st_mtime > limit:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.numerics import ordering
-from pound_solve.numerics.matrices import MOST_DENSE
+from pound_solve.numerics.matrices import MAX_DENSE
 from pound_solve.numerics.types import Array, Index
 
 #: positions of entries: without a sign, so that none is counted from the end, for which a kernel would look
@@ -27,7 +27,7 @@ from pound_solve.numerics.types import Array, Index
 Place = NDArray[np.uint32]
 
 
-SPARE = 0.05  #: entries that the factor may gain, an unknown, for the sake of diagonals
+SPARE_ENTRIES = 0.05  #: entries that the factor may gain, an unknown, for the sake of diagonals
 
 
 class Pattern(NamedTuple):
@@ -64,7 +64,7 @@ def order(n: int, i: Index, j: Index) -> Index:
     i, j : ndarray, shape (n_pairs,)
         Which of the unknowns are coupled; each pair may come once or often.
     """
-    if n <= MOST_DENSE:
+    if n <= MAX_DENSE:
         return _order_of_few(n, i, j)
     from scipy.sparse import csc_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee
@@ -79,7 +79,7 @@ def order(n: int, i: Index, j: Index) -> Index:
     by_degree = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
     line = from_both_ends(reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64))
     banded = splu(a[line][:, line], permc_spec="NATURAL", diag_pivot_thresh=0.0, options=symmetric)
-    if banded.L.nnz <= by_degree.L.nnz + SPARE * n:
+    if banded.L.nnz <= by_degree.L.nnz + SPARE_ENTRIES * n:
         return line
     return np.argsort(by_degree.perm_c).astype(np.int64)
 
@@ -93,7 +93,7 @@ def _order_of_few(n: int, i: Index, j: Index) -> Index:
             near[b].add(a)
     line = from_both_ends(np.array(ordering.along_a_line(near), np.int64))
     by_degree = np.array(ordering.minimum_degree(near), np.int64)
-    return line if _fill(near, line) <= _fill(near, by_degree) + SPARE * n else by_degree
+    return line if _fill(near, line) <= _fill(near, by_degree) + SPARE_ENTRIES * n else by_degree
 
 
 def from_both_ends(line: Index) -> Index:

@@ -17,11 +17,11 @@ from pound_solve.numerics.types import Array, Flags, Index
 #: an ndarray, or a scipy.sparse.csr_array
 Matrix = Any
 
-MOST_DENSE = 300  #: rows and columns of a plain array
+MAX_DENSE = 300  #: rows and columns of a plain array
 
 
 def gathered(
-    shape: tuple[int, int], rows: Any, columns: Any, values: Any, *, most_dense: int = MOST_DENSE
+    shape: tuple[int, int], rows: Any, columns: Any, values: Any, *, most_dense: int = MAX_DENSE
 ) -> Matrix:
     """Matrix of that shape whose entries are sums of `values` at (`rows`, `columns`)."""
     i, j, x = np.asarray(rows, np.int64), np.asarray(columns, np.int64), np.asarray(values, float)

@@ -23,9 +23,9 @@ from pound_solve.numerics import matrices
 from pound_solve.numerics.matrices import Factor, Matrix, dense, diagonal, scaled, used_rows
 from pound_solve.numerics.types import Array, Flags
 
-MISSED = 8  #: most repetitions of the search for missed modes
-TINY = 1e-15  #: of a diagonal of ones: keeps pivots from being zero
-MORE = 4  #: modes beyond those requested, to find a gap after them
+MAX_REPEATS = 8  #: most repetitions of the search for missed modes
+TINY_PIVOT = 1e-15  #: of a diagonal of ones: keeps pivots from being zero
+EXTRA_MODES = 4  #: modes beyond those requested, to find a gap after them
 
 
 @dataclass(frozen=True)
@@ -107,8 +107,8 @@ class Held:
             self._factor = Factor(k)
             pivots, least = self._factor.pivots, 0.0
         except np.linalg.LinAlgError:
-            tiny = TINY * matrices.selection(n, np.arange(n))
-            pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY * max(n, 10)
+            tiny = TINY_PIVOT * matrices.selection(n, np.arange(n))
+            pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY_PIVOT * max(n, 10)
         weak = np.flatnonzero((pivots < least) & (pivots > -1e-10))
         if len(weak):  # the motion when a hold is released is one that K does not resist
             self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
@@ -201,7 +201,11 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
     numpy.linalg.LinAlgError
         A massless part is a mechanism, or the mass matrix is not positive definite.
     """
-    if not isinstance(k, np.ndarray) and count is not None and 5 * (count + MORE) < (~massless(m)).sum():
+    if (
+        not isinstance(k, np.ndarray)
+        and count is not None
+        and 5 * (count + EXTRA_MODES) < (~massless(m)).sum()
+    ):
         few = _slowest(k, m, count)
         if few is not None:
             return few
@@ -246,13 +250,13 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     if factor.negative:
         raise np.linalg.LinAlgError("negative stiffness")
     wanted, values, shapes = count, np.zeros(0), np.zeros((len(at), 0))
-    for _ in range(MISSED):
+    for _ in range(MAX_REPEATS):
         # known modes are removed, so that another of the same frequency can be found
         def follow(push: Array, known: Array = shapes, known_values: Array = values) -> Array:
             x = factor.solve(push.ravel())
             return np.asarray(x - known @ ((known.T @ push.ravel()) / (known_values + shift)))
 
-        more = max(wanted + MORE - len(values), 1)
+        more = max(wanted + EXTRA_MODES - len(values), 1)
         start = follow(m @ _generic(len(at)))
         try:
             eigenvalues, x = eigsh(

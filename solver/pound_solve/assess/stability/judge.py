@@ -17,8 +17,9 @@ they begin, and a contact that just closes may as well stay open.  Where an erro
 reference is therefore run again with all masses changed by a `NUDGE` of the allowed error.  Whatever
 changes by more than the allowed error (a motion from some time on, a largest force) is unknown and not
 judged.  A reference by steps does not see what `events.within_step` takes for rounding: overlaps of
-contacts up to `ALIKE` times `STILL` of the displacements, so its masses change by `BLIND` at least; and
-laws that turn at less than `BACK` of the largest rate, so forces of springs are unknown where a body turns.
+contacts up to `MOVING_ALIKE` times `EVENT_TOLERANCE` of the displacements, so its masses change by `BLIND`
+at least; and laws that turn at less than `REVERSE_RATE` of the largest rate, so forces of springs are
+unknown where a body turns.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ from pound_solve.assess.stability.scenes import cases
 from pound_solve.assess.stability.scenes.case import STEP, STOREY, Case, every
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject
-from pound_solve.integrate.events.within_step import ALIKE, BACK
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.events.within_step import MOVING_ALIKE, REVERSE_RATE
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.numerics.types import Array, Flags
 
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
@@ -49,7 +50,8 @@ EXACT_WITHIN, LAGUERRE_WITHIN, AUTO_WITHIN = 1e-6, 1e-3, 2e-3
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
 ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
 NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
-BLIND: Final = 10.0 * ALIKE * STILL  #: change of masses beside a reference by steps, at least
+#: change of masses beside a reference by steps, at least
+BLIND: Final = 10.0 * MOVING_ALIKE * EVENT_TOLERANCE
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
 MOST_STEPS: Final = 1e6  #: of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"
@@ -244,7 +246,7 @@ def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Ar
 def turns(result: Findings) -> Flags:
     """Whether a body is almost at rest at each time, shape (n_times,): steps may miss reversals there."""
     speed = np.abs(result.v)
-    return np.asarray((speed < BACK * speed.max(axis=0, initial=0.0)).any(axis=1))
+    return np.asarray((speed < REVERSE_RATE * speed.max(axis=0, initial=0.0)).any(axis=1))
 
 
 def known(offs: Offs, nudged: Offs, t: Array, unseen: Flags) -> tuple[Offs, str]:

@@ -18,7 +18,8 @@ from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
 
-ALIKE = 1e-12  #: share of the length of an interval by which instants may differ from those of another
+#: share of the length of an interval by which instants may differ from those of another
+SAME_LENGTH = 1e-12
 Kinematics = tuple[Array, Array, Array]  #: displacement, velocity and acceleration of the unknowns
 
 
@@ -155,7 +156,7 @@ class DenseOutput:
         alike: dict[bytes, list[Index]] = {}  # columns of each interval, by the shares of its length
         for i in np.unique(interval).tolist():
             columns = np.flatnonzero(interval == i)
-            shares = np.round(local[columns] / self.lengths[i] / ALIKE)
+            shares = np.round(local[columns] / self.lengths[i] / SAME_LENGTH)
             alike.setdefault(shares.tobytes() + self.lengths[i].tobytes(), []).append(columns)
         motions = np.zeros((3, self.subsystems.system.size, len(times)))
         for some in map(np.array, alike.values()):

@@ -14,8 +14,8 @@ from pound_solve.integrate.events.functions import RowSet
 from pound_solve.integrate.protocol import (
     CHANGES,
     CHANGES_PER_LAW,
-    CHATTER,
-    RUNAWAY,
+    CHATTER_TEXT,
+    RUNAWAY_TEXT,
     Outcome,
     Problem,
     Recorder,
@@ -200,13 +200,13 @@ class EventDrivenRun(ABC):
         """Stop where too many changes of branch fall on one instant."""
         if self.changes_at_instant > CHANGES + CHANGES_PER_LAW * len(self.laws):
             s, count = self.laws[law], self.changes_at_instant
-            why = CHATTER.format(count, s.element, s.rule, self.branches[law].name, remedy)
+            why = CHATTER_TEXT.format(count, s.element, s.rule, self.branches[law].name, remedy)
             raise self.stop("A503", why)
 
     def stop_growth(self, v: Array, hint: str = "") -> None:
         """Stop where the kinetic energy at velocity `v` is far above the energy put in."""
         if self.runs_away(v):
-            raise self.stop("A504", RUNAWAY.format(self.kinetic(v)) + hint)
+            raise self.stop("A504", RUNAWAY_TEXT.format(self.kinetic(v)) + hint)
 
     def runs_away(self, v: Array) -> bool:
         """Whether the kinetic energy at velocity `v` is far above all that is known to have been put in."""

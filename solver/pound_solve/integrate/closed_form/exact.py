@@ -32,7 +32,7 @@ from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
 from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.closed_form.recording import DeferredSamples, EnvelopeSamples
-from pound_solve.integrate.closed_form.search import SURE, Search
+from pound_solve.integrate.closed_form.search import CERTAIN, Search
 from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.closed_form.windows import Window, Windows
 from pound_solve.integrate.condensed import condensed
@@ -40,8 +40,9 @@ from pound_solve.integrate.events.functions import EventFunctions, GridEvent, mo
 from pound_solve.integrate.propagators.series import SeriesPropagator
 from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
+    EVENT_TOLERANCE,
     INTERRUPTED,
-    STILL,
+    SAME_INSTANT,
     Outcome,
     Problem,
     Recorder,
@@ -62,7 +63,6 @@ MAX_PIECES = 2000  #: windows within one interval of the excitation
 MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, which take many minutes
 FORESEEN = 16  #: such windows without an event between, after which the total number is predicted
 MAX_DEFERRED = 256  #: entries of work that wait
-SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
 LOST = "modes are nearly parallel: digits are lost"
 
 
@@ -155,7 +155,9 @@ class Exact(EventDrivenRun):
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
-        overdue = self.search.events.violated(coarse, self.largest, SURE * STILL, self._massless_laws)
+        overdue = self.search.events.violated(
+            coarse, self.largest, CERTAIN * EVENT_TOLERANCE, self._massless_laws
+        )
         if overdue is not None:
             law = overdue.law
             self.count_change(0.0, SAME_INSTANT)
@@ -168,7 +170,7 @@ class Exact(EventDrivenRun):
         if self.contacts:  # the end of the window is not reached if there is an event before
             self.largest = self.reaching(self.u)
             largest = self.reaching(dense.end[0])
-        earliest = self.search.events.first_event(fine, largest, STILL, self.contacts)
+        earliest = self.search.events.first_event(fine, largest, EVENT_TOLERANCE, self.contacts)
         if earliest is None:
             self._count_peaks(coarse, fine, dense.length)
             self.envelopes.add(dense, self.t, window.h, dense.length)
@@ -182,7 +184,7 @@ class Exact(EventDrivenRun):
     def _charge_window(self, dense: DenseOutput, h: float, points: int) -> None:
         self._charge(costs.WINDOW + costs.GRID_POINT * points * len(self.u))
         enveloped = self.subsystems.enveloped.sum()
-        self._charge(costs.ENVELOPE_POINT * dense.length / (recording.STEPS * h) * enveloped)
+        self._charge(costs.ENVELOPE_POINT * dense.length / (recording.FINE_STEPS * h) * enveloped)
 
     def _accept_window(self, window: Window, dense: DenseOutput, cursor: int) -> int:
         """Advance to the end of a window without events; return the new cursor."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate.closed_form.dense_output import DenseOutput, direct_response
 from pound_solve.integrate.closed_form.subsystems import Subsystem
-from pound_solve.integrate.propagators.base import TERMS, real_parts, real_rows
+from pound_solve.integrate.propagators.base import TAYLOR_TERMS, real_parts, real_rows
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 
@@ -193,7 +193,7 @@ class GridSamples:
     def _expand(self, row: int, segment: int, cell: int) -> Array:
         """Taylor series of one row about a point, in powers of h, the highest power first."""
         subsystems, h, t = self.dense.subsystems, self.h, float(self.local[segment, cell])
-        series = np.zeros(TERMS)
+        series = np.zeros(TAYLOR_TERMS)
         series[0] = subsystems.rows.constants[row]
         known = self.input_coefs[segment] @ subsystems.rows.inputs[row]
         for subsystem, states, forcing in zip(subsystems.present, self.states, self.forcing):

@@ -25,7 +25,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
 from pound_solve.integrate.closed_form.hermite import SampledMotion, SampledRows, simpson
 from pound_solve.integrate.closed_form.laplace_transform import DynamicStiffness, LaplaceTransform
-from pound_solve.integrate.closed_form.search import SURE
+from pound_solve.integrate.closed_form.search import CERTAIN
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.energy import law_values
 from pound_solve.integrate.events import grid
@@ -49,9 +49,9 @@ from pound_solve.integrate.rigid.contacts import linear_forces
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 
-STILL = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
-SAME_INSTANT = 1e-12  #: share of the time within which two events are at one instant
-MOST_NUMBERS = 6e7  #: complex ones of all dynamic stiffnesses that are kept: 1 GB
+TRANSFORM_TOLERANCE = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
+SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: share of the time within which two events are at one instant
+MAX_NUMBERS = 6e7  #: complex ones of all dynamic stiffnesses that are kept: 1 GB
 
 
 class Laplace(EventDrivenRun):
@@ -97,7 +97,7 @@ class Laplace(EventDrivenRun):
             if fastest * self.dt > 1.0:
                 why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"
                 raise self.stop("A502", why.format(self.dt, fastest, 0.5 / fastest))
-            while self._stiffnesses and (1 + len(self._stiffnesses)) * dynamic.inverse.size > MOST_NUMBERS:
+            while self._stiffnesses and (1 + len(self._stiffnesses)) * dynamic.inverse.size > MAX_NUMBERS:
                 del self._stiffnesses[next(iter(self._stiffnesses))]  # the oldest
             self._stiffnesses[key] = dynamic
             self.combinations += 1
@@ -133,9 +133,10 @@ class Laplace(EventDrivenRun):
         functions = EventFunctions(self.branches, {})
         self.largest = self.reaching(self.u)
         largest = self.reaching(np.abs(motion.u).max(axis=1))
-        earliest = functions.first_event(rows, largest, STILL, self.contacts)
+        earliest = functions.first_event(rows, largest, TRANSFORM_TOLERANCE, self.contacts)
         event = None if earliest is None or earliest.event.time >= span else earliest.event
-        event = functions.violated(rows, self.largest, SURE * STILL, self._massless_laws) or event
+        certain = CERTAIN * TRANSFORM_TOLERANCE
+        event = functions.violated(rows, self.largest, certain, self._massless_laws) or event
         tau = span if event is None else event.time
         if first:
             self._sample(self.t, motion.u[:, 0], motion.v[:, 0], motion.a[:, 0], self.energy.array())
@@ -144,7 +145,7 @@ class Laplace(EventDrivenRun):
         ends = rows.all_at(self.dt, tau)
         self._count_peaks(rows.until(tau, ends))
         self.u, self.v = motion.at(tau)
-        self.count_change(tau, SAME_INSTANT)
+        self.count_change(tau, SAME_INSTANT_OF_TRANSFORMS)
         self.t += tau
         if event is not None:
             self.events += 1
@@ -250,14 +251,14 @@ class Laplace(EventDrivenRun):
             "combinations of stiffnesses": self.combinations,
         }
         peaks = self.tracker.close(self.energy.dashpot_losses)
-        checks = [*rounding_check(self.laws, peaks, STILL), *self.uniqueness.checks()]
+        checks = [*rounding_check(self.laws, peaks, TRANSFORM_TOLERANCE), *self.uniqueness.checks()]
         return Outcome(peaks, figures, tuple(self.states), checks)
 
 
 def refuse_large(unknowns: int, points: int, t: float) -> None:
     """Raise `Stop` at time `t` where one dynamic stiffness does not fit into memory."""
     frequencies = points // 2 + 1
-    if unknowns**2 * frequencies > MOST_NUMBERS:
+    if unknowns**2 * frequencies > MAX_NUMBERS:
         size = 16e-9 * unknowns**2 * frequencies
         why = (
             f"LAPLACE inverts the matrix of {unknowns} unknowns at {frequencies} frequencies, {size:.3g} GB"

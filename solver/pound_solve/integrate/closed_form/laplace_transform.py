@@ -6,7 +6,7 @@ is inverted along :math:`s = \alpha + i\omega` by a fast Fourier transform over 
 apart.
 
 The start is a step in :math:`u` to the transform, whose inverse would converge slowly.  A part with a
-closed transform that starts as the response does, up to the derivative of order `STARTS`,
+closed transform that starts as the response does, up to the derivative of order `MAX_DERIVATIVE`,
 
 .. math:: q(t) = e^{-\beta t}\sum_k c_k t^k, \qquad \hat q(s) = \sum_k \frac{k!\,c_k}{(s+\beta)^{k+1}}
 
@@ -35,9 +35,9 @@ from pound_solve.numerics import phi
 from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem
 
-STARTS = 5  #: highest derivative at the start that is subtracted
-DAMPING = 24.0  #: alpha times the window: 1e-10 in its first half
-TOGETHER = 64  #: pieces of the excitation that are transformed at once
+MAX_DERIVATIVE = 5  #: highest derivative at the start that is subtracted
+DAMPING_OF_WINDOW = 24.0  #: alpha times the window: 1e-10 in its first half
+BATCH = 64  #: pieces of the excitation that are transformed at once
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class LaplaceTransform:
 
     def __init__(self, system: ReducedSystem, dt: float, points: int) -> None:
         self.system, self.dt, self.points = system, dt, points
-        s = (DAMPING + 2j * np.pi * np.arange(points // 2 + 1)) / (points * dt)
+        s = (DAMPING_OF_WINDOW + 2j * np.pi * np.arange(points // 2 + 1)) / (points * dt)
         self.s: Complex = np.asarray(s, complex)
 
     def dynamic_stiffness(self, c: Array, k: Array) -> DynamicStiffness:
@@ -122,9 +122,9 @@ class LaplaceTransform:
             length = float(width[run[0]])
             powers = length ** np.arange(1, excitation.degree + 2)
             kernels = phi.moments(-s * length, excitation.degree) * powers[:, None]
-            delays = np.exp(-s[:, None] * length * np.arange(min(TOGETHER, len(run))))
-            for i in range(0, len(run), TOGETHER):
-                chunk = coefs[run[i : i + TOGETHER]]
+            delays = np.exp(-s[:, None] * length * np.arange(min(BATCH, len(run))))
+            for i in range(0, len(run), BATCH):
+                chunk = coefs[run[i : i + BATCH]]
                 sums = (delays[:, : len(chunk)] @ chunk.reshape(len(chunk), -1)).reshape(
                     len(s), *chunk.shape[1:]
                 )
@@ -139,12 +139,12 @@ class LaplaceTransform:
     def _start_derivatives(
         self, x: DynamicStiffness, constant: Array, t: float, u: Array, v: Array
     ) -> list[Array]:
-        """Derivatives of the displacement at the start, order 0 to `STARTS`, from the first-order form."""
+        """Derivatives of the displacement at the start, up to the order `MAX_DERIVATIVE`."""
         system, excitation = self.system, self.system.excitation
         coefs = excitation.local(excitation.piece(t + 1e-13 * max(1.0, t)), t)
         z = x.space.z_u @ u + x.space.z_v @ v
         derivatives, force = [], np.zeros(system.size)
-        for j in range(STARTS + 1):
+        for j in range(MAX_DERIVATIVE + 1):
             force = math.factorial(j) * system.inputs @ coefs[j] if j < len(coefs) else 0.0 * force
             force = force + constant * (j == 0)
             static = 0.0 if x.space.u_p is None else x.space.u_p @ force
@@ -176,17 +176,19 @@ class LaplaceTransform:
                     beta ** (j - i) / math.factorial(j - i) / math.factorial(i) * derivatives[i]
                     for i in range(j + 1)
                 )
-                for j in range(STARTS + 1)
+                for j in range(MAX_DERIVATIVE + 1)
             ]
         )
         right = self.inputs(t, s) @ system.inputs.T + constant / s[:, None]
         right += s[:, None] * (system.mass @ derivatives[0]) + system.mass @ v + x.damping @ derivatives[0]
-        start = sum(math.factorial(j) * q[j] / (s[:, None] + beta) ** (j + 1) for j in range(STARTS + 1))
+        start = sum(
+            math.factorial(j) * q[j] / (s[:, None] + beta) ** (j + 1) for j in range(MAX_DERIVATIVE + 1)
+        )
         rest = (x.inverse @ right[:, :, None])[:, :, 0] - start
         times = self.dt * np.arange(half + 1)
         growth = np.exp(s[0].real * times) / self.dt
-        decay, powers = np.exp(-beta * times), times ** np.arange(STARTS + 1)[:, None]
-        slopes = powers[:-1] * np.arange(1, STARTS + 1)[:, None]
+        decay, powers = np.exp(-beta * times), times ** np.arange(MAX_DERIVATIVE + 1)[:, None]
+        slopes = powers[:-1] * np.arange(1, MAX_DERIVATIVE + 1)[:, None]
         out_u = np.fft.irfft(rest.T, self.points)[:, : half + 1] * growth + (q.T @ powers) * decay
         out_v = np.fft.irfft(s * rest.T, self.points)[:, : half + 1] * growth
         out_v += (q[1:].T @ slopes - beta * q.T @ powers) * decay

@@ -19,7 +19,7 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_WAITING = 2**19  #: displacements between the samples that wait for the recorder
-STEPS = 2  #: fine steps from one instant of the envelopes to the next
+FINE_STEPS = 2  #: fine steps from one instant of the envelopes to the next
 
 
 def forces_of(
@@ -100,7 +100,7 @@ class EnvelopeSamples:
         """Keep the motion of a window from time `t0` on, up to the local time `end`."""
         if not self.is_needed:
             return
-        tau, motion = dense.enveloped_grid(STEPS * h, end)
+        tau, motion = dense.enveloped_grid(FINE_STEPS * h, end)
         self._windows.append(Window(dense.kept(), tau, t0, end))
         self._motions.append(self._motion(dense, t0 + tau, motion))
         if sum(x.u.size for x in self._motions) > MAX_WAITING:

@@ -20,13 +20,14 @@ from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, RowFunctions
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.types import Array, Flags
 
-MAX_STEPS = 64  #: of the fine grid in one cell
-SLACK = 0.05  #: share of an event function's scale that its curvature may contribute within a cell
-SURE = 1e3  #: times the tolerance of event functions: a value above is sure to count as an event
+MAX_FINE_STEPS = 64  #: of the fine grid in one cell
+#: share of an event function's scale that its curvature may contribute within a cell
+CURVATURE_SHARE = 0.05
+CERTAIN = 1e3  #: times the tolerance of event functions: a value above is sure to count as an event
 
 
 class Search:
@@ -77,11 +78,11 @@ class Search:
         if not np.isfinite(most).all():
             return h
         if not chosen.any():
-            return h * MAX_STEPS
-        cell = float(np.sqrt(8.0 * SLACK * (scale[chosen] / most[chosen]).min()))
+            return h * MAX_FINE_STEPS
+        cell = float(np.sqrt(8.0 * CURVATURE_SHARE * (scale[chosen] / most[chosen]).min()))
         # powers of four: few lengths, so that tables recur
         steps = 4.0 ** np.floor(np.log2(max(cell / h, 1.0)) / 2.0)
-        return h * float(min(steps, MAX_STEPS))
+        return h * float(min(steps, MAX_FINE_STEPS))
 
     def _cells(self, coarse: GridSamples, bounds: Array, largest: Array) -> Flags:
         """Which cells may hold an event or a peak, shape (n_segments, count)."""
@@ -90,7 +91,7 @@ class Search:
         if self.events.keys:
             g, slope = self.events.sampled(coarse)
             scale = np.maximum(self.events.scale(largest), np.abs(g).max(axis=(1, 2)))
-            least = SURE * STILL * scale[:, None, None]
+            least = CERTAIN * EVENT_TOLERANCE * scale[:, None, None]
             g[:, 0, 0] = np.minimum(g[:, 0, 0], 0.0)
             curvature = self.events.curvature_bounds(bounds)
             cells |= grid.may_rise(g, slope, curvature, coarse.widths).any(axis=0)

@@ -13,7 +13,7 @@ from pound_solve.numerics.types import Array
 MAX_POINTS = 4096  #: points of the fine grid in one window
 MAX_INTERVALS = 128  #: intervals of one window
 INTERVALS_AFTER_EVENT = 8  #: of the first window after an event
-GRID = 1.0  #: fine step times the fastest eigenvalue
+FINE_STEP = 1.0  #: fine step times the fastest eigenvalue
 
 
 class Window(NamedTuple):
@@ -45,7 +45,7 @@ class Windows:
     """
 
     def __init__(self, refinement: int) -> None:
-        self._grid = GRID * 2.0**-refinement
+        self._grid = FINE_STEP * 2.0**-refinement
         self._usual = 0.0  # length of most intervals
         self.restart()
 

@@ -30,8 +30,8 @@ from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem
 
 #: modes whose eigenvalue times the interval is below this in magnitude are expanded in powers of time
-SLOW = 0.1
-TERMS = 11  #: of that expansion, beyond the force's own
+SMALL_PHASE = 0.1
+EXPANSION_TERMS = 11  #: of that expansion, beyond the force's own
 MAX_NUMBERS = 2**20  #: velocities that the quadrature holds at once
 MAX_CONDITION = 3e3  #: condition of the modes up to which their products are used
 
@@ -104,8 +104,8 @@ class WorkIntegrals:
         g = gs.transpose(1, 2, 0)
         # split into free and forced, a slow mode would be the small difference of large numbers: it is a
         # power series instead (which for a rigid-body mode is finite)
-        slow = np.abs(self.eigenvalues) * tau.max() < SLOW
-        more = 0 if not slow.any() else 1 if not self.eigenvalues[slow].any() else TERMS
+        slow = np.abs(self.eigenvalues) * tau.max() < SMALL_PHASE
+        more = 0 if not slow.any() else 1 if not self.eigenvalues[slow].any() else EXPANSION_TERMS
         count = degree + 1 + more
         # many intervals are of the same length
         lengths, place = np.unique(tau, return_inverse=True)

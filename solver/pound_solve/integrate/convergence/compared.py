@@ -2,7 +2,7 @@
 every contact, and the largest and smallest deformation and the plastic work of every spring and hinge that
 can yield.
 
-Drifts and forces are relative to the larger magnitude of their own, but at least to `FLOOR` times the
+Drifts and forces are relative to the larger magnitude of their own, but at least to `MIN_SCALE` times the
 largest of their kind: a contact that is hardly touched does not set the step.  A deformation is relative to
 itself, but at least to that at first yield, and plastic work to itself, but at least to the work of a force
 of the strength over that deformation: so ductilities and damage indices have the same relative errors.
@@ -25,8 +25,8 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
-BRIEF = 0.05  #: smallest time for twice the rise of a force, as a share of the duration of its collision
+MIN_SCALE = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
+MIN_RISE = 0.05  #: smallest time for twice the rise of a force, as a share of the duration of its collision
 RESPONSE, ALL = "RESPONSE", "ALL"  #: values of PEAKS: what TOL applies to
 RESPONSES, ACCELERATIONS, FORCES = range(3)  #: kinds of peaks with tolerances of their own
 NAMES = ("drifts, contact forces and hinges", "accelerations", "member forces")
@@ -51,7 +51,7 @@ class Peak(NamedTuple):
 
 
 def measured(extremes: Sequence[Extreme], kinds: Sequence[str]) -> Peak:
-    """Extremes as values to be compared, the scale of each being its own size, but at least `FLOOR` times
+    """Extremes as values to be compared, the scale of each being its size, but at least `MIN_SCALE` times
     the largest of its kind.
     """
     values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
@@ -64,7 +64,7 @@ def _all(kind: int, count: int) -> Index:
     return np.full(count, kind)
 
 
-def _floored(size: Array, kinds: Array, share: float = FLOOR) -> Array:
+def _floored(size: Array, kinds: Array, share: float = MIN_SCALE) -> Array:
     """Sizes, raised to at least a `share` of the largest of their kind."""
     floored = size.copy()
     for kind in np.unique(kinds):
@@ -134,4 +134,4 @@ def hardest(peaks: Peaks) -> float:
     if collision is None or not collision.t_end > collision.t_start:  # it is still closed
         return np.inf
     lasts, rises = collision.t_end - collision.t_start, collision.t_peak - collision.t_start
-    return min(lasts, max(2.0 * rises, BRIEF * lasts)) if rises > 0.0 else lasts
+    return min(lasts, max(2.0 * rises, MIN_RISE * lasts)) if rises > 0.0 else lasts

@@ -16,9 +16,9 @@ It is trusted from `SLOWEST` to `ORDER`, and only once it is seen twice: the low
 last three runs show, and the three before the last.  Three runs show a power that the fourth may not
 confirm: the first of them had too few steps for any order.  Differences that fall faster than the method
 explains, with a power above `FASTEST`, agree by chance: they show no order, and the slowest is assumed, as
-it is where there are fewer than four runs.  The last run is compared with each of the `COMPARED` before it,
-for some may be near it by chance; one run before it may always be.  `SAFETY` is from the distribution of
-true errors over the estimates (manual, theory of AUTO).
+it is where there are fewer than four runs.  The last run is compared with each of the `COMPARED_RUNS`
+before it, for some may be near it by chance; one run before it may always be.  `SAFETY` is from the
+distribution of true errors over the estimates (manual, theory of AUTO).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SLOWEST, ORDER = (
 )  #: powers of the step that an error is assumed to fall with, at least and at most
 FASTEST = 2.5  #: power of the step above which a faster fall of the differences counts as chance
 SAFETY = 1.5  #: factor of the estimate over the error that the differences indicate
-COMPARED = 3  #: runs that the last one is compared with
+COMPARED_RUNS = 3  #: runs that the last one is compared with
 BISECTIONS = 30  #: to the observed power
 
 
@@ -94,7 +94,7 @@ def error_left(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> f
         That errors are measured against.
     """
     order = np.minimum(last_order(steps, peaks, scales), last_order(steps[:-1], peaks[:-1], scales))
-    apart, ratios = differences(steps[-COMPARED - 1 :], peaks[-COMPARED - 1 :], scales)
+    apart, ratios = differences(steps[-COMPARED_RUNS - 1 :], peaks[-COMPARED_RUNS - 1 :], scales)
     return SAFETY * float(np.max(apart / (ratios**order - 1.0), initial=0.0))
 
 

@@ -29,11 +29,12 @@ MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
 MAX_STALE_RUNS = 6  #: runs in a row that do not halve the error, after which shorter steps are given up
 MAX_STALE_OF_SEVERAL = 2  #: the same where the motion is one of several: each step may find another one
-AIM = 0.6  #: share of the tolerance that the next step aims at
-FEWEST = 3  #: runs that a tolerance is met with: two may agree by chance
-RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
-FIRST = 0.5  #: the second step over the first, where collisions are resolved
-SHORTEST, LONGEST = 1.0 / 8.0, 0.7  #: of a step, that the next one is: where that is not resolved, at most
+TARGET_SHARE = 0.6  #: share of the tolerance that the next step aims at
+MIN_RUNS = 3  #: runs that a tolerance is met with: two may agree by chance
+STEPS_OF_COLLISION = 10.0  #: steps that the collision of the largest force takes at least
+FIRST_RATIO = 0.5  #: the second step over the first, where collisions are resolved
+#: least ratio of the next step to the last where collisions are not resolved, and largest ratio
+MIN_RATIO, MAX_RATIO = 1.0 / 8.0, 0.7
 #: retries after runs that stopped, one after another, before and after one that was completed
 MAX_RETRIES, MAX_SHORTER = 10, 3
 #: share of the run; where one stops before, another step is that share of its own
@@ -91,10 +92,10 @@ class StepRefinement:
 
     def least_cost(self) -> float:
         """Return what all runs cost together at least: those that were made, the next one, and those that
-        are left to `FEWEST`.
+        are left to `MIN_RUNS`.
         """
-        after = range(max(FEWEST - len(self.steps), 1))
-        return self.spent + sum(self.cost_of_run(FIRST**k * self.h) for k in after)
+        after = range(max(MIN_RUNS - len(self.steps), 1))
+        return self.spent + sum(self.cost_of_run(FIRST_RATIO**k * self.h) for k in after)
 
     def run(self) -> Outcome | None:
         """Run once; return the outcome if no run follows, else None with the next step chosen.
@@ -154,23 +155,23 @@ class StepRefinement:
         allowed = scales * np.array([self.tolerances[kind] for kind in kinds.tolist()])
         # the next step relies on the order of the method, or one that is seen once; the judgement does not
         self.likely = likely_error(self.steps, self.peaks, allowed)
-        shown = len(self.steps) >= FEWEST and self.lasts >= RESOLVED * self.h
+        shown = len(self.steps) >= MIN_RUNS and self.lasts >= STEPS_OF_COLLISION * self.h
         self.met = self.error <= 1.0 and shown
         # an order that is seen once is progress, if it is no proof
-        reached = self.likely if len(self.steps) >= FEWEST else self.error
+        reached = self.likely if len(self.steps) >= MIN_RUNS else self.error
         self.stale = 0 if reached < 0.5 * self.best else self.stale + 1
         self.best = min(self.best, reached)
 
     def _choose(self) -> None:
         """Choose the next step."""
-        resolved = 0.9 * self.lasts / RESOLVED
+        resolved = 0.9 * self.lasts / STEPS_OF_COLLISION
         # where shorter steps do not help, as little as possible is spent on learning whether they will
         least = 0.25 if self.stale == 0 else 0.5
         if resolved < self.h * least:
-            least = SHORTEST
-        shorter = float(np.sqrt(AIM / max(self.likely, AIM))) if self.steps[1:] else 0.5
+            least = MIN_RATIO
+        shorter = float(np.sqrt(TARGET_SHARE / max(self.likely, TARGET_SHARE))) if self.steps[1:] else 0.5
         self.aim = min(self.h * shorter, resolved)
-        self.h = float(np.clip(self.aim, least * self.h, LONGEST * self.h))
+        self.h = float(np.clip(self.aim, least * self.h, MAX_RATIO * self.h))
         self.aim = min(self.aim, self.h)
 
     def _retry(self, stop: Stop, replay: Replay) -> Outcome | None:

@@ -23,12 +23,15 @@ from pound_solve.integrate.convergence.compared import NAMES, RESPONSES, Peak, f
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import INTERRUPTED, EnvelopeRecorder, Outcome, Problem, Stop, goals
 
-STEPS = 2.0  #: of a run that are expected between two samples of the excitation or instants of output
-FIRST = 0.1  #: tolerance of the first run, as a share of that of the peaks
-MOST = 1e-5  #: the same at most: a larger one hardly saves steps, since intervals and events remain
-CLAIMED = 0.05  #: least estimate over the tolerance of the peaks: no more is claimed than was asked for
+#: of a run that are expected between two samples of the excitation or instants of output
+EXPECTED_STEPS = 2.0
+FIRST_TOLERANCE = 0.1  #: tolerance of the first run, as a share of that of the peaks
+#: the same at most: a larger one hardly saves steps, since intervals and events remain
+MAX_FIRST_TOLERANCE = 1e-5
+#: least estimate over the tolerance of the peaks: no more is claimed than was asked for
+MIN_ESTIMATE = 0.05
 NEXT, NEXT_LEAST = 0.1, 1e-3  #: tolerance of the next run over that of the last, at most and at least
-LEAST = 1e-12  #: smallest tolerance of a run
+MIN_TOLERANCE = 1e-12  #: smallest tolerance of a run
 POWER = 0.5  #: of the tolerance that errors are assumed to fall with, at least
 ORDER = 6  #: steps grow with the root of this order
 MAX_RUNS = 6  #: after which smaller tolerances are given up
@@ -76,9 +79,11 @@ class ToleranceRefinement:
         self.problem, self.system = problem, problem.system
         self.tolerances = tolerances(options)
         self.errors, self.error = dict.fromkeys(self.tolerances, np.inf), np.inf
-        self.tol = self.floor = float(np.clip(FIRST * min(self.tolerances.values()), LEAST, MOST))
+        self.tol = self.floor = float(
+            np.clip(FIRST_TOLERANCE * min(self.tolerances.values()), MIN_TOLERANCE, MAX_FIRST_TOLERANCE)
+        )
         self.step_cost = costs.of_series_step(self.system)
-        self.steps = STEPS * len(goals(self.system, problem.start.times)[0])
+        self.steps = EXPECTED_STEPS * len(goals(self.system, problem.start.times)[0])
         self.most = max(self.steps, others / self.step_cost)
         self.runs, self.events, self.spent = 0, 0, 0.0
         self.peaks = list[tuple[float, Peak]]()
@@ -124,17 +129,17 @@ class ToleranceRefinement:
         share = NEXT
         if before is not None:
             share = NEXT_LEAST  # which makes other steps
-            if outcome.figures["steps"] > before[0].figures["steps"] or self.tol == LEAST:
+            if outcome.figures["steps"] > before[0].figures["steps"] or self.tol == MIN_TOLERANCE:
                 self._compare(peaks)
-                share = float(np.clip(FIRST / self.error, NEXT_LEAST, NEXT))
-        if self.error <= 1.0 or self.runs == MAX_RUNS or self.tol == LEAST:
+                share = float(np.clip(FIRST_TOLERANCE / self.error, NEXT_LEAST, NEXT))
+        if self.error <= 1.0 or self.runs == MAX_RUNS or self.tol == MIN_TOLERANCE:
             replay.pass_on()
             outcome.figures = {**outcome.figures, "runs": self.runs}
             outcome.checks = self.checks(outcome, "the smallest that is tried")
             return outcome
         self.peaks.append((self.tol, peaks))
         self.steps = taken * share ** (-1.0 / ORDER)
-        self.floor, self.tol = self.tol, max(share * self.tol, LEAST)
+        self.floor, self.tol = self.tol, max(share * self.tol, MIN_TOLERANCE)
         return None
 
     def _compare(self, peak: Peak) -> None:
@@ -145,7 +150,7 @@ class ToleranceRefinement:
             fallen = (self.floor / tol) ** POWER
             apart = np.maximum(apart, fallen * np.abs(peak.values - before.values) / scales)
         for kind in self.tolerances:
-            least = max(self.floor, CLAIMED * self.tolerances[kind])
+            least = max(self.floor, MIN_ESTIMATE * self.tolerances[kind])
             self.errors[kind] = max(float(apart[peak.kinds == kind].max(initial=0.0)), least)
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
 

@@ -3,8 +3,9 @@
 EXACT and TAYLOR make rounding errors only.  Most motions leave them as small as they are.  Where contacts
 strike again and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
 left, and the balance of energies and every other check are still good.  A run of the same method whose
-excitation is larger by a share of `CHANGE`, ten times the rounding of a run or more, tells: how far its
-peaks are from those of the run is what rounding may do to them.  It keeps no histories and no envelopes.
+excitation is larger by a share of `EXCITATION_CHANGE`, ten times the rounding of a run or more, tells: how
+far its peaks are from those of the run is what rounding may do to them.  It keeps no histories and no
+envelopes.
 
 It does not see what both runs decide alike, as which of two springs of equal strength yields: `uniqueness`
 looks for that.
@@ -30,16 +31,16 @@ from pound_solve.integrate.protocol import (
     not_linear,
 )
 
-CHANGE = 1e-11  #: of the excitation, as a share
-ABOUT = f"change of the peaks where the excitation changes by {CHANGE:g}"
+EXCITATION_CHANGE = 1e-11  #: of the excitation, as a share
+ABOUT = f"change of the peaks where the excitation changes by {EXCITATION_CHANGE:g}"
 MAGNIFIED = "the motion magnifies rounding beyond TOL: these peaks are chance, so compare several motions"
 
 
 def changed(problem: Problem[EnvelopeRecorder], witness: Witness) -> Problem[Recorder]:
-    """Return the problem of the twin: inputs and velocities are larger by `CHANGE`, or the displacements
-    where there are neither.
+    """Return the problem of the twin: inputs and velocities are larger by `EXCITATION_CHANGE`, or, where
+    there are neither, the displacements.
     """
-    system, start, factor = problem.system, problem.start, 1.0 + CHANGE
+    system, start, factor = problem.system, problem.start, 1.0 + EXCITATION_CHANGE
     excitation = replace(system.excitation, coefs=factor * system.excitation.coefs)
     if excitation.coefs.any() or start.v.any():
         start = replace(start, v=factor * start.v)

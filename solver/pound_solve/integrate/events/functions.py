@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from pound_solve.integrate.events import grid
-from pound_solve.integrate.events.protocol import LOOKS, LocatedEvent
+from pound_solve.integrate.events.protocol import CONTACT_SAMPLES, LocatedEvent
 from pound_solve.integrate.tracker import Peak, ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array, Flags
@@ -187,7 +187,7 @@ class EventFunctions(RowFunctions):
             others = np.where([[[law in late]] for law, _ in self.keys], np.inf, tol)
             other = grid.first_rise(samples.t, g, slope, others, evaluate)
             if other is not None and (other.segment, other.cell) == (rise.segment, rise.cell):
-                times = np.linspace(rise.time, other.time, LOOKS).tolist()
+                times = np.linspace(rise.time, other.time, CONTACT_SAMPLES).tolist()
                 values = [evaluate(rise.function, rise.segment, rise.cell, t)[0] for t in times]
                 rise = rise if max(values) > there else other
         law, event_index = self.keys[rise.function]

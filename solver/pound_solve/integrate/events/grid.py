@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.cubic import cubic_peak
 from pound_solve.numerics.types import Array, Flags
@@ -86,7 +86,7 @@ def two_extremes(t: Array, value: Array, slope: Array) -> tuple[Flags, Array]:
         a, b = s0 + s1 - 2.0 * mean, 3.0 * mean - 2.0 * s0 - s1
         at = -b / (3.0 * a)  # where the cubic's slope, s0 + 2 b x + 3 a x^2, is least or largest
         twice = (s0 * s1 > 0.0) & (at > 0.0) & (at < 1.0) & ((s0 + b * at) * s0 < 0.0)
-        rounding = STILL * np.abs(value).max(axis=(1, 2), keepdims=True)
+        rounding = EVENT_TOLERANCE * np.abs(value).max(axis=(1, 2), keepdims=True)
         twice &= np.abs(rise - 0.5 * (s0 + s1) * width) > rounding
     return twice, t[..., :-1] + at * width
 

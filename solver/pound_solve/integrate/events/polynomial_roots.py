@@ -22,8 +22,8 @@ import numpy as np
 from pound_solve.numerics.jit import loose
 from pound_solve.numerics.types import Array
 
-DEPTH = 44  #: halvings of a cell, at most
-NOISE = 1e-15  #: share of the sum of the coefficients that is rounding
+MAX_HALVINGS = 44  #: halvings of a cell, at most
+COEFFICIENT_ROUNDING = 1e-15  #: share of the sum of the coefficients that is rounding
 #: what the kernels work on has the polynomial in row 0, cells in the others, of which the last is looked
 #: at; the columns after their coefficients are their place and their width
 POLYNOMIAL, CELLS = range(2)
@@ -31,7 +31,7 @@ POLYNOMIAL, CELLS = range(2)
 
 def room(terms: int) -> tuple[int, int]:
     """Shape of the work array of the kernels for polynomials of highest power `terms`."""
-    return DEPTH + 2, terms + 3
+    return MAX_HALVINGS + 2, terms + 3
 
 
 @loose
@@ -173,14 +173,14 @@ def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
     if p[POLYNOMIAL, 0] + far <= tol:
         return -1.0
     place, width = p.shape[1] - 2, p.shape[1] - 1
-    noise = NOISE * (abs(p[POLYNOMIAL, 0]) + far)
+    noise = COEFFICIENT_ROUNDING * (abs(p[POLYNOMIAL, 0]) + far)
     p[POLYNOMIAL, 0] = min(p[POLYNOMIAL, 0], 0.0)
     write_in_bernstein_form(p, terms, end)
     row = CELLS
     while row >= CELLS:
         if highest_of(p, terms, row) > tol:
             first, count = sign_changes(p, terms, row, noise)
-            if count > 0 and row - CELLS < DEPTH:
+            if count > 0 and row - CELLS < MAX_HALVINGS:
                 halve_cell(p, terms, row)
                 row += 1
                 continue
@@ -200,13 +200,13 @@ def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, floa
     if p[POLYNOMIAL, 0] + far <= known:
         return best, where
     place, width = p.shape[1] - 2, p.shape[1] - 1
-    noise = NOISE * (abs(p[POLYNOMIAL, 0]) + far)
+    noise = COEFFICIENT_ROUNDING * (abs(p[POLYNOMIAL, 0]) + far)
     write_in_bernstein_form(p, terms, end)
     row = CELLS
     while row >= CELLS:
         if highest_of(p, terms, row) > best:
             first, count = sign_changes(p, terms, row, noise)
-            if count > 1 and row - CELLS < DEPTH:
+            if count > 1 and row - CELLS < MAX_HALVINGS:
                 halve_cell(p, terms, row)
                 row += 1
                 continue

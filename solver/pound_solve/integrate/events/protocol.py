@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-LOOKS = 9  #: points before another law's event at which the event function of a contact is evaluated
+#: points before another law's event at which the event function of a contact is evaluated
+CONTACT_SAMPLES = 9
 
 
 class LocatedEvent(NamedTuple):

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.events.protocol import LOOKS, LocatedEvent, none
+from pound_solve.integrate.events.protocol import CONTACT_SAMPLES, LocatedEvent, none
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Step
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 
-#: times `STILL`: share of their displacements within which bodies stay that move alike in steps; each of
-#: their events is met to `STILL`
-ALIKE = 1e3
-EVEN = 1e-9  #: share of its terms below which a slope is rounding
-BACK = 1e-6  #: share of its largest rate that a law must move back with before that counts as a reversal
+#: `EVENT_TOLERANCE` times this: share of their displacements within which bodies that move alike stay
+#: together in steps; each of their events is met to `EVENT_TOLERANCE`
+MOVING_ALIKE = 1e3
+SLOPE_ROUNDING = 1e-9  #: share of its terms below which a slope is rounding
+#: share of its largest rate that a law must move back with before that counts as a reversal
+REVERSE_RATE = 1e-6
 
 
 def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, float]:
     """Event function `e` of law `i` at deformation `d` and rate `v`, and the magnitude of its terms."""
     on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
     if on_d == 0.0 and constant == 0.0:  # what hardly moves would reverse again and again
-        back = max(BACK * laws.largest_rate[i], STILL * laws.largest_terms[i])
+        back = max(REVERSE_RATE * laws.largest_rate[i], EVENT_TOLERANCE * laws.largest_terms[i])
         constant = -abs(on_v) * back
     size = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
     return on_d * d + on_v * v + constant, size
@@ -51,7 +52,7 @@ def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
     if laws.normal[i] < 0 or on_d == 0.0:
         return s0, s1
     grows = laws.limit_rates_at_start[i, e]
-    even = EVEN * (abs(s0) + abs(grows))
+    even = SLOPE_ROUNDING * (abs(s0) + abs(grows))
     s0 += grows
     return 0.0 if abs(s0) <= even else s0, s1 + laws.limit_rates[i, e]
 
@@ -96,8 +97,11 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
     s0, s1 = all_slopes(laws, step, i, e)
     g0 = min(start_value(laws, i, e), 0.0)
-    for k in range(1, LOOKS):
-        if cubic_value(g0, g1, s0, s1, h, t * k / (LOOKS - 1)) > ALIKE * STILL * size:
+    for k in range(1, CONTACT_SAMPLES):
+        if (
+            cubic_value(g0, g1, s0, s1, h, t * k / (CONTACT_SAMPLES - 1))
+            > MOVING_ALIKE * EVENT_TOLERANCE * size
+        ):
             return True
     return False
 
@@ -108,7 +112,7 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     if on_d == 0.0 and on_v == 0.0:
         return np.inf
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
-    tol = STILL * max(ALIKE * size if laws.contact[i] else size, abs(g1))
+    tol = EVENT_TOLERANCE * max(MOVING_ALIKE * size if laws.contact[i] else size, abs(g1))
     s0, s1 = slopes(laws, i, e)
     if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
         return np.inf

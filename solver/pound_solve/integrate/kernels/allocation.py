@@ -9,7 +9,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels import state
 from pound_solve.integrate.kernels.state import Product, Rows, Scheme
-from pound_solve.integrate.protocol import STILL, MonitoredOutputs, Start
+from pound_solve.integrate.protocol import EVENT_TOLERANCE, MonitoredOutputs, Start
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES
@@ -24,11 +24,11 @@ from pound_solve.structure.reduction import ReducedSystem
 
 #: samples and transitions kept between two visits of Python, which cost 2 ms each
 SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
-MOST_HELD = 2**20  #: numbers of one kind in those samples at most, except that two samples always fit
+MAX_HELD = 2**20  #: numbers of one kind in those samples at most, except that two samples always fit
 #: motions of one step, and of whole steps between two visits, that envelopes see at least
-FEWEST_SHOWN = 64
-ROUNDING = 16.0 * float(np.finfo(float).eps)  #: share of a force that solving for it loses
-INSTANT = 1e-6  #: longest time e by which massless velocities are found, as a share of the longest step
+MIN_SHOWN = 64
+SOLUTION_ROUNDING = 16.0 * float(np.finfo(float).eps)  #: share of a force that solving for it loses
+MAX_DELAY = 1e-6  #: longest time e by which massless velocities are found, as a share of the longest step
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
 
 
@@ -156,7 +156,7 @@ def linear_system(
         has_mass=has_mass,
         all_mass=bool(has_mass.all()),
         massless_vary=any(len(np.intersect1d(x, without)) for x in varying),
-        instant=INSTANT * dt,
+        instant=MAX_DELAY * dt,
         implicit=in_stiffness,
         diagonal=is_diagonal(mass),
         explicit=not (in_stiffness or len(layout.pattern.li) or any(s.damps for s in laws)),
@@ -211,7 +211,7 @@ def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
     k = np.array([s.steepest for s in system.structure.laws], float)
     doubled = float(np.abs(start.u) @ np.abs(system.stiffness @ start.u) + k @ d**2)
     square: Array = np.divide(doubled, k, out=np.zeros_like(k), where=k > 0.0)
-    return ROUNDING * np.sqrt(square)
+    return SOLUTION_ROUNDING * np.sqrt(square)
 
 
 def law_arrays(
@@ -263,9 +263,9 @@ def law_arrays(
         limit_rates_at_start=np.zeros((count, EVENTS)),
         now=state.LawMotion(d, v),
         trial=state.LawMotion(np.zeros(count), np.zeros(count)),
-        largest_deformation=np.maximum(np.abs(d), rounding / STILL),
+        largest_deformation=np.maximum(np.abs(d), rounding / EVENT_TOLERANCE),
         largest_rate=np.abs(v),
-        largest_terms=np.maximum(np.abs(v), rounding / dt / STILL),
+        largest_terms=np.maximum(np.abs(v), rounding / dt / EVENT_TOLERANCE),
         friction_force=np.zeros(count),
         dashpot_loss=dashpot_losses,
         peak_force=np.zeros(count),
@@ -375,10 +375,10 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
     """Room for samples and transitions; `which` unknowns, and the forces of the laws `acting`, are shown
     between the samples.
     """
-    samples = min(SAMPLES, max(MOST_HELD // (3 * max(n, n_laws, 1)), 2))
+    samples = min(SAMPLES, max(MAX_HELD // (3 * max(n, n_laws, 1)), 2))
     log = TRANSITIONS + 16 * n_laws
     # half of it is for the parts of one step, which events cut
-    shown = 2 * max(min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(acting), 3)), FEWEST_SHOWN)
+    shown = 2 * max(min(16 * SAMPLES, MAX_HELD // max(3 * len(which) + len(acting), 3)), MIN_SHOWN)
     u, v, a = np.zeros((3, samples, n))
     force, stored, lost, dashpot = np.zeros((4, samples, n_laws))
     return state.Buffers(

@@ -27,8 +27,9 @@ from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
 
-NEAR = 1e-6  #: share of its largest value within which an event is accepted where it cannot be met better
-LOST = 10.0 * NEAR  #: share of the forces of a law above which it has lost one at an event
+#: share of its largest value within which an event is accepted where it cannot be met better
+NEARLY_MET = 1e-6
+FORCE_JUMP = 10.0 * NEARLY_MET  #: share of the forces of a law above which it has lost one at an event
 DELAY = 1e-8  #: share of the longest C / K among massless unknowns that e is
 
 
@@ -49,7 +50,7 @@ def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: 
         return False
     largest, now, after = laws.largest_deformation[i], laws.stiffness[i], laws.offset[i]
     size = (abs(stiffness) + abs(now)) * largest + abs(offset) + abs(after)
-    lost = abs((stiffness - now) * d + offset - after) > LOST * size
+    lost = abs((stiffness - now) * d + offset - after) > FORCE_JUMP * size
     return lost and touches_massless(linear, laws, i)
 
 
@@ -195,7 +196,7 @@ def jump_massless_rates(sim: Simulation) -> None:
     for c in range(len(laws.members.parameters)):
         subtract_force(laws.members, c, laws.members.now.forces, force)
     for i in range(len(force)):
-        if linear.has_mass[i] or abs(force[i]) <= NEAR * size[i]:
+        if linear.has_mass[i] or abs(force[i]) <= NEARLY_MET * size[i]:
             force[i] = 0.0
         force[i] *= rate
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], force)

@@ -6,8 +6,8 @@ from pound_solve.integrate.kernels.state import Corotational, Laws, LinearSystem
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import KNN, KTT, LENGTH, quantity_forces, quantity_stiffness
 
-CLEAR = 1e-12  #: share of the largest force that the members' forces are found to
-ROUNDING = 1e-15  #: share of a member's axial stiffness that its forces are rounded to
+FORCE_TOLERANCE = 1e-12  #: share of the largest force that the members' forces are found to
+MEMBER_ROUNDING = 1e-15  #: share of a member's axial stiffness that its forces are rounded to
 
 
 def form_quantities(members: Corotational, u: Array, inputs: Array, out: Array) -> None:
@@ -116,7 +116,7 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
     for c in range(len(p)):
         length, knn = p[c, LENGTH], p[c, KNN]
         reach = length + abs(trial.quantities[c, 2]) + abs(trial.quantities[c, 3])
-        allowed = CLEAR * size + ROUNDING * knn * reach
+        allowed = FORCE_TOLERANCE * size + MEMBER_ROUNDING * knn * reach
         add_tangent_force(members.tangent, c, trial.quantities, members.at_zero, 1.0)
         for j in range(6):
             off = abs(trial.forces[c, j] - members.at_zero[c, j])

@@ -25,6 +25,7 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
+    RUNAWAY_TEXT,
     Course,
     LawValues,
     Motion,
@@ -34,14 +35,13 @@ from pound_solve.integrate.protocol import (
     Stop,
     without_steps,
 )
-from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.tracker import Peaks, ResponseTracker
 from pound_solve.integrate.uniqueness import Uniqueness
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics.jit import Function
-from pound_solve.numerics.matrices import MOST_DENSE, dense
+from pound_solve.numerics.matrices import MAX_DENSE, dense
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.providers import provider
 
@@ -213,7 +213,7 @@ class KernelEngine(ABC):
             fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
             name = self.system.name(fastest)
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
-            return self.stop("A504", GROWS.format(self.state.initial_energy) + cause)
+            return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy) + cause)
         if why == PIVOT:
             return self.stop("A501", self.system.loose(int(self.order[fault])))
         if why == CHATTER and (snaps := self._without_branch(fault)) is not None:
@@ -251,7 +251,7 @@ class KernelEngine(ABC):
         this instant are on the softest of their branches.
         """
         light = np.flatnonzero(massless(self.system.mass))
-        if self.system.structure.corotational or len(light) > MOST_DENSE:
+        if self.system.structure.corotational or len(light) > MAX_DENSE:
             return True  # it takes too long to find out
         stiffness = self.laws.stiffness.copy()
         changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.state.time}

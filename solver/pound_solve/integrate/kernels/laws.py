@@ -6,7 +6,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
 from pound_solve.laws.functions import (
     PARAMETERS,
@@ -204,7 +204,7 @@ def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> N
         c = curved_force(laws, rules, j, d, v)
         force = c[0]
         if force == 0.0 == c[1]:  # outside by rounding: the rate is that from inside
-            c = curved_force(laws, rules, j, d + STILL * laws.largest_deformation[j], v)
+            c = curved_force(laws, rules, j, d + EVENT_TOLERANCE * laws.largest_deformation[j], v)
         press_friction(laws, i, force, c[1] * v + c[2] * a, v)
     pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
     if pressed != (laws.branch[i] != 0):
@@ -266,7 +266,7 @@ def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: floa
     if a != 0.0:
         c += b * rate
     value, slope = a * start + c, a * sign
-    rounding = STILL * abs(a) * laws.largest_deformation[i]
+    rounding = EVENT_TOLERANCE * abs(a) * laws.largest_deformation[i]
     if laws.contact[i] and a != 0.0 and a * end + c <= rounding:
         return np.nan
     if b != 0.0 and a == 0.0 and c == 0.0:

@@ -25,13 +25,13 @@ from numpy.typing import NDArray
 from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics.types import Array
 
-TERMS = 22  #: of a Taylor series over 1 / (spectral radius): 1/22! is 1e-21
+TAYLOR_TERMS = 22  #: of a Taylor series over 1 / (spectral radius): 1/22! is 1e-21
 
 #: k! m! / (k + m + 1)!: contribution of a force t^k to the Taylor coefficient of order k + m + 1, as a
 #: factor of the m-th of `Propagator._taylor_rows`
 _FORCE_FACTORS = [
-    np.array([factorial(k) * factorial(m) / factorial(k + m + 1) for m in range(TERMS - k - 1)])
-    for k in range(TERMS - 1)
+    np.array([factorial(k) * factorial(m) / factorial(k + m + 1) for m in range(TAYLOR_TERMS - k - 1)])
+    for k in range(TAYLOR_TERMS - 1)
 ]
 
 
@@ -128,7 +128,7 @@ class Propagator(ABC):
         coefs: Array = (rows @ q).real
         for k, force in enumerate(g):
             # t^k enters at the power k + 1, and each derivative of q carries it one further
-            coefs[k + 1 :] += h ** (k + 1) * _FORCE_FACTORS[k] * (rows[: TERMS - k - 1] @ force).real
+            coefs[k + 1 :] += h ** (k + 1) * _FORCE_FACTORS[k] * (rows[: TAYLOR_TERMS - k - 1] @ force).real
         return coefs
 
     @abstractmethod

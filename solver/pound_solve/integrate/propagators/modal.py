@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.propagators.base import TERMS, Propagator, powers
+from pound_solve.integrate.propagators.base import TAYLOR_TERMS, Propagator, powers
 from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex, Index
@@ -230,7 +230,7 @@ class ModalPropagator(Propagator):
     def _taylor_rows(self, row: Complex, h: float) -> Complex:
         factors = self._powers.get(h)
         if factors is None:
-            steps = h * self.eigenvalues / np.arange(1, TERMS)[:, None]
+            steps = h * self.eigenvalues / np.arange(1, TAYLOR_TERMS)[:, None]
             factors = np.cumprod(np.concatenate([np.ones((1, len(self.eigenvalues))), steps]), axis=0)
             if len(self._powers) < MAX_TABLES:
                 self._powers[h] = factors

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.propagators.base import TERMS, Propagator, gauss
+from pound_solve.integrate.propagators.base import TAYLOR_TERMS, Propagator, gauss
 from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
@@ -49,7 +49,7 @@ class SeriesPropagator(Propagator):
 
     def _taylor_rows(self, row: Array, h: float) -> Array:
         rows = [row]
-        for m in range(1, TERMS):
+        for m in range(1, TAYLOR_TERMS):
             rows.append(h / m * (rows[-1] @ self.space.a))
         return np.array(rows)
 

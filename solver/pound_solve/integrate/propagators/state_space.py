@@ -21,9 +21,9 @@ import numpy as np
 from pound_solve.numerics.modes import generalised
 from pound_solve.numerics.types import Array, Flags
 
-SLOW = 1e-3  #: modes with omega^2 below this share of the largest are solved again among themselves
-RIGID = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
-HELD = 1e-12  #: singular values of constraints below this share of the largest count as zero
+SLOW_MODES = 1e-3  #: modes with omega^2 below this share of the largest are solved again among themselves
+RIGID_MODE = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
+DEPENDENT = 1e-12  #: singular values of constraints below this share of the largest count as zero
 
 
 class Mechanism(Exception):
@@ -192,11 +192,11 @@ def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
     touched = np.flatnonzero(rows.any(axis=0))
     others = np.delete(np.arange(n), touched)
     _, size, right = np.linalg.svd(rows[:, touched])
-    null = right[int((size > HELD * size[0]).sum()) :].T
+    null = right[int((size > DEPENDENT * size[0]).sum()) :].T
     t = np.zeros((n, null.shape[1] + len(others)))
     t[touched, : null.shape[1]] = null
     t[others, null.shape[1] + np.arange(len(others))] = 1.0
-    w = np.linalg.pinv(rows, rcond=HELD)
+    w = np.linalg.pinv(rows, rcond=DEPENDENT)
     try:
         inner = state_space(t.T @ m @ t, t.T @ c @ t, t.T @ k @ t)
     except Mechanism as err:
@@ -263,8 +263,8 @@ def _undamped_modes(m: Array, k: Array) -> tuple[Array, Array]:
     omega2, phi = generalised(k, m)
     slow = np.arange(len(omega2))
     # down to where the stiffness, as assembled, is rounding
-    while len(slow) and np.abs(omega2[slow]).max() > SLOW * _rounding_scale(phi[:, slow], k).max():
-        chosen = np.abs(omega2[slow]) < SLOW * np.abs(omega2[slow]).max()
+    while len(slow) and np.abs(omega2[slow]).max() > SLOW_MODES * _rounding_scale(phi[:, slow], k).max():
+        chosen = np.abs(omega2[slow]) < SLOW_MODES * np.abs(omega2[slow]).max()
         fast, slow = slow[~chosen], slow[chosen]
         shapes = phi[:, slow]
         shapes = shapes - phi[:, fast] @ ((phi[:, fast].T @ (k @ shapes)) / omega2[fast][:, None])
@@ -280,7 +280,7 @@ def _are_rigid(omega2: Array, scale: Array) -> Flags:
     any stiffness has next to no rounding scale of its own: its rounding is that of the others in the
     combination.
     """
-    share, size = RIGID * len(omega2), np.abs(omega2)
+    share, size = RIGID_MODE * len(omega2), np.abs(omega2)
     rigid = size <= share * scale
     mixed = np.sqrt(scale * scale[rigid].max(initial=0.0))
     return np.asarray(rigid | (size < share * np.maximum(mixed, share * size.max(initial=0.0))))

@@ -34,8 +34,8 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
-SPREAD = 0.1  #: share of the largest displacement that counts as a term of all
+ACCELERATION_ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
+DISPLACEMENT_SHARE = 0.1  #: share of the largest displacement that counts as a term of all
 MAX_IMPACTS = 100_000  #: at one instant
 MAX_PIVOTS = 10_000
 
@@ -107,7 +107,7 @@ class RigidContacts:
         at = np.flatnonzero(chosen)
         impulse, pressed = np.zeros(len(rates)), np.zeros(len(rates), bool)
         tolerance = np.zeros(len(rates))
-        tolerance[at] = ROUNDING * np.abs(rates[at]).max(initial=0.0)
+        tolerance[at] = ACCELERATION_ROUNDING * np.abs(rates[at]).max(initial=0.0)
         for _ in range(MAX_PIVOTS):
             # one contact at a time becomes pressed or free, the first that violates its condition: this
             # scheme ends
@@ -124,7 +124,7 @@ class RigidContacts:
             impulse = np.zeros(len(rates))
             # contacts with dependent rows share evenly
             delassus = self.delassus[np.ix_(pressing, pressing)]
-            impulse[pressing] = np.linalg.lstsq(delassus, rates[pressing], rcond=ROUNDING)[0]
+            impulse[pressing] = np.linalg.lstsq(delassus, rates[pressing], rcond=ACCELERATION_ROUNDING)[0]
         raise ArithmeticError("the set of rigid contacts that press cannot be found")
 
     def impact(self, rates: Array, touching: Flags, slow: Array) -> tuple[Array, Array, Array]:
@@ -147,7 +147,7 @@ class RigidContacts:
         impulse, lost = np.zeros(len(rates)), np.zeros(len(rates))
         # bodies in a row pass on a share of what is left, for ever: where none has moved before, what is
         # left is compared with the impact itself
-        slow = np.maximum(slow, ROUNDING * rates[touching].max(initial=0.0))
+        slow = np.maximum(slow, ACCELERATION_ROUNDING * rates[touching].max(initial=0.0))
         for _ in range(MAX_IMPACTS):
             hit = touching & (rates > slow)
             if not hit.any():
@@ -194,7 +194,7 @@ class RigidContacts:
         )
         # bodies that move as one cancel in K u, their rounding does not; that of a static state is of the
         # size of the largest displacement
-        u = np.abs(u) + SPREAD * np.abs(u).max(initial=0.0)
+        u = np.abs(u) + DISPLACEMENT_SHARE * np.abs(u).max(initial=0.0)
         sums = np.abs(terms[:2]).sum(axis=0) + abs(system.law_rows).T @ np.abs(force)
         sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ u
         size = np.abs(self.velocity_change).T @ sums
@@ -211,4 +211,4 @@ class RigidContacts:
 
     def inverse(self, at: Index) -> Array:
         """Inverse of G over the contacts `at`; those with dependent rows share evenly."""
-        return np.asarray(np.linalg.pinv(self.delassus[np.ix_(at, at)], rcond=ROUNDING), float)
+        return np.asarray(np.linalg.pinv(self.delassus[np.ix_(at, at)], rcond=ACCELERATION_ROUNDING), float)

@@ -7,17 +7,17 @@ from typing import Protocol
 
 import numpy as np
 
-from pound_solve.integrate.protocol import STILL, Stop
-from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts
+from pound_solve.integrate.protocol import EVENT_TOLERANCE, Stop
+from pound_solve.integrate.rigid.contacts import ACCELERATION_ROUNDING, RigidContacts
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
 
-SLOW = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
-LOST = 4.0  #: rise of a rebound that is lost in rounding, over that rounding
-OVERLAP = 1e-10  #: share of its terms beyond which a deformation overlaps at the start
+NO_REBOUND = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
+REBOUND_ROUNDING = 4.0  #: rise of a rebound that is lost in rounding, over that rounding
+START_OVERLAP = 1e-10  #: share of its terms beyond which a deformation overlaps at the start
 
 
 class RigidRun(Protocol):
@@ -109,7 +109,9 @@ class RigidInstants:
         """Stop where rigid bodies overlap."""
         x, run = self.contacts, self.run
         d = x.rows @ run.u + x.inputs @ self._inputs()[0]
-        size = OVERLAP * (np.abs(x.rows) @ np.abs(run.u) + x.gap) + STILL * np.abs(run.u).max(initial=0.0)
+        size = START_OVERLAP * (np.abs(x.rows) @ np.abs(run.u) + x.gap) + EVENT_TOLERANCE * np.abs(
+            run.u
+        ).max(initial=0.0)
         for i in np.flatnonzero(d - x.gap > size).tolist():
             s = run.system.structure.laws[x.laws[i]]
             why = f"the rigid contact {s.element} ({s.rule}) overlaps by {d[i] - x.gap[i]:.3g} at the start"
@@ -133,7 +135,7 @@ class RigidInstants:
         losses = np.zeros(len(run.branches))
         losses[x.laws] = lost
         run.take_impact(float(impulse @ (x.inputs @ s[1])), losses)
-        stays = touching & (after >= -ROUNDING * fastest)
+        stays = touching & (after >= -ACCELERATION_ROUNDING * fastest)
         for i, law in enumerate(x.laws):
             if not held[i] and (stays[i] or impulse[i] > 0.0):
                 run.transition(law, 0, float(d[i]), float(rates[i]))
@@ -153,10 +155,10 @@ class RigidInstants:
         """
         x, run = self.contacts, self.run
         pressing = np.maximum(x.free_accelerations(run.law_forces, run.u, run.v, inputs)[0], 0.0)
-        lost = LOST * STILL * (run.largest[0, x.laws] + x.gap)
+        lost = REBOUND_ROUNDING * EVENT_TOLERANCE * (run.largest[0, x.laws] + x.gap)
         rebound, e = np.sqrt(2.0 * pressing * lost), x.restitution
         approach = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
-        slow: Array = np.maximum(SLOW * run.largest[1, x.laws], approach)
+        slow: Array = np.maximum(NO_REBOUND * run.largest[1, x.laws], approach)
         return slow
 
     def open_pulled(self, spectral_radius: float = 0.0) -> None:
@@ -186,7 +188,7 @@ class RigidInstants:
         free, size = x.free_accelerations(run.law_forces, run.u, run.v, s)
         size = size + spectral_radius * (np.abs(x.rows) @ np.abs(run.v))
         force = x.plastic_impulses(free, held)
-        parting = held & (force == 0.0) & (free - x.delassus @ force < -ROUNDING * size)
+        parting = held & (force == 0.0) & (free - x.delassus @ force < -ACCELERATION_ROUNDING * size)
         for i in np.flatnonzero(parting).tolist():
             d, v = x.rows[i] @ run.u + x.inputs[i] @ s[0], x.rows[i] @ run.v + x.inputs[i] @ s[1]
             run.transition(x.laws[i], 0, float(d), float(v))

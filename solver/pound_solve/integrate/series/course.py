@@ -24,7 +24,7 @@ from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Complex, Index
 
-TERMS = 16  #: of the series of a step for each of its cells, which have some 2.5 radians each
+TERMS_OF_CELL = 16  #: of the series of a step for each of its cells, which have some 2.5 radians each
 
 
 class ShownSteps:
@@ -32,7 +32,7 @@ class ShownSteps:
 
     def __init__(self, shown: Shown, order: Index, excitation: Excitation) -> None:
         self.shown, self.size, self.excitation = shown, len(order), excitation
-        self.cells = max(shown.coefs.shape[2] // TERMS, 1)  # of a step
+        self.cells = max(shown.coefs.shape[2] // TERMS_OF_CELL, 1)  # of a step
         self.unknowns = order[shown.which]
         self.rows = np.zeros(3 * self.size + len(shown.acting), np.int64)  # in the coefficients
         for derivative in range(3):

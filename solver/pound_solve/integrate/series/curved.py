@@ -11,7 +11,7 @@ power :math:`w = x^n` follows from those of x,
 
 (Euler's recurrence), and with it the force of one term from the motion up to the next: no equation has to
 be solved.  The series converges up to the instant of touch, before or behind: steps shorten towards it in
-proportion to the time that is left, down to an overlap `TOUCH` whose force changes nothing.  Where the
+proportion to the time that is left, down to an overlap `NO_OVERLAP` whose force changes nothing.  Where the
 force would pull, and must not, there is none.
 
 References
@@ -36,9 +36,9 @@ from pound_solve.numerics.types import Array, Flags
 
 #: no overlap beyond rounding; a force acts; the force would be tensile, and is zero
 APART, PRESSED, RELEASED = range(3)
-TOUCH = 1e-12  #: overlap that counts as none, over the largest deformation
-RIGHT = 1e-10  #: share of the force that the last of its terms may be
-NEAR = 0.4  #: length of the first step after a touch, as a share of the time since touch
+NO_OVERLAP = 1e-12  #: overlap that counts as none, over the largest deformation
+FORCE_TRUNCATION = 1e-10  #: share of the force that the last of its terms may be
+FIRST_STEP = 0.4  #: length of the first step after a touch, as a share of the time since touch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.numbers`
 
@@ -65,7 +65,7 @@ def overlap(laws: Laws, i: int) -> float:
 
 def touch_overlap(laws: Laws, i: int) -> float:
     """Overlap of contact `i` up to which it counts as zero."""
-    x: float = TOUCH * (laws.largest_deformation[i] + abs(laws.parameters[i, GAP]))
+    x: float = NO_OVERLAP * (laws.largest_deformation[i] + abs(laws.parameters[i, GAP]))
     return x
 
 
@@ -157,7 +157,7 @@ def right_part(force: Array, terms: int, end: float) -> float:
     tail = max(abs(force[last]), abs(force[last - 1]))
     if not tail < np.inf:
         return np.nan
-    return min(end, (RIGHT * most / tail) ** (1.0 / last)) if tail > 0.0 else end
+    return min(end, (FORCE_TRUNCATION * most / tail) ** (1.0 / last)) if tail > 0.0 else end
 
 
 def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
@@ -174,7 +174,7 @@ def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: in
     if event == TOUCHES:
         curved.phase[r] = PRESSED
         lengths.before = max(lengths.before, lengths.next)
-        lengths.next = min(lengths.next, NEAR * overlap(laws, i) / abs(laws.now.rate[i]))
+        lengths.next = min(lengths.next, FIRST_STEP * overlap(laws, i) / abs(laws.now.rate[i]))
     elif event == PARTS:
         curved.phase[r] = APART
         lengths.next, lengths.before = max(lengths.next, lengths.before), 0.0

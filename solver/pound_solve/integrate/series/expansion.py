@@ -6,7 +6,7 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
     (k+1)(k+2)\,M c_{k+2} = h^2\Bigl(p_k - K c_k - \sum_i b_i f_{ik}\Bigr) - h (k+1)\,C c_{k+1},
 
 :math:`f_{ik} = k_i d_{ik} + (k+1) c_i d_{i,k+1}/h` those of the laws' forces on their present branches.
-Terms are taken until two in a row are below a share `SMALL` of the motion in the norm of energy,
+Terms are taken until two in a row are below a share `TRUNCATION` of the motion in the norm of energy,
 :math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be, or is tried
 again if that is far from its end.
 """
@@ -30,11 +30,11 @@ from pound_solve.numerics.jit import loose
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
-TERMS = 32  #: of a series, at most
-CHECK = 4  #: terms after which it is checked whether they suffice
-SMALL = 1e-14  #: share of the motion that a term left out may be
-QUIET = 1e-13  #: share of its energy that a term may carry that works need not see
-GROW = 2.0  #: how much longer than the last a step may be
+MAX_TERMS = 32  #: of a series, at most
+UNCHECKED_TERMS = 4  #: terms after which it is checked whether they suffice
+TRUNCATION = 1e-14  #: share of the motion that a term left out may be
+UNSEEN_ENERGY = 1e-13  #: share of its energy that a term may carry that works need not see
+MAX_GROWTH = 2.0  #: how much longer than the last a step may be
 
 
 @loose
@@ -191,34 +191,34 @@ def expand_series(
     top = len(coefs)
     begin_series(sim, series, coefs, begin, h)
     lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
-    most, k, tail, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, CHECK
-    while k + 2 <= TERMS:
+    most, k, tail, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, UNCHECKED_TERMS
+    while k + 2 <= MAX_TERMS:
         while True:
             next_term(sim, series, k, h, top)
             k += 1
-            if (k + 1) % CHECK == 0:
+            if (k + 1) % UNCHECKED_TERMS == 0:
                 break
         terms = k + 1
         tail, last = energy_of_term(linear, series, terms, h), energy_of_term(linear, series, terms - 1, h)
         if most == 0.0:  # from rest
             most = max(energy_of_term(linear, series, 2, h), last, tail)
-        if tail + last > QUIET * most:
-            lengths.carried = terms + CHECK
-        enough = terms > top and tail + last <= SMALL * SMALL * most
+        if tail + last > UNSEEN_ENERGY * most:
+            lengths.carried = terms + UNCHECKED_TERMS
+        enough = terms > top and tail + last <= TRUNCATION * TRUNCATION * most
         if enough and right_up_to(series, terms, 1.0) == 1.0:
             break
     # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
     others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
     if any_overlap(series.curved) or others:
-        lengths.carried = terms + CHECK
+        lengths.carried = terms + UNCHECKED_TERMS
     if not tail + last < np.inf:
         return terms, np.nan
     expand_deformations(sim.laws, series, terms, top)
-    end = GROW
+    end = MAX_GROWTH
     if tail > 0.0:
-        end = min(end, (SMALL * SMALL * most / tail) ** (0.5 / terms))
+        end = min(end, (TRUNCATION * TRUNCATION * most / tail) ** (0.5 / terms))
     if last > 0.0:
-        end = min(end, (SMALL * SMALL * most / last) ** (0.5 / (terms - 1)))
+        end = min(end, (TRUNCATION * TRUNCATION * most / last) ** (0.5 / (terms - 1)))
     return terms, right_up_to(series, terms, end)
 
 

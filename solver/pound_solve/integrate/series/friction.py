@@ -15,7 +15,7 @@ from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import curved_force, linear_force
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.own_events import LIFT
 from pound_solve.integrate.series.springs import deformation_term
@@ -128,7 +128,7 @@ def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     sign = -1.0 if friction.pressing[r] else 1.0
     for k in range(terms + 1):
         p[k] = sign * friction.push[r, k] if k < terms - 1 else 0.0
-    at = first_rise(series.polynomial, terms, end, STILL * friction.largest[r])
+    at = first_rise(series.polynomial, terms, end, EVENT_TOLERANCE * friction.largest[r])
     return earlier(none(end), i, LIFT, at)
 
 
@@ -155,6 +155,6 @@ def friction_event(laws: Laws, series: Series, terms: int, h: float, end: float,
             p[0] -= sign * numbers[KT] * laws.internal[i, ANCHOR]
         if p[0] > OVERDUE * scale:
             return LocatedEvent(i, e, 0.0)
-        at = first_rise(series.polynomial, terms, first.time, STILL * scale)
+        at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)
         first = earlier(first, i, e, at)
     return first

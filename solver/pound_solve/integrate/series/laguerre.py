@@ -16,7 +16,7 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.protocol import Outcome, Problem, Recorder, Stop, not_linear, refuse_rigid
 from pound_solve.integrate.rigid.contacts import RigidContacts
-from pound_solve.integrate.series.single_pole import LAST
+from pound_solve.integrate.series.single_pole import LAST_TERM
 from pound_solve.integrate.series.taylor import MAX_STEPS, Taylor
 
 
@@ -24,7 +24,7 @@ class Laguerre(Taylor):
     """One run; see the module's head."""
 
     exact = False
-    words = f"LAGUERRE, implicit series of {LAST} terms"
+    words = f"LAGUERRE, implicit series of {LAST_TERM} terms"
     asking = "TOL"
 
     def cure(self) -> str:

@@ -30,12 +30,12 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
-from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
+from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, SAME_INSTANT
 from pound_solve.integrate.series.curved import APART, change_phase
 from pound_solve.integrate.series.expansion import (
-    CHECK,
-    GROW,
-    TERMS,
+    MAX_GROWTH,
+    MAX_TERMS,
+    UNCHECKED_TERMS,
     begin_series,
     dot,
     evaluate_motion,
@@ -60,12 +60,11 @@ from pound_solve.integrate.series.viscous import linearise_dampers, tangents_set
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 
-SHRINK = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
-SHORTER = 0.9  #: this factor, at most
+MIN_SHORTENING = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
+MAX_SHORTENING = 0.9  #: this factor, at most
 AHEAD = 1e-3  #: part of a step in which laws are searched for events at the instant of another one's
-CUT = 0.5  #: smallest part of a step, as it was tried, that is taken
+MIN_PART = 0.5  #: smallest part of a step, as it was tried, that is taken
 FROM_REST = 1e-4  #: share of the time to the goal: longest implicit step in which a contact leaves its rest
-INSTANT = 1e-13  #: share of the time within which two events are at one instant
 
 
 def add_law_losses(
@@ -138,7 +137,7 @@ def add_works(
         for i in range(len(damped.unknown)):
             damped.motion[k, i] = series.motion[k, damped.unknown[i]]
     put = 0.0 if moved else work_put_in(linear, series, terms, end, len(coefs))
-    rule = min(carried, TERMS) // CHECK
+    rule = min(carried, MAX_TERMS) // UNCHECKED_TERMS
     for g in range(2 * (rule + 1)):
         weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
         evaluate_motion(damped.motion, terms, s, h, 1, damped.velocity)
@@ -226,7 +225,7 @@ def change_branches(
 ) -> None:
     """Change the branch of a law, and of others whose events are at the same instant."""
     laws = sim.laws
-    now, instant = sim.run.time, INSTANT * max(sim.run.time, h)
+    now, instant = sim.run.time, SAME_INSTANT * max(sim.run.time, h)
     first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
     event = LocatedEvent(first, its_event, event.time)
     stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
@@ -243,7 +242,7 @@ def change_branches(
 
 def count_instant(run: Run, h: float) -> None:
     """Count the events at one instant."""
-    same = run.time - run.last_event <= INSTANT * max(run.time, h)
+    same = run.time - run.last_event <= SAME_INSTANT * max(run.time, h)
     run.same_instant = run.same_instant + 1 if same else 0
     run.last_event = run.time
 
@@ -347,7 +346,7 @@ def shorten_step(lengths: Lengths, h: float, fit: float) -> None:
     """Choose a shorter step after one that did not fit, shorter by a tenth at least: with less, the equal
     parts of what is left would be as long as before.
     """
-    lengths.next = h * (min(fit, SHORTER) if fit > SHRINK else SHRINK)
+    lengths.next = h * (min(fit, MAX_SHORTENING) if fit > MIN_SHORTENING else MIN_SHORTENING)
     lengths.rejected += 1
 
 
@@ -437,7 +436,8 @@ def step_to_goal(
             least, room = 1.0, 1.0
         else:
             terms, fit = expand_series(sim, series, coefs, t - begin, h)
-            least, room = CUT, TERMS / terms  # terms that were not needed make room for a longer step
+            # terms that were not needed make room for a longer step
+            least, room = MIN_PART, MAX_TERMS / terms
         if not fit >= least:  # terms far too large say nothing about the motion
             shorten_step(lengths, h, fit)
             pause -= 1
@@ -446,12 +446,12 @@ def step_to_goal(
         if end == 0.0:
             return SHORT
         whole = end == 1.0 and h == goal - t
-        lengths.next = max(h * min(fit * room, GROW), lengths.next if end == 1.0 else 0.0)
+        lengths.next = max(h * min(fit * room, MAX_GROWTH), lengths.next if end == 1.0 else 0.0)
         count_reach(laws, series, terms, end)
         event = first_event(laws, series, terms, h, end)
         at = event.time
         if h > FROM_REST * (goal - t) and begins_to_move(laws, series, event):
-            shorten_step(lengths, h, SHRINK)
+            shorten_step(lengths, h, MIN_SHORTENING)
             pause -= 1
             continue
         take_step(sim, series, coefs, begin, terms, h, at, rules)

@@ -30,7 +30,7 @@ from pound_solve.integrate.kernels.allocation import (
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import add_row, row_product
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.smooth import Q, dashpot_rest
 from pound_solve.integrate.series.springs import deformation_term, load_term
 from pound_solve.integrate.series.state import Massless, Series
@@ -48,9 +48,9 @@ from pound_solve.numerics.matrices import (
 from pound_solve.numerics.modes import scaling, softest
 from pound_solve.numerics.types import Array, Index
 
-JUMP = 1e-9  #: share of the largest deformation above which a change at one instant is a jump
+DEFORMATION_JUMP = 1e-9  #: share of the largest deformation above which a change at one instant is a jump
 DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
-TAKES_PART = 1e-6  #: share of the largest component of a motion above which an unknown takes part
+PARTICIPATION = 1e-6  #: share of the largest component of a motion above which an unknown takes part
 
 
 def allocate(
@@ -157,7 +157,7 @@ def undamped_unknowns(laws: Laws, held: Massless) -> Index:
     c[held.pattern.ai, held.column] = c[held.column, held.pattern.ai] = held.matrix
     at = np.flatnonzero(held.damped)
     motion = softest(scaled(c[np.ix_(at, at)], scaling(c[np.ix_(at, at)])))[1]
-    return np.asarray(at[np.abs(motion) > TAKES_PART * np.abs(motion).max()], np.int64)
+    return np.asarray(at[np.abs(motion) > PARTICIPATION * np.abs(motion).max()], np.int64)
 
 
 def solve_order(held: Massless, which: int) -> None:
@@ -246,7 +246,7 @@ def joints_jump(laws: Laws, series: Series, top: int) -> bool:
         d = laws.now.deformation[i]
         most = max(most, abs(d), laws.largest_deformation[i])
         far = max(far, abs(deformation_term(laws, series, 0, top, i) - d))
-    return far > JUMP * most
+    return far > DEFORMATION_JUMP * most
 
 
 def first_violated(laws: Laws, which: Index) -> tuple[int, int]:
@@ -265,6 +265,6 @@ def first_violated(laws: Laws, which: Index) -> tuple[int, int]:
             on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
             if on_v != 0.0:
                 scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * largest
-                if on_d * d + on_v * v + constant > STILL * (scale + abs(constant)):
+                if on_d * d + on_v * v + constant > EVENT_TOLERANCE * (scale + abs(constant)):
                     return i, e
     return -1, -1

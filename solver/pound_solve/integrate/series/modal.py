@@ -21,11 +21,11 @@ import numpy as np
 
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
-from pound_solve.integrate.intervals import SAME
+from pound_solve.integrate.intervals import SAME_LENGTH
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation, Step
-from pound_solve.integrate.series.expansion import CHECK, TERMS, dot, expand_inputs
+from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, expand_inputs
 from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
@@ -33,7 +33,7 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.jit import loose
 from pound_solve.numerics.types import Array
 
-ROUNDING = 1e-16  #: share of the terms of a series that is rounding
+SERIES_ROUNDING = 1e-16  #: share of the terms of a series that is rounding
 UNKNOWNS, MODES, FOLLOWED, SHOWN = range(4)  #: columns of `Modal.counts`
 DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_modes`
 
@@ -177,9 +177,9 @@ def next_powers(re: Array, im: Array, turn: Array, share: float) -> tuple[float,
 
 def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> int:
     """Power series of a followed quantity over a cell; return its highest power, 0 if that is too high."""
-    for k in range(TERMS + 1):
+    for k in range(MAX_TERMS + 1):
         p[k] = 0.0
-    p[0], terms = modal.values[cell, i], CHECK
+    p[0], terms = modal.values[cell, i], UNCHECKED_TERMS
     for b in range(len(modal.counts)):
         at, count = modal.place[b, i], modal.counts[b, MODES]
         if at < 0:
@@ -195,9 +195,9 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
             first += abs(re[j]) + abs(im[j])
             fastest = max(fastest, abs(turn[0, j]) + abs(turn[1, j]))
         k, tail = 0, first
-        while tail > ROUNDING * first or k < fastest:
+        while tail > SERIES_ROUNDING * first or k < fastest:
             k += 1
-            if k > TERMS:
+            if k > MAX_TERMS:
                 return 0
             term, tail = next_powers(re[:count], im[:count], turn, 1.0 / k)
             p[k] += term
@@ -321,7 +321,7 @@ def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, g
     if run.stale or not modal.serves[0]:
         return False
     h = modal.length[0]
-    if abs(goal - run.time - h) > SAME * h:
+    if abs(goal - run.time - h) > SAME_LENGTH * h:
         return False
     if not modal.is_present[0]:
         to_modes(modal, sim.step)

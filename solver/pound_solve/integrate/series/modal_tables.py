@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate import costs
-from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
+from pound_solve.integrate.intervals import MAX_UNKNOWNS, MIN_RADIANS, usual
 from pound_solve.integrate.protocol import MonitoredOutputs
 from pound_solve.integrate.series.state import Modal
 from pound_solve.numerics.graph import components
@@ -29,10 +29,10 @@ from pound_solve.numerics.memo import by_content
 from pound_solve.numerics.types import Array, Complex, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-MOST_CONDITION = 3e3  #: of its modes
-MOST_CELLS = 100_000  #: in an interval: faster modes than that are for no table
-STRIDE = 5.0  #: radians of the fastest mode in a cell, at most, as in a step by series
-FEWEST = 4  #: cells
+MAX_CONDITION = 3e3  #: of its modes
+MAX_CELLS = 100_000  #: in an interval: faster modes than that are for no table
+MAX_RADIANS = 5.0  #: radians of the fastest mode in a cell, at most, as in a step by series
+MIN_CELLS = 4  #: cells
 START = np.zeros(1)  #: of an interval
 PANEL, POINTS = 8.0, 16  #: radians that Gauss's rule with so many points integrates to rounding
 
@@ -76,7 +76,7 @@ class Part:
         self.rate = self.modes.eigenvalues
         size = np.abs(self.rate)
         loose = size.min() < 1e-9 * size.max() or self.rate.real.max() > 1e-12 * size.max()
-        if loose or self.modes.condition > MOST_CONDITION:
+        if loose or self.modes.condition > MAX_CONDITION:
             raise np.linalg.LinAlgError
         unit, none = np.eye(inputs.shape[1]), np.zeros(len(mass))
         forcing = np.array([self.modes.forcing(s[None], none)[0] for s in unit]).T
@@ -124,13 +124,13 @@ def parts_of(
 ) -> list[tuple[Index, Part]]:
     """The parts that only contacts join, with their unknowns; none where modes do not serve or pay."""
     straight = system.excitation.coefs.shape[1] <= 2
-    if not straight or length == 0.0 or costs.fastest_rate(system) * length < WORTH:
+    if not straight or length == 0.0 or costs.fastest_rate(system) * length < MIN_RADIANS:
         return []
     laws = dense(system.law_rows)
     groups = [np.flatnonzero(row) for s, row in zip(system.structure.laws, laws) if not s.role.collides]
     label = components(system.size, (system.mass, system.damping, system.stiffness), groups)
     members = [np.flatnonzero(label == x) for x in np.unique(label)]
-    if max(map(len, members)) > MOST_UNKNOWNS:
+    if max(map(len, members)) > MAX_UNKNOWNS:
         return []
 
     def part(unknowns: Index) -> Part:
@@ -176,7 +176,7 @@ def allocate(
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
     stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
-    if any(np.abs(p.rate).max() * length > MOST_CELLS * STRIDE for _, p in parts):
+    if any(np.abs(p.rate).max() * length > MAX_CELLS * MAX_RADIANS for _, p in parts):
         parts = []
     seen = [np.flatnonzero(np.isin(shown, place[unknowns])) for unknowns, _ in parts]
     n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
@@ -184,7 +184,7 @@ def allocate(
     n, q, r, w = np.max([(0, 0, 0, 0), *counts], axis=0).tolist()
     b, size = len(parts), 2 * q + 2 * n_inputs
     fastest = max((float(np.abs(p.rate).max()) for _, p in parts), default=0.0)
-    cells = max(FEWEST, int(np.ceil(fastest * length / STRIDE)))
+    cells = max(MIN_CELLS, int(np.ceil(fastest * length / MAX_RADIANS)))
     places = 2 * cells + 1
     modal = Modal(
         length=np.array([length if parts else 0.0]),

@@ -11,8 +11,8 @@ from pound_solve.integrate.series.forces import whole_force
 from pound_solve.integrate.series.state import Modal, Series, Shown
 from pound_solve.numerics.types import Index
 
-MOST_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
-MOST_STEPS, FEWEST = 4096, 8  #: of these
+MAX_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
+MAX_KEPT, MIN_KEPT = 4096, 8  #: of these
 STEPS, INTERVALS = range(2)  #: places in `Shown.kept`
 
 
@@ -21,9 +21,9 @@ def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
     `which` and the forces of the laws `acting` are kept.
     """
     b, _, size = modal.x.shape
-    steps = MOST_HELD // max(terms * (len(which) + len(acting)), 1)
-    intervals = MOST_HELD // max(3 * modal.x.shape[1] * len(which), 2 * b * size, 1)
-    s, i = (int(np.clip(x, FEWEST, MOST_STEPS)) for x in (steps, intervals))
+    steps = MAX_HELD // max(terms * (len(which) + len(acting)), 1)
+    intervals = MAX_HELD // max(3 * modal.x.shape[1] * len(which), 2 * b * size, 1)
+    s, i = (int(np.clip(x, MIN_KEPT, MAX_KEPT)) for x in (steps, intervals))
     return Shown(
         is_needed=np.array([len(which) + len(acting) > 0]),
         which=which,

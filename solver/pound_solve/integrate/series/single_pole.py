@@ -40,19 +40,18 @@ import numpy as np
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
 from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Simulation
-from pound_solve.integrate.series.expansion import dot, expand_deformations, expand_inputs
+from pound_solve.integrate.series.expansion import MAX_GROWTH, dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
 from pound_solve.integrate.series.state import Series, SinglePole
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
-LAST = 6  #: number of the last term of a series
+LAST_TERM = 6  #: number of the last term of a series
 #: number of the root of that polynomial, from the least, that 1/gamma is: so the method is A-stable
 ROOT = 2
-GROW = 2.0  #: how much longer than the last a step may be
-SAFE = 0.5  #: share of the error that a step is made for
-NOISE = 1e-24  #: share of the energy of a state that the rounding of a term may have
-CARRIED = 8  #: terms for which works are integrated right
+ERROR_SHARE = 0.5  #: share of the error that a step is made for
+TERM_ROUNDING = 1e-24  #: share of the energy of a state that the rounding of a term may have
+TERMS_OF_WORK = 8  #: terms for which works are integrated right
 
 
 def pole(last: int, root: int) -> float:
@@ -87,19 +86,19 @@ def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
     if tolerance is None:
         none, empty = np.zeros(0), np.zeros((0, 0))
         return SinglePole(empty, empty, 0.0, 0.0, empty, empty, empty, none, none)
-    gamma = pole(LAST, ROOT)
-    terms = basis(LAST, gamma)
-    highest = np.abs(np.polynomial.polynomial.polyval(np.linspace(0.0, 1.0, 1001), terms[LAST])).max()
+    gamma = pole(LAST_TERM, ROOT)
+    terms = basis(LAST_TERM, gamma)
+    highest = np.abs(np.polynomial.polynomial.polyval(np.linspace(0.0, 1.0, 1001), terms[LAST_TERM])).max()
     return SinglePole(
         basis=terms,
-        monomials=monomials(LAST, gamma),
+        monomials=monomials(LAST_TERM, gamma),
         gamma=gamma,
-        allowed=(SAFE * tolerance / float(highest)) ** 2,
-        displacement=np.zeros((LAST + 1, n)),
-        velocity=np.zeros((LAST + 1, n)),
-        inputs=np.zeros((LAST + 2, n_inputs)),
+        allowed=(ERROR_SHARE * tolerance / float(highest)) ** 2,
+        displacement=np.zeros((LAST_TERM + 1, n)),
+        velocity=np.zeros((LAST_TERM + 1, n)),
+        inputs=np.zeros((LAST_TERM + 2, n_inputs)),
         force=np.zeros(n),
-        initial_slope=np.array([0.0, *np.polynomial.polynomial.polypow([1.0, -1.0], LAST - 1)]),
+        initial_slope=np.array([0.0, *np.polynomial.polynomial.polypow([1.0, -1.0], LAST_TERM - 1)]),
     )
 
 
@@ -244,7 +243,7 @@ def expand_implicit(
     present = find_terms(sim, series, h, top)
     write_in_powers(series)
     match_initial_velocity(series, sim.step.now.velocity, h)
-    lengths.carried = CARRIED
+    lengths.carried = TERMS_OF_WORK
     expand_deformations(sim.laws, series, last, top)
     most = lengths.kinetic
     if most == 0.0:  # from rest
@@ -252,8 +251,8 @@ def expand_implicit(
     left_out = energy(sim.linear, series, last)
     if not left_out < np.inf:
         return last, np.nan
-    fit = GROW
+    fit = MAX_GROWTH
     if left_out > 0.0:
-        allowed = max(laguerre.allowed * most, NOISE * present)
+        allowed = max(laguerre.allowed * most, TERM_ROUNDING * present)
         fit = min(fit, (allowed / left_out) ** (0.5 / last))
     return last, fit

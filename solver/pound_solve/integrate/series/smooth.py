@@ -16,7 +16,7 @@ step begins with the closed form of the law, so that no error adds up.
 
 The series of p is a product where n is a whole number.  Where it is not, it follows from that of w (see
 `curved`), which converges up to w = 0 only: around that the power is left out as long as it changes the
-force by less than `UNSEEN`, and steps lengthen from there on in proportion to w.
+force by less than `POWER_LEFT_OUT`, and steps lengthen from there on in proportion to w.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import curved_force, internal, parameters, proportional_damping
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.curved import NEAR, power_term, right_part
+from pound_solve.integrate.series.curved import FIRST_STEP, power_term, right_part
 from pound_solve.integrate.series.own_events import BENDS
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Lengths, Series, Smooth
@@ -37,11 +37,12 @@ from pound_solve.laws.automaton import PAST
 from pound_solve.laws.functions import Tables, smooth_of
 from pound_solve.numerics.types import Array, Flags
 
-UNSEEN = 1e-14  #: share of the force at w = y that a power left out may make
+POWER_LEFT_OUT = 1e-14  #: share of the force at w = y that a power left out may make
 ZERO = 0.1 * PAST  #: share of y below which w counts as zero
-LACKING = 1e-13  #: error of w by truncating the series of the power, as a share of w, at most
+POWER_TRUNCATION = 1e-13  #: error of w by truncating the series of the power, as a share of w, at most
 CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
-BITS = 7  #: bits of the largest whole power computed by multiplication; larger ones matter near w = y only
+#: bits of the largest whole power computed by multiplication; larger ones matter near w = y only
+MAX_POWER_BITS = 7
 W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.numbers`
 
 
@@ -56,7 +57,7 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
         bent=np.zeros(n, bool),
         low=np.zeros(n),
         high=np.zeros(n),
-        share=np.zeros((n, 2 * BITS, terms)),
+        share=np.zeros((n, 2 * MAX_POWER_BITS, terms)),
         power=np.zeros((n, terms)),
         part=np.zeros((n, terms)),
         rest=np.zeros((n, terms)),
@@ -75,7 +76,7 @@ def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
 
 def is_product(n: float) -> bool:
     """Whether the power `n` is computed by multiplication: a whole number that is not too large."""
-    return n == np.floor(n) and n < 2.0**BITS
+    return n == np.floor(n) and n < 2.0**MAX_POWER_BITS
 
 
 def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
@@ -98,7 +99,7 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
         x, n, most = numbers[W] / numbers[Y], numbers[N], max(abs(numbers[A]), abs(numbers[B]))
         smooth.low[r], smooth.high[r], smooth.bent[r] = 0.0 if x > ZERO else -np.inf, np.inf, most > 0.0
         if most > 0.0 and not is_product(n):
-            near = (UNSEEN * (n + 1.0) / most) ** (1.0 / (n + 1.0))
+            near = (POWER_LEFT_OUT * (n + 1.0) / most) ** (1.0 / (n + 1.0))
             smooth.bent[r] = x > 0.75 * near
             smooth.low[r] = 0.5 * near if smooth.bent[r] else -near
             smooth.high[r] = np.inf if smooth.bent[r] else near
@@ -210,8 +211,8 @@ def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
         if smooth.bent[r]:
             at = min(end, 1.0)
             lacks = power_defect(smooth, r, terms, at)
-            if not lacks <= LACKING:
-                end = at * (LACKING / lacks) ** (1.0 / terms)
+            if not lacks <= POWER_TRUNCATION:
+                end = at * (POWER_TRUNCATION / lacks) ** (1.0 / terms)
     return end
 
 
@@ -237,4 +238,4 @@ def shorten_for_bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> No
     r = smooth.number[i]
     if smooth.high[r] < np.inf:
         far = smooth.high[r] * abs(smooth.numbers[r, Y])
-        lengths.next = min(lengths.next, NEAR * far / abs(laws.now.rate[i]))
+        lengths.next = min(lengths.next, FIRST_STEP * far / abs(laws.now.rate[i]))

@@ -37,9 +37,9 @@ from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
 from pound_solve.integrate.kernels.state import CHATTER, FALL, LOOSE, RUNAWAY, SHORT, STRIKE, Goals, Scheme
-from pound_solve.integrate.protocol import CHATTER as CHATTERS
-from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
+    CHATTER_TEXT,
+    RUNAWAY_TEXT,
     MonitoredOutputs,
     Outcome,
     Problem,
@@ -76,7 +76,7 @@ from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import BranchKind
-from pound_solve.numerics.matrices import MOST_DENSE, dense, used_rows
+from pound_solve.numerics.matrices import MAX_DENSE, dense, used_rows
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
@@ -144,7 +144,7 @@ class Taylor(KernelEngine):
             system.size,
             system.inputs.shape[1],
             len(self.springs),
-            expansion.TERMS + 1,
+            expansion.MAX_TERMS + 1,
         )
         mass, whole = self.linear.mass.diagonals[0], system.stiffness[np.ix_(o, o)]
         is_curved = np.array([s.law.curved for s in self.springs], bool)
@@ -155,16 +155,16 @@ class Taylor(KernelEngine):
         modal = modal_tables.allocate(
             system, laws.stiffness, monitored, self._intervals(), np.argsort(o), which
         )
-        kept = terms if tolerance is None else single_pole.LAST + 1
+        kept = terms if tolerance is None else single_pole.LAST_TERM + 1
         return state.Series(
             motion=np.zeros((terms, n)),
             stiffness_product=np.zeros(n),
             damping_product=np.zeros(n),
             deformation=np.zeros((n_laws, terms)),
             inputs=np.zeros((terms, n_inputs)),
-            polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
+            polynomial=np.zeros(polynomial_roots.room(expansion.MAX_TERMS)),
             inverse=np.divide(1.0, mass, out=np.zeros(n), where=mass > 0.0),
-            gauss=gauss_rules(expansion.TERMS // expansion.CHECK + 1),
+            gauss=gauss_rules(expansion.MAX_TERMS // expansion.UNCHECKED_TERMS + 1),
             springs=springs.allocate(
                 n, laws.rows, self.linear.inputs, whole if len(held.unknown) else None
             ),
@@ -299,12 +299,12 @@ class Taylor(KernelEngine):
         if why == LOOSE:
             return self.stop("A501", self._loose())
         if why == RUNAWAY:
-            return self.stop("A504", GROWS.format(self.state.initial_energy))
+            return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy))
         if why == CHATTER:
             fault = int(self.state.fault)
             s, at = self.springs[fault], self.laws.branch[fault]
             what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
-            return self.stop("A503", CHATTERS.format(*what, remedy(self.system)))
+            return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
 
     def _loose(self) -> str:
@@ -323,7 +323,7 @@ class Taylor(KernelEngine):
     def _softest(self) -> int:
         """Unknown without mass that moves most in the softest motion of those without mass and dashpot."""
         light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
-        if len(light) > MOST_DENSE:
+        if len(light) > MAX_DENSE:
             return int(self.order[int(self.state.fault)])
         rows = dense(self.system.law_rows[:, light])
         stiffness = dense(self.system.stiffness[np.ix_(light, light)])

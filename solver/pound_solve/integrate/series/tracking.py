@@ -8,8 +8,16 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Simulation, Step
-from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.series.curved import APART, PRESSED, PULLS, RELEASED, TOUCH, K, touch_overlap
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.series.curved import (
+    APART,
+    NO_OVERLAP,
+    PRESSED,
+    PULLS,
+    RELEASED,
+    K,
+    touch_overlap,
+)
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
 from pound_solve.integrate.series.own_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
@@ -23,7 +31,7 @@ from pound_solve.laws.automaton import GAP
 def parting_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
     r, p = series.rigid.number[i], series.polynomial[POLYNOMIAL]
-    still = STILL * series.rigid.largest[r]
+    still = EVENT_TOLERANCE * series.rigid.largest[r]
     copy_force(series, terms, i, -1.0, p)
     if p[0] > still:  # the force has jumped
         return LocatedEvent(i, 0, 0.0)
@@ -39,7 +47,7 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
         return first
     sign, overlap = 1.0, touch_overlap(laws, i)
     if phase == APART:  # where nothing has moved yet, the step tells how far
-        overlap = max(overlap, TOUCH * size(series.deformation, i, terms))
+        overlap = max(overlap, NO_OVERLAP * size(series.deformation, i, terms))
     else:
         sign = -1.0
     for k in range(terms + 1):
@@ -50,7 +58,7 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
     if phase == RELEASED or (phase == PRESSED and curved.numbers[r, PULLS] == 0.0):
         sign = 1.0 if phase == RELEASED else -1.0
         copy_force(series, terms, i, sign, p)
-        at = first_rise(series.polynomial, terms, first.time, STILL * curved.largest[r])
+        at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * curved.largest[r])
         first = earlier(first, i, PRESSES_AGAIN if phase == RELEASED else RELEASES, at)
     return first
 
@@ -69,7 +77,7 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
             return parting_event(series, terms, end, i)
         scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
         most = on_d * d[i, 0] + on_v * d[i, 1] / h + constant + abs(on_d) * far + abs(on_v) * faster
-        if most <= STILL * scale:  # most laws are far from all their events
+        if most <= EVENT_TOLERANCE * scale:  # most laws are far from all their events
             continue
         for k in range(terms + 1):
             p[k] = on_d * d[i, k]
@@ -77,7 +85,7 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
         if on_v != 0.0:
             for k in range(terms):
                 p[k] += on_v * (k + 1) / h * d[i, k + 1]
-        at = first_rise(series.polynomial, terms, first.time, STILL * scale)
+        at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)
         first = earlier(first, i, e, at)
     if series.smooth.number[i] >= 0:
         return bend_event(series, terms, first, i)

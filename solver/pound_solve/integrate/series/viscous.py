@@ -11,8 +11,8 @@ So nodes without mass follow at the rate that their springs leave to the tangent
 it at the start of every step (`march.settle_state`).
 
 The series ends where the damper turns, before or behind: steps shorten in proportion to the rate.  Where
-it, or the force, is below a share `SLOW` of the largest, the force goes straight through zero: what that
-changes on one side of a turn, it changes back on the other.
+it, or the force, is below a share `SLOW_RATE` of the largest, the force goes straight through zero: what
+that changes on one side of a turn, it changes back on the other.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from pound_solve.integrate.series.state import Series, Viscous
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
-SLOW = 1e-10  #: share of the largest rate, or of the force there, below which it does
-STOPPED = 1e-12  #: the same, of the rate one
-APART = 1e-3  #: share of this rate between the two events, lest they follow one another
-SETTLED = 1e-6  #: share of a rate that Newton's iteration changes last: it leaves the square of that
-ROUNDING = 1e-15  #: share of the velocities whose difference a rate is
+SLOW_RATE = 1e-10  #: share of the largest rate, or of the force there, below which it does
+SLOW_RATE_OF_UNIT = 1e-12  #: the same, of the rate one
+DEAD_BAND = 1e-3  #: share of this rate between the two events, lest they follow one another
+RATE_CONVERGED = 1e-6  #: share of a rate that Newton's iteration changes last: it leaves the square of that
+RATE_ROUNDING = 1e-15  #: share of the velocities whose difference a rate is
 LIMIT, RATE = 2, 3  #: columns of `Viscous.numbers`, beside K and N
 
 
@@ -70,7 +70,9 @@ def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
             continue
         c, n, x = abs(numbers[K]), numbers[N], numbers[RATE] if numbers[K] > 0.0 else -numbers[RATE]
         share = 1.0 / max(n, 1.0)
-        numbers[LIMIT] = max(STOPPED**share, SLOW**share * laws.largest_rate[i]) if n != 1.0 else np.inf
+        numbers[LIMIT] = (
+            max(SLOW_RATE_OF_UNIT**share, SLOW_RATE**share * laws.largest_rate[i]) if n != 1.0 else np.inf
+        )
         viscous.fast[r] = x > numbers[LIMIT]
         if viscous.fast[r]:
             laws.damping[i] = n * c * x ** (n - 1.0)
@@ -151,7 +153,7 @@ def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int
     for q in range(terms):
         p[q] = (sign if k > 0.0 else -sign) * (q + 1) / h * d[q + 1]
     p[terms] = 0.0
-    p[0] -= sign * (1.0 + sign * APART) * limit
+    p[0] -= sign * (1.0 + sign * DEAD_BAND) * limit
     return earlier(first, i, TURNS, first_rise(series.polynomial, terms, first.time, 0.0))
 
 
@@ -165,6 +167,6 @@ def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
             v, size = laws.now.rate[i], 0.0
             for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
                 size += abs(laws.rows.values[q] * velocity[laws.rows.columns[q]])
-            if abs(v - numbers[RATE]) > SETTLED * max(abs(v), numbers[LIMIT]) + ROUNDING * size:
+            if abs(v - numbers[RATE]) > RATE_CONVERGED * max(abs(v), numbers[LIMIT]) + RATE_ROUNDING * size:
                 return False
     return True

@@ -16,11 +16,11 @@ from pound_solve.integrate.kernels.laws import (
 from pound_solve.integrate.kernels.recording import log_transition, store_motion, track_peaks
 from pound_solve.integrate.kernels.state import WHOLE, Scheme, Simulation
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
-from pound_solve.integrate.stepping.step import REFRESH, update_factor
+from pound_solve.integrate.stepping.step import MAX_UPDATES, update_factor
 from pound_solve.laws.functions import Tables
-from pound_solve.loading.excitation import INSTANT
+from pound_solve.loading.excitation import CLOCK_ROUNDING
 
-FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
+FIRST_PART = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 
 
 def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: int, event: int) -> None:
@@ -39,8 +39,8 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
     if not linear.explicit and change != 0.0:
         run.updates += 1
-        if run.updates > REFRESH or not update_factor(sim, i, change, WHOLE):
-            run.updates = REFRESH + 1
+        if run.updates > MAX_UPDATES or not update_factor(sim, i, change, WHOLE):
+            run.updates = MAX_UPDATES + 1
     force = linear_force(laws, i, d, v)
     if laws.contact[i] and touches_massless(linear, laws, i):
         # the dashpot's is only known when the velocities are consistent
@@ -54,7 +54,7 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
         couple_friction(laws, rules, sim.step.now.acceleration, j)
         if before != laws.branch[j]:
             log_transition(sim, j, before, run.time, laws.friction_force[j])
-            run.updates = REFRESH + 1
+            run.updates = MAX_UPDATES + 1
     hold_friction_limits(laws)
 
 
@@ -90,7 +90,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
             continue
         change_branch(sim, rules, scheme, h, i, laws.saved[i] - 1)
         if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
-            run.longest_part = FIRST * h
+            run.longest_part = FIRST_PART * h
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
             step.product[laws.rows.columns[q]] = 1.0
         laws.saved[i] = 0
@@ -107,5 +107,5 @@ def go_on(sim: Simulation, rules: Tables) -> None:
     run = sim.run
     make_consistent(sim)
     track_peaks(sim, run.time, 0.0)
-    after = 4.0 * INSTANT * max(1.0, run.time) if run.time == run.jumped else 0.0
+    after = 4.0 * CLOCK_ROUNDING * max(1.0, run.time) if run.time == run.jumped else 0.0
     store_motion(sim, rules, run.time + after)

@@ -39,11 +39,11 @@ from pound_solve.integrate.kernels.state import (
     Simulation,
     Step,
 )
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.changing import go_on
 from pound_solve.integrate.stepping.parts import step_in_parts
 from pound_solve.integrate.stepping.step import (
-    REFRESH,
+    MAX_UPDATES,
     accept_trial,
     factorise_step,
     try_step,
@@ -98,7 +98,7 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
         if not drive_law(sim, rules, i):
             return NEWTON
         changed = laws.stiffness[i] != k or laws.damping[i] != c
-        if not changed and abs(laws.offset[i] - f0) <= STILL * abs(f0):
+        if not changed and abs(laws.offset[i] - f0) <= EVENT_TOLERANCE * abs(f0):
             continue
         why = FULL
         change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
@@ -152,7 +152,7 @@ def step_through(
     for i in range(len(laws.rule)):
         if laws.saved[i] == 1:
             restore_state(laws, rules, i)
-    run.updates, run.stale = REFRESH + 1, 1
+    run.updates, run.stale = MAX_UPDATES + 1, 1
     return NEWTON
 
 
@@ -178,7 +178,7 @@ def plain_steps(
         Whether it stopped at a step that is tried, but not accepted, because a law leaves its branch.
     """
     run = sim.run
-    while run.step < last and run.updates <= REFRESH and run.longest_part >= h:
+    while run.step < last and run.updates <= MAX_UPDATES and run.longest_part >= h:
         end = run.time + h - piece_start
         if not try_step(sim, rules, scheme, coefs, end, h, WHOLE):
             return False
@@ -207,7 +207,7 @@ def begin_goal(sim: Simulation, scheme: Scheme, coefs: Array, s: float, h: float
     # the load, that of its past would act for too long
     jumps = scheme.alpha_f + scheme.alpha_m != 0.0 and h > 2.0 * run.factor_length > 0.0
     for i in range(len(load)):
-        if abs(load[i] - now.load[i]) > STILL * (abs(load[i]) + abs(now.load[i])):
+        if abs(load[i] - now.load[i]) > EVENT_TOLERANCE * (abs(load[i]) + abs(now.load[i])):
             jumps = True
         now.load[i] = load[i]
     if jumps:
@@ -221,7 +221,7 @@ def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
     often.
     """
     run = sim.run
-    if run.factor_length == h and run.updates <= REFRESH:
+    if run.factor_length == h and run.updates <= MAX_UPDATES:
         return DONE
     bad = factorise_step(sim, scheme, h, WHOLE)
     if bad >= 0:
@@ -274,7 +274,7 @@ def take_steps(
         first, fresh = run.step, run.updates == 0
         tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
         # iterations that fail from a new factor on would fail again: the step is taken in parts
-        used_up = run.updates > REFRESH and (run.step > first or not fresh)
+        used_up = run.updates > MAX_UPDATES and (run.step > first or not fresh)
         if not tried and (run.step == last < count - 1 or used_up):
             return DONE
         length = h if run.step < count - 1 else goal - run.time

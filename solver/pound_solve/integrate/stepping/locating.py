@@ -10,17 +10,17 @@ import numpy as np
 
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
-from pound_solve.integrate.kernels.consistency import NEAR
+from pound_solve.integrate.kernels.consistency import NEARLY_MET
 from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Scheme, Simulation
-from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.step import factorise_step, start_again, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import next_trial
 from pound_solve.numerics.types import Array
 
-CLOSE = 1e-9  #: share of a step within which two events are at one instant
+SAME_INSTANT_OF_STEP = 1e-9  #: share of a step within which two events are at one instant
 GO_ON, MET, NONE = range(3)
-PATIENCE = 12  #: trials by interpolation; bisection follows
+MAX_INTERPOLATIONS = 12  #: trials by interpolation; bisection follows
 
 
 class Bracket(NamedTuple):
@@ -54,7 +54,8 @@ def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
         tau = next_trial(b.high, b.low, b.third, b.g_high, b.g_low, b.g_third)
     else:
         tau = next_trial(b.low, b.high, b.third, b.g_low, b.g_high, b.g_third)
-    tau += 0.5 * CLOSE * h  # a trial just beyond the event ends the search, one before it does not
+    # a trial just beyond the event ends the search, one before it does not
+    tau += 0.5 * SAME_INSTANT_OF_STEP * h
     return tau if b.low < tau < b.high else 0.5 * (b.low + b.high)
 
 
@@ -64,9 +65,9 @@ def search_verdict(
     """Result of a search at `tau`: MET at an event, NONE where there is none, or GO_ON; `size` is the
     magnitude of the event function's terms.
     """
-    if abs(g) <= STILL * size or last or 0.0 <= tau - guess <= CLOSE * h:
+    if abs(g) <= EVENT_TOLERANCE * size or last or 0.0 <= tau - guess <= SAME_INSTANT_OF_STEP * h:
         # no event after all: rates of massless unknowns may mislead
-        return NONE if not passed and abs(g) > NEAR * size else MET
+        return NONE if not passed and abs(g) > NEARLY_MET * size else MET
     # up to here there is no event; the rest of the step may have one
     return NONE if not passed and b.g_high <= 0.0 else GO_ON
 
@@ -80,7 +81,7 @@ def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) ->
     laws = sim.laws
     alone = not sim.linear.all_mass or len(laws.coupled) > 0
     for i in range(len(laws.rule)):
-        laws.saved[i], first = 0, event.time + CLOSE * h
+        laws.saved[i], first = 0, event.time + SAME_INSTANT_OF_STEP * h
         for e in range(0 if alone or i == event.law else laws.n_events[i]):
             at = time_of_event(laws, sim.step, i, e, tried)
             if at <= first:
@@ -120,14 +121,14 @@ def locate_event(
     b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
     bisects, tried = False, length
     for trial in range(100):
-        if tau <= CLOSE * h:
+        if tau <= SAME_INSTANT_OF_STEP * h:
             met = LocatedEvent(law, index, 0.0)
             mark_others(sim, met, tried, h)
             return DONE, met
-        last = b.high - b.low <= CLOSE * h
+        last = b.high - b.low <= SAME_INSTANT_OF_STEP * h
         if last:
             tau = b.high
-        elif trial > PATIENCE or bisects:
+        elif trial > MAX_INTERPOLATIONS or bisects:
             tau = 0.5 * (b.low + b.high)
         bad = factorise_step(sim, scheme, tau, PART)
         if bad >= 0:

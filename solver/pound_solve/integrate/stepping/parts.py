@@ -21,12 +21,18 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.stepping.changing import change_branches
 from pound_solve.integrate.stepping.locating import locate_event
-from pound_solve.integrate.stepping.step import REFRESH, accept_trial, factorise_step, start_again, try_step
+from pound_solve.integrate.stepping.step import (
+    MAX_UPDATES,
+    accept_trial,
+    factorise_step,
+    start_again,
+    try_step,
+)
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 
-MOST_HALVINGS = 25
-SHORTEST = 3e-8  #: shortest part of a step, used where laws change to and fro
+MAX_HALVINGS = 25
+SHORTEST_PART = 3e-8  #: shortest part of a step, used where laws change to and fro
 
 
 def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int) -> int:
@@ -62,17 +68,17 @@ def solve_part(
         Which factor it was solved with.
     """
     laws, run = sim.laws, sim.run
-    for halvings in range(MOST_HALVINGS + 1):
+    for halvings in range(MAX_HALVINGS + 1):
         if at == PART:
             # trials from here on move the tangents of curved laws away from the factor at hand
             if laws.curved.any():
-                run.updates = REFRESH + 1
+                run.updates = MAX_UPDATES + 1
             why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:
                 return why, part, at
         if tried or try_step(sim, rules, scheme, coefs, run.time + part - piece_start, part, at):
             return DONE, part, at
-        run.updates = REFRESH + 1
+        run.updates = MAX_UPDATES + 1
         start_again(laws, rules)
         part, at = 0.5 * part, PART
     return NEWTON, part, at
@@ -92,7 +98,7 @@ def end_part_at_event(
     laws, run = sim.laws, sim.run
     curved = laws.curved.any()
     if curved:  # shorter trials move the tangents away from the factor at hand
-        run.updates = REFRESH + 1
+        run.updates = MAX_UPDATES + 1
     why, event = locate_event(sim, rules, scheme, coefs, begin, part, h, event)
     if why == DONE and event.time > 1e-9 * h:
         run.same_instant = 0
@@ -121,7 +127,7 @@ def pass_event(
     if run.same_instant > 100 + 8 * len(laws.rule):
         return CHATTER
     if run.same_instant > len(laws.rule):  # a law may turn to and fro: what follows is tried nearer by
-        run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST * h)
+        run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
     if run.fell >= 0:
         run.rest = left
         return FALL

@@ -63,10 +63,10 @@ from pound_solve.numerics.ldl import update
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import KIND, LENGTH, STRING
 
-REFRESH = 200  #: updates of rank one before a factor is made anew
+MAX_UPDATES = 200  #: updates of rank one before a factor is made anew
 CONVERGED = 1e-12  #: largest deviation of a curved law's force from its tangent, as a share of the force
-SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
-MOST_ITERATIONS = 50
+POOR_CONVERGENCE = 0.05  #: part of an error that an iteration may leave before the factor is made anew
+MAX_ITERATIONS = 50
 
 
 def factorise_step(sim: Simulation, scheme: Scheme, h: float, at: int) -> int:
@@ -188,7 +188,7 @@ def redraw_members(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
     if factorise_step(sim, scheme, h, at) >= 0:
         return False
     if at != WHOLE:
-        sim.run.updates = REFRESH + 1
+        sim.run.updates = MAX_UPDATES + 1
     return True
 
 
@@ -198,7 +198,7 @@ def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
     """
     last, worst, law = np.inf, 0.0, -1
     sim.run.fault = -1
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         solve_acceleration(sim, at)
         worst, law = correct_curved(sim, rules, scheme, h, at)
         if worst == -1.0:
@@ -209,7 +209,7 @@ def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
             return True
         if not error < np.inf:
             return False
-        slow = error > 1.0 and error > SLOW * last
+        slow = error > 1.0 and error > POOR_CONVERGENCE * last
         if slow and not redraw_members(sim, scheme, h, at):
             return False
         last = error

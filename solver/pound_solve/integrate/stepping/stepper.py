@@ -36,7 +36,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.release import release
 from pound_solve.integrate.stepping import kernel
-from pound_solve.integrate.stepping.step import REFRESH
+from pound_solve.integrate.stepping.step import MAX_UPDATES
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
 
@@ -51,13 +51,14 @@ COMMON = (
     ),
 )  #: fields of every implicit method
 
-RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
-QUIET = 1e-9  #: share of the energy below which a motion is rounding
+#: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
+STEPS_OF_PERIOD = 10
+MOTION_ROUNDING = 1e-9  #: share of the energy below which a motion is rounding
 
 
 def _resolved(about: str, count: float) -> Check:
     """Check a number of steps."""
-    return at_least(Subject.STEPS, about, count, RESOLVED, "by a shorter DT, or EXACT")
+    return at_least(Subject.STEPS, about, count, STEPS_OF_PERIOD, "by a shorter DT, or EXACT")
 
 
 class Stepper(KernelEngine):
@@ -105,7 +106,7 @@ class Stepper(KernelEngine):
         present = KernelPresent(self)
         release(present, int(self.state.fell))
         present.hand_back()
-        self.state.fell, self.state.updates = -1, REFRESH + 1
+        self.state.fell, self.state.updates = -1, MAX_UPDATES + 1
 
     def figures(self) -> dict[str, Any]:
         """What the report tells of the run."""
@@ -123,7 +124,7 @@ class Stepper(KernelEngine):
         ratio of velocities to accelerations.
         """
         speed, rush = self.speed.tolist()
-        moves = speed > QUIET * (self.accumulator.initial + self.accumulator.works.gross_input)
+        moves = speed > MOTION_ROUNDING * (self.accumulator.initial + self.accumulator.works.gross_input)
         checks = list[Check]()
         if moves and rush > 0.0:
             count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt

@@ -50,7 +50,7 @@ from pound_solve.structure.elements.beam_matrices import (
     stiffness,
 )
 
-ROUNDING = 1e-9  #: of coordinates, share of a length
+COORDINATE_ROUNDING = 1e-9  #: of coordinates, share of a length
 
 MOST_TAKEN = 0.9  #: largest flexibility taken off a beam by its hinges, as a share of all that it has
 INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
@@ -222,7 +222,7 @@ def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart
 def _lengths_fit(p: Card, length: float) -> None:
     """Refuse a hinge that is longer than the member, by more than the rounding of coordinates."""
     longest = max(pair(p["LP"]))
-    if longest > length * (1.0 + ROUNDING):
+    if longest > length * (1.0 + COORDINATE_ROUNDING):
         message = f"a hinge of {longest:.10g} is longer than the flexible length, {length:.10g}"
         raise ElementError(message, "LP")
 
