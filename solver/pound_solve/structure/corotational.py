@@ -43,7 +43,8 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 
 QUANTITIES = 6
-AXIAL, ACROSS = 0, 3  #: among them
+#: columns of the quantities n, t, x, y, r_I and r_J
+AXIAL, TURNING, ALONG, ACROSS, ROTATION_I, ROTATION_J = range(QUANTITIES)
 #: columns of the parameters; KNN, KNT, KTT are k_z, SHARE_I the weight of I's rotation in the member's
 KIND, LENGTH, END1, END2, SHARE_I, KNN, KNT, KTT, N0, T0 = range(10)
 STRING, COROTATIONAL = 0.0, 1.0  #: kinds
@@ -76,7 +77,8 @@ def chord_geometry(p: Array, c: int, s: Array, at: int) -> tuple[float, float, f
     in row `c` of `s` from column `at` on.
     """
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
-    x, y, ri, rj = s[c, at + 2], s[c, at + 3], s[c, at + 4], s[c, at + 5]
+    x, y = s[c, at + ALONG], s[c, at + ACROSS]
+    ri, rj = s[c, at + ROTATION_I], s[c, at + ROTATION_J]
     shrunk = 2.0 * (end1 * math.sin(0.5 * ri) ** 2 + end2 * math.sin(0.5 * rj) ** 2)  # rotated end blocks
     flat = length + x
     dx, dy = flat + shrunk, y - end1 * math.sin(ri) - end2 * math.sin(rj)
@@ -97,21 +99,21 @@ def quantity_forces(p: Array, c: int, s: Array, at: int, out: Array, to: int) ->
     if p[c, KIND] == STRING:
         for j in range(6):
             out[c, to + j] = 0.0
-        out[c, to + 3] = (s[c, at] + p[c, N0]) * s[c, at + 3] / p[c, LENGTH]
+        out[c, to + ACROSS] = (s[c, at + AXIAL] + p[c, N0]) * s[c, at + ACROSS] / p[c, LENGTH]
         return
     now, co, si, eta, rho = chord_geometry(p, c, s, at)
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
-    n = s[c, at] + p[c, N0] + p[c, KNN] * eta + p[c, KNT] * rho
-    t = s[c, at + 1] + p[c, T0] + p[c, KNT] * eta + p[c, KTT] * rho
-    ci, cj = math.cos(s[c, at + 4]), math.cos(s[c, at + 5])
-    ti, tj = math.sin(s[c, at + 4]), math.sin(s[c, at + 5])
+    n = s[c, at + AXIAL] + p[c, N0] + p[c, KNN] * eta + p[c, KNT] * rho
+    t = s[c, at + TURNING] + p[c, T0] + p[c, KNT] * eta + p[c, KTT] * rho
+    ci, cj = math.cos(s[c, at + ROTATION_I]), math.cos(s[c, at + ROTATION_J])
+    ti, tj = math.sin(s[c, at + ROTATION_I]), math.sin(s[c, at + ROTATION_J])
     over = t / now
-    out[c, to] = eta
-    out[c, to + 1] = rho
-    out[c, to + 2] = n * (co - 1.0) - over * si
-    out[c, to + 3] = n * si + over * co - t / length
-    out[c, to + 4] = end1 * (n * (co * ti - si * ci) - over * (si * ti + co * ci) + t / length)
-    out[c, to + 5] = end2 * (n * (co * tj - si * cj) - over * (si * tj + co * cj) + t / length)
+    out[c, to + AXIAL] = eta
+    out[c, to + TURNING] = rho
+    out[c, to + ALONG] = n * (co - 1.0) - over * si
+    out[c, to + ACROSS] = n * si + over * co - t / length
+    out[c, to + ROTATION_I] = end1 * (n * (co * ti - si * ci) - over * (si * ti + co * ci) + t / length)
+    out[c, to + ROTATION_J] = end2 * (n * (co * tj - si * cj) - over * (si * tj + co * cj) + t / length)
 
 
 def quantity_stiffness(p: Array, c: int, s: Array, at: int, h: Array, to: int) -> None:
@@ -122,15 +124,15 @@ def quantity_stiffness(p: Array, c: int, s: Array, at: int, h: Array, to: int) -
     for j in range(36):
         h[to, j] = 0.0
     if p[c, KIND] == STRING:
-        h[to, 21] = (s[c, at] + p[c, N0]) / p[c, LENGTH]
+        h[to, 6 * ACROSS + ACROSS] = (s[c, at + AXIAL] + p[c, N0]) / p[c, LENGTH]
         return
     now, co, si, eta, rho = chord_geometry(p, c, s, at)
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
     knn, knt, ktt = p[c, KNN], p[c, KNT], p[c, KTT]
-    n = s[c, at] + p[c, N0] + knn * eta + knt * rho
-    t = s[c, at + 1] + p[c, T0] + knt * eta + ktt * rho
-    ci, cj = math.cos(s[c, at + 4]), math.cos(s[c, at + 5])
-    ti, tj = math.sin(s[c, at + 4]), math.sin(s[c, at + 5])
+    n = s[c, at + AXIAL] + p[c, N0] + knn * eta + knt * rho
+    t = s[c, at + TURNING] + p[c, T0] + knt * eta + ktt * rho
+    ci, cj = math.cos(s[c, at + ROTATION_I]), math.cos(s[c, at + ROTATION_J])
+    ti, tj = math.sin(s[c, at + ROTATION_I]), math.sin(s[c, at + ROTATION_J])
     # along and across the chord: how its end moves with x, y and the rotations
     along = (co, si, end1 * (co * ti - si * ci), end2 * (co * tj - si * cj))
     across = (-si, co, -end1 * (si * ti + co * ci), -end2 * (si * tj + co * cj))
@@ -138,19 +140,20 @@ def quantity_stiffness(p: Array, c: int, s: Array, at: int, h: Array, to: int) -
     first = (1.0, 0.0, 0.0, 0.0)
     for i in range(4):
         a, b = along[i] - first[i], across[i] / now - linear[i]
-        h[to, 2 + i] = h[to, 12 + 6 * i] = a
-        h[to, 8 + i] = h[to, 13 + 6 * i] = b
+        row = 6 * (ALONG + i)  # first entry of the quantity's row; those of n and t are the same in columns
+        h[to, 6 * AXIAL + ALONG + i] = h[to, row + AXIAL] = a
+        h[to, 6 * TURNING + ALONG + i] = h[to, row + TURNING] = b
         for j in range(4):
             c2, d2 = along[j] - first[j], across[j] / now - linear[j]
-            h[to, 14 + 6 * i + j] = (
+            h[to, row + ALONG + j] = (
                 n * across[i] * across[j] / now
                 - t * (along[i] * across[j] + across[i] * along[j]) / (now * now)
                 + knn * a * c2
                 + knt * (a * d2 + b * c2)
                 + ktt * b * d2
             )
-    h[to, 28] += end1 * (n * (co * ci + si * ti) + t / now * (co * ti - si * ci))
-    h[to, 35] += end2 * (n * (co * cj + si * tj) + t / now * (co * tj - si * cj))
+    h[to, 7 * ROTATION_I] += end1 * (n * (co * ci + si * ti) + t / now * (co * ti - si * ci))
+    h[to, 7 * ROTATION_J] += end2 * (n * (co * cj + si * tj) + t / now * (co * tj - si * cj))
 
 
 def member_actions(p: Array, s: Array, out: Array) -> None:
@@ -164,9 +167,9 @@ def member_actions(p: Array, s: Array, out: Array) -> None:
     """
     for i in range(s.shape[0]):
         for c in range(s.shape[1]):
-            n, t = s[i, c, 0] + p[c, N0], s[i, c, 1] + p[c, T0]
+            n, t = s[i, c, AXIAL] + p[c, N0], s[i, c, TURNING] + p[c, T0]
             if p[c, KIND] == STRING:
-                out[i, c, 0] = 0.5 * n * s[i, c, 3] * s[i, c, 3] / p[c, LENGTH]
+                out[i, c, 0] = 0.5 * n * s[i, c, ACROSS] * s[i, c, ACROSS] / p[c, LENGTH]
                 out[i, c, 1] = out[i, c, 2] = out[i, c, 3] = 0.0
                 continue
             now, _, _, eta, rho = chord_geometry(p, c, s[i], 0)

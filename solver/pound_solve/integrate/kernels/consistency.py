@@ -57,7 +57,7 @@ def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: 
 def slowest_decay(sim: Simulation) -> float:
     """Longest ratio of dashpot to stiffness of a massless unknown, by their diagonals [T]."""
     linear, laws, step = sim.linear, sim.laws, sim.step
-    stiffness, damping, slowest = step.product, step.right_side, 0.0
+    stiffness, damping, slowest = step.scratch[0], step.scratch[1], 0.0
     for i in range(len(stiffness)):
         stiffness[i], damping[i] = 0.0, 0.0
     for q in range(len(step.matrix)):
@@ -163,7 +163,7 @@ def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
     linear, laws, step = sim.linear, sim.laws, sim.step
     if stale:
         factorise_massless(sim, laws.members.trial.quantities)
-    now, trial, change = step.now, step.trial, step.product
+    now, trial, change = step.now, step.trial, step.scratch[0]
     force_rates(linear, laws, trial.velocity, laws.trial.rate, trial.input_rates, change)
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
     for i in range(len(change)):
@@ -177,7 +177,8 @@ def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
 def jump_massless_rates(sim: Simulation) -> None:
     """Set the velocities of massless unknowns to those on the present branches (see the module's head)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
-    now, change, force, size = step.now, step.trial.acceleration, step.right_side, step.product
+    now, change, force = step.now, step.scratch[0], step.scratch[1]
+    size, held = step.scratch[2], step.scratch[3]
     rate = factorise_massless(sim, laws.members.now.quantities)
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
@@ -200,7 +201,6 @@ def jump_massless_rates(sim: Simulation) -> None:
             force[i] = 0.0
         force[i] *= rate
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], force)
-    held = size
     dashpot_forces(linear, laws, force, held)
     force_rates(linear, laws, now.velocity, laws.now.rate, now.input_rates, change)
     for i in range(len(change)):
@@ -217,13 +217,13 @@ def jump_massless_rates(sim: Simulation) -> None:
 def make_consistent(sim: Simulation) -> None:
     """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
     linear, laws, step = sim.linear, sim.laws, sim.step
-    now, residual = step.now, step.residual
+    now, residual, elastic = step.now, step.residual, step.scratch[0]
     form_members(laws, step)
     if linear.implicit and not linear.all_mass:
         jump_massless_rates(sim)
-    multiply(linear.stiffness, now.displacement, step.right_side)
+    multiply(linear.stiffness, now.displacement, elastic)
     for i in range(len(residual)):
-        residual[i] = now.load[i] - step.right_side[i] - now.damping_force[i]
+        residual[i] = now.load[i] - elastic[i] - now.damping_force[i]
     for i in range(len(laws.rule)):
         f = linear_force(laws, i, laws.now.deformation[i], laws.now.rate[i])
         if f != 0.0:

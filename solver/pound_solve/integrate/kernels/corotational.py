@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Corotational, Laws, LinearSystem, MemberState, Step
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import KNN, KTT, LENGTH, quantity_forces, quantity_stiffness
+from pound_solve.structure.corotational import (
+    ACROSS,
+    ALONG,
+    AXIAL,
+    KNN,
+    KTT,
+    LENGTH,
+    ROTATION_I,
+    TURNING,
+    quantity_forces,
+    quantity_stiffness,
+)
 
 FORCE_TOLERANCE = 1e-12  #: share of the largest force that the members' forces are found to
 MEMBER_ROUNDING = 1e-15  #: share of a member's axial stiffness that its forces are rounded to
@@ -115,16 +126,16 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
         size = max(size, force_size(trial, c, p[c, LENGTH]))
     for c in range(len(p)):
         length, knn = p[c, LENGTH], p[c, KNN]
-        reach = length + abs(trial.quantities[c, 2]) + abs(trial.quantities[c, 3])
+        reach = length + abs(trial.quantities[c, ALONG]) + abs(trial.quantities[c, ACROSS])
         allowed = FORCE_TOLERANCE * size + MEMBER_ROUNDING * knn * reach
         add_tangent_force(members.tangent, c, trial.quantities, members.at_zero, 1.0)
         for j in range(6):
             off = abs(trial.forces[c, j] - members.at_zero[c, j])
-            if j == 0:
+            if j == AXIAL:
                 off *= knn
-            elif j == 1:
+            elif j == TURNING:
                 off *= p[c, KTT] / length
-            elif j > 3:
+            elif j >= ROTATION_I:
                 off /= length
             worst = off / allowed if not off <= worst * allowed else worst
         anchor_member(members, c)
@@ -134,10 +145,10 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
 def force_size(state: MemberState, c: int, length: float) -> float:
     """Size of the forces of member `c` [F]."""
     size: float = max(
-        abs(state.quantities[c, 0]),
-        abs(state.quantities[c, 1]) / length,
-        abs(state.forces[c, 2]),
-        abs(state.forces[c, 3]),
+        abs(state.quantities[c, AXIAL]),
+        abs(state.quantities[c, TURNING]) / length,
+        abs(state.forces[c, ALONG]),
+        abs(state.forces[c, ACROSS]),
     )
     return size
 

@@ -368,8 +368,9 @@ class Step(NamedTuple):
         ``p - C v - K u - f`` at the start, in balance with the inertia.
     right_side : ndarray, shape (n,)
         Of the equations for the acceleration, laws apart.
-    product : ndarray, shape (n,)
-        Scratch.
+    marked : ndarray, shape (n,)
+        Which unknowns are held by a law that has left its branch at the present instant.
+    scratch : ndarray, shape (4, n)
     row : ndarray, shape (n,)
         Scratch of the factorisation; zero between uses.
     matrix : ndarray, shape (n_entries,)
@@ -384,7 +385,8 @@ class Step(NamedTuple):
     trial: MotionState
     residual: Array
     right_side: Array
-    product: Array
+    marked: Flags
+    scratch: Array
     row: Array
     matrix: Array
     factors: Array
@@ -474,6 +476,27 @@ class Goals(NamedTuple):
     piece: Index
     coefs: Array
     begins: Array
+
+
+class Piece(NamedTuple):
+    """A piece of the excitation, over which the inputs are polynomials of the time.
+
+    Attributes
+    ----------
+    coefs : ndarray, shape (degree + 1, n_inputs)
+        Coefficients of the powers of the time since `begin`.
+    begin : float
+        Time at which the piece begins.
+    """
+
+    coefs: Array
+    begin: float
+
+
+def piece_of(goals: Goals, goal: int) -> Piece:
+    """The piece of the excitation up to a goal."""
+    piece = goals.piece[goal]
+    return Piece(goals.coefs[piece], goals.begins[piece])
 
 
 class Simulation(NamedTuple):

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
-from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Simulation
+from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Piece, Simulation
 from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_right_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
@@ -46,9 +46,9 @@ def dot(a: Array, b: Array) -> float:
     return total
 
 
-def expand_inputs(series: Series, coefs: Array, begin: float, h: float) -> None:
-    """Series of the inputs from the local time `begin` of their piece on, in steps of `h`."""
-    s = series.inputs
+def expand_inputs(series: Series, piece: Piece, t: float, h: float) -> None:
+    """Series of the inputs from the time `t` on, in steps of `h`."""
+    s, coefs, begin = series.inputs, piece.coefs, t - piece.begin
     top, n = coefs.shape
     for j in range(n):
         for k in range(top):
@@ -71,8 +71,8 @@ def expand_deformations(laws: Laws, series: Series, terms: int, top: int) -> Non
 
 def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
     """Twice the kinetic energy of the term `k`."""
-    multiply(linear.mass, series.motion[k], series.damping_product)
-    energy: float = dot(series.motion[k], series.damping_product) * (k / h) * (k / h)
+    multiply(linear.mass, series.motion[k], series.mass_product)
+    energy: float = dot(series.motion[k], series.mass_product) * (k / h) * (k / h)
     return energy
 
 
@@ -150,11 +150,11 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
         add_massless(laws, step, series, k + 2, h, top)
 
 
-def begin_series(sim: Simulation, series: Series, coefs: Array, begin: float, h: float) -> None:
+def begin_series(sim: Simulation, series: Series, piece: Piece, h: float) -> None:
     """Set the first two coefficients of the series from the present state."""
     laws = sim.laws
-    c, now, top = series.motion, sim.step.now, len(coefs)
-    expand_inputs(series, coefs, begin, h)
+    c, now, top = series.motion, sim.step.now, len(piece.coefs)
+    expand_inputs(series, piece, sim.run.time, h)
     for i in range(len(now.displacement)):
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
     for k in range(2):
@@ -173,9 +173,7 @@ def right_up_to(series: Series, terms: int, end: float) -> float:
     return drags_right_up_to(series.viscous, terms, end)
 
 
-def expand_series(
-    sim: Simulation, series: Series, coefs: Array, begin: float, h: float
-) -> tuple[int, float]:
+def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
     """Find the series of a step of length `h` from the present state on.
 
     Returns
@@ -188,8 +186,8 @@ def expand_series(
     """
     lengths = series.lengths
     linear = sim.linear
-    top = len(coefs)
-    begin_series(sim, series, coefs, begin, h)
+    top = len(piece.coefs)
+    begin_series(sim, series, piece, h)
     lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
     most, k, tail, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, UNCHECKED_TERMS
     while k + 2 <= MAX_TERMS:

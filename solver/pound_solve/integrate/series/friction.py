@@ -19,7 +19,7 @@ from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.own_events import LIFT
 from pound_solve.integrate.series.springs import deformation_term
-from pound_solve.integrate.series.state import Friction, Series
+from pound_solve.integrate.series.state import Extent, Friction, Series
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
 from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS, RELEASED
 from pound_solve.laws.functions import Tables
@@ -132,13 +132,14 @@ def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     return earlier(none(end), i, LIFT, at)
 
 
-def friction_event(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
+def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
     """The first event of friction law `i` before the place `end`, see `none`."""
     friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
     r, numbers = friction.number[i], laws.parameters[i]
     if laws.branch[i] == OPEN:
-        return none(end)
-    first = lift_event(series, terms, end, i)
+        return none(extent.end)
+    terms, h = extent.terms, extent.h
+    first = lift_event(series, terms, extent.end, i)
     sliding, pressing = friction.side[r] != 0.0, 1.0 if friction.pressing[r] else 0.0
     for e in range(1 if sliding else 2):
         sign = friction.side[r] if sliding else 1.0 - 2.0 * e

@@ -24,10 +24,10 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME_LENGTH
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation, Step
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Piece, Simulation, Step
 from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, expand_inputs
 from pound_solve.integrate.series.shown import keep_interval
-from pound_solve.integrate.series.state import Modal, Series
+from pound_solve.integrate.series.state import Extent, Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.jit import loose
@@ -217,8 +217,8 @@ def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
     return False
 
 
-def is_quiet(laws: Laws, series: Series, n_inputs: int) -> bool:
-    """Whether it is certain that no law leaves its branch within the interval."""
+def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
+    """Whether it is certain that no law leaves its branch within the interval from the time `t` on."""
     modal = series.modal
     cells = len(modal.values) - 1
     h = modal.length[0] / cells
@@ -226,7 +226,7 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int) -> bool:
         for i in range(len(laws.rule)):
             if may_change(laws, modal, cell, i):
                 terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
-                if terms == 0 or event_of(laws, series, terms, h, 1.0, i).law >= 0:
+                if terms == 0 or event_of(laws, series, Extent(t + cell * h, h, terms, 1.0), i).law >= 0:
                     return False
     return True
 
@@ -272,7 +272,7 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
                 terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
                 if terms == 0:
                     return False
-                track_law(laws, step, series, terms, h, 1.0, t + cell * h, outputs, i)
+                track_law(laws, step, series, Extent(t + cell * h, h, terms, 1.0), outputs, i)
         for i in range(outputs):
             low, high = cell_bounds(modal, cell, n_laws + i)
             if exceeds_peaks(extremes, i, low, high):
@@ -280,7 +280,7 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
                 terms = expand_in_cell(modal, cell, n_laws + i, n_inputs, p)
                 if terms == 0:
                     return False
-                count_crest(laws, step, series, terms, h, 1.0, t + cell * h, i, -1)
+                count_crest(laws, step, series, Extent(t + cell * h, h, terms, 1.0), i, -1)
     return True
 
 
@@ -311,7 +311,7 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
                 modes[i] += modal.steady[b, i, j] * x[twice + j]
 
 
-def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, goal: float) -> bool:
+def take_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float) -> bool:
     """Advance in modes over the interval up to a goal; False where that is not certain to be right.
 
     The motion stays in the modes, see `from_modes`.
@@ -325,10 +325,10 @@ def take_in_modes(sim: Simulation, series: Series, coefs: Array, begin: float, g
         return False
     if not modal.is_present[0]:
         to_modes(modal, sim.step)
-    expand_inputs(series, coefs, run.time - begin, h)
+    expand_inputs(series, piece, run.time, h)
     start_interval(modal, series.inputs)
     follow_cells(sim.linear, modal, n_inputs)
-    if not is_quiet(sim.laws, series, n_inputs):
+    if not is_quiet(sim.laws, series, n_inputs, run.time):
         return False
     if not count_peaks(sim, series, n_inputs, run.time):
         return False

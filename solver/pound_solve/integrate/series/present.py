@@ -62,7 +62,7 @@ class Present(KernelPresent):
 
     def hand_back_impact(self, known: Index) -> None:
         """Let the run go on after an impact; the rates of the laws `known` do not depend on unknowns
-        without mass, which `march.settle_state` looks after.
+        without mass, which `branches.settle_state` looks after.
         """
         laws = self.engine.laws
         self.hand_back()

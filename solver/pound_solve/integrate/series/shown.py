@@ -8,7 +8,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.forces import whole_force
-from pound_solve.integrate.series.state import Modal, Series, Shown
+from pound_solve.integrate.series.state import Extent, Modal, Series, Shown
 from pound_solve.numerics.types import Index
 
 MAX_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
@@ -45,8 +45,9 @@ def is_full(shown: Shown) -> bool:
     return bool(shown.kept[STEPS] == len(shown.begin))
 
 
-def keep_step(laws: Laws, series: Series, terms: int, h: float, end: float, t: float) -> None:
-    """Keep the series of a step from time `t` to its place `end`, while the laws are as at its start."""
+def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
+    """Keep the series of a step, while the laws are as at its start."""
+    t, h, terms, end = extent
     shown = series.shown
     if not shown.is_needed[0]:
         return

@@ -39,7 +39,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
-from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Simulation
+from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Piece, Simulation
 from pound_solve.integrate.series.expansion import MAX_GROWTH, dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
 from pound_solve.integrate.series.state import Series, SinglePole
@@ -85,7 +85,7 @@ def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
     """Lay out series of `n` unknowns whose last term is below a share of the motion; None for none."""
     if tolerance is None:
         none, empty = np.zeros(0), np.zeros((0, 0))
-        return SinglePole(empty, empty, 0.0, 0.0, empty, empty, empty, none, none)
+        return SinglePole(empty, empty, 0.0, 0.0, empty, empty, empty, none, none, none)
     gamma = pole(LAST_TERM, ROOT)
     terms = basis(LAST_TERM, gamma)
     highest = np.abs(np.polynomial.polynomial.polyval(np.linspace(0.0, 1.0, 1001), terms[LAST_TERM])).max()
@@ -97,7 +97,8 @@ def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
         displacement=np.zeros((LAST_TERM + 1, n)),
         velocity=np.zeros((LAST_TERM + 1, n)),
         inputs=np.zeros((LAST_TERM + 2, n_inputs)),
-        force=np.zeros(n),
+        decrement=np.zeros(n),
+        velocity_defect=np.zeros(n),
         initial_slope=np.array([0.0, *np.polynomial.polynomial.polypow([1.0, -1.0], LAST_TERM - 1)]),
     )
 
@@ -155,11 +156,11 @@ def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array
 
 def energy(linear: LinearSystem, series: Series, n: int) -> float:
     """Twice the kinetic energy and twice the elastic one of a term."""
-    laguerre, work = series.single_pole, series.damping_product
-    multiply(linear.mass, laguerre.velocity[n], work)
-    total: float = abs(dot(laguerre.velocity[n], work))
-    elastic_force(linear, series, laguerre.displacement[n], work)
-    total += abs(dot(laguerre.displacement[n], work))
+    u, v = series.single_pole.displacement[n], series.single_pole.velocity[n]
+    multiply(linear.mass, v, series.mass_product)
+    total: float = abs(dot(v, series.mass_product))
+    elastic_force(linear, series, u, series.stiffness_product)
+    total += abs(dot(u, series.stiffness_product))
     return total
 
 
@@ -168,19 +169,21 @@ def match_initial_velocity(series: Series, velocity: Array, h: float) -> None:
     terms that are left out; its end remains as it is.
     """
     laguerre, last = series.single_pole, len(series.single_pole.basis) - 1
+    defect = laguerre.velocity_defect
     for i in range(len(velocity)):
-        laguerre.force[i] = h * velocity[i] - series.motion[1, i]
+        defect[i] = h * velocity[i] - series.motion[1, i]
     for k in range(1, last + 1):
         term, share = series.motion[k], laguerre.initial_slope[k]
         for i in range(len(velocity)):
-            term[i] += share * laguerre.force[i]
+            term[i] += share * defect[i]
 
 
 def find_terms(sim: Simulation, series: Series, h: float, top: int) -> float:
     """Find the terms of the series from the present state on; return twice the energy of that state."""
     linear, step = sim.linear, sim.step
     laguerre, now, present = series.single_pole, step.now, 0.0
-    u, v, delta, force = laguerre.displacement, laguerre.velocity, laguerre.force, series.stiffness_product
+    u, v, force = laguerre.displacement, laguerre.velocity, series.stiffness_product
+    delta = laguerre.decrement  # of the velocities; first its right-hand side
     scale = laguerre.gamma * h
     for i in range(len(delta)):
         u[0, i], v[0, i] = now.displacement[i], now.velocity[i]
@@ -214,9 +217,7 @@ def write_in_powers(series: Series) -> None:
                 term[i] += share * laguerre.displacement[n, i]
 
 
-def expand_implicit(
-    sim: Simulation, series: Series, coefs: Array, begin: float, h: float
-) -> tuple[int, float]:
+def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
     """Find the series of a step of length `h` from the present state on, as `expansion.expand_series` does.
 
     Returns
@@ -229,7 +230,7 @@ def expand_implicit(
     """
     lengths = series.lengths
     run = sim.run
-    laguerre, top = series.single_pole, len(coefs)
+    laguerre, top = series.single_pole, len(piece.coefs)
     last = len(laguerre.basis) - 1
     if run.factor_length != h:
         run.factor_length = -1.0
@@ -238,7 +239,7 @@ def expand_implicit(
             return last, np.nan
         run.factor_length = h
         lengths.factored += 1
-    expand_inputs(series, coefs, begin, h)
+    expand_inputs(series, piece, run.time, h)
     expand_loads(series, top)
     present = find_terms(sim, series, h, top)
     write_in_powers(series)

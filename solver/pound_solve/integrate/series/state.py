@@ -461,8 +461,10 @@ class SinglePole(NamedTuple):
         Coefficients of the unknowns.
     inputs : ndarray, shape (s + 2, n_inputs)
         Coefficients of the inputs.
-    force : ndarray, shape (n,)
-        Scratch.
+    decrement : ndarray, shape (n,)
+        Scratch: by how much the next coefficients of the velocities are less.
+    velocity_defect : ndarray, shape (n,)
+        Scratch: present velocities less those with which the truncated series begins, times the step.
     initial_slope : ndarray, shape (s + 1,)
         Powers of the place in a polynomial of slope one at 0, that is zero there and, with its slope, at 1.
     """
@@ -474,8 +476,30 @@ class SinglePole(NamedTuple):
     displacement: Array
     velocity: Array
     inputs: Array
-    force: Array
+    decrement: Array
+    velocity_defect: Array
     initial_slope: Array
+
+
+class Extent(NamedTuple):
+    """The part of a step over which the series of its start holds.
+
+    Attributes
+    ----------
+    begin : float
+        Time at the start of the step.
+    h : float
+        Length of the step.
+    terms : int
+        Highest power of the series.
+    end : float
+        Place up to which the step is taken or searched, in lengths of the step.
+    """
+
+    begin: float
+    h: float
+    terms: int
+    end: float
 
 
 class Series(NamedTuple):
@@ -485,8 +509,8 @@ class Series(NamedTuple):
     ----------
     motion : ndarray, shape (TERMS + 1, n)
         Coefficients of the unknowns.
-    stiffness_product, damping_product : ndarray, shape (n,)
-        Scratch: products of coefficients with K, and with C or M.
+    stiffness_product, damping_product, mass_product : ndarray, shape (n,)
+        Scratch: products of coefficients with K (laws included), C and M.
     deformation : ndarray, shape (n_laws, TERMS + 1)
         Of the laws.
     inputs : ndarray, shape (TERMS + 1, n_inputs)
@@ -514,6 +538,7 @@ class Series(NamedTuple):
     motion: Array
     stiffness_product: Array
     damping_product: Array
+    mass_product: Array
     deformation: Array
     inputs: Array
     polynomial: Array

@@ -160,6 +160,7 @@ class Taylor(KernelEngine):
             motion=np.zeros((terms, n)),
             stiffness_product=np.zeros(n),
             damping_product=np.zeros(n),
+            mass_product=np.zeros(n),
             deformation=np.zeros((n_laws, terms)),
             inputs=np.zeros((terms, n_inputs)),
             polynomial=np.zeros(polynomial_roots.room(expansion.MAX_TERMS)),

@@ -23,7 +23,7 @@ from pound_solve.integrate.series.friction import friction_event
 from pound_solve.integrate.series.own_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import bend_event
-from pound_solve.integrate.series.state import Series
+from pound_solve.integrate.series.state import Extent, Series
 from pound_solve.integrate.series.viscous import turn_event
 from pound_solve.laws.automaton import GAP
 
@@ -63,10 +63,11 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
     return first
 
 
-def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
-    """The first event of law `i` before the place `end`, in lengths of the step, see `none`."""
+def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
+    """The first event of law `i` in a step, in lengths of the step, see `none`."""
+    terms, h, end = extent.terms, extent.h, extent.end
     if series.friction.number[i] >= 0:
-        return friction_event(laws, series, terms, h, end, i)
+        return friction_event(laws, series, extent, i)
     first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
     far, faster = size(d, i, terms), rate_size(d, i, terms) / h
     for e in range(laws.n_events[i]):
@@ -94,29 +95,29 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
     return phase_event(laws, series, terms, first, i) if series.curved.number[i] >= 0 else first
 
 
-def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> LocatedEvent:
-    """The first event of any law before the place `end`, in lengths of the step, see `none`.
+def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
+    """The first event of any law in a step, in lengths of the step, see `none`.
 
     An event of a contact counts if it is there before that of another law: bodies that move alike meet only
     where a hinge of one has yielded, and that of the other has not yet.
     """
-    first = none(end)
+    first = none(extent.end)
     for late in range(2):
         for i in range(len(laws.rule)):
             if laws.contact[i] == (late == 1):
-                event = event_of(laws, series, terms, h, first.time, i)
+                before = Extent(extent.begin, extent.h, extent.terms, first.time)
+                event = event_of(laws, series, before, i)
                 if event.law >= 0 and (first.law < 0 or event.time < first.time):
                     first = event
     return first
 
 
-def count_crest(
-    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, i: int, law: int
-) -> None:
+def count_crest(laws: Laws, step: Step, series: Series, extent: Extent, i: int, law: int) -> None:
     """Update peak `i` with the polynomial in the work space; `law` is not negative for the force of a
     law.
     """
     extremes, p = step.extremes, series.polynomial
+    t, h, terms, end = extent
     known = extremes.high[i]
     contact = law >= 0 and laws.contact[law]
     if contact:
@@ -133,11 +134,9 @@ def count_crest(
         extremes.low[i], extremes.t_low[i] = -high, t + h * place
 
 
-def track_outputs(
-    sim: Simulation, series: Series, terms: int, h: float, end: float, t: float, top: int
-) -> None:
-    """Count the monitored outputs up to `end` into the peaks."""
-    linear = sim.linear
+def track_outputs(sim: Simulation, series: Series, extent: Extent, top: int) -> None:
+    """Count the monitored outputs over a step into the peaks."""
+    linear, terms = sim.linear, extent.terms
     p = series.polynomial[POLYNOMIAL]
     for i in range(len(linear.monitored_constants)):
         for k in range(terms + 1):
@@ -146,24 +145,23 @@ def track_outputs(
             for j in range(series.inputs.shape[1]):
                 p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]
         p[0] += linear.monitored_constants[i]
-        count_crest(sim.laws, sim.step, series, terms, h, end, t, i, -1)
+        count_crest(sim.laws, sim.step, series, extent, i, -1)
 
 
-def track_law(
-    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int, i: int
-) -> None:
-    """Count the deformation and the force of law `i` up to `end` into the peaks, from peak `first` on."""
+def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int, i: int) -> None:
+    """Count the deformation and the force of law `i` over a step into the peaks, from peak `first` on."""
+    terms = extent.terms
     extremes, d, p = step.extremes, series.deformation, series.polynomial[POLYNOMIAL]
     begin, far = d[i, 0], size(d, i, terms)
     if begin + far > extremes.high[first + i] or begin - far < extremes.low[first + i]:
         for k in range(terms + 1):
             p[k] = d[i, k]
-        count_crest(laws, step, series, terms, h, end, t, first + i, -1)
+        count_crest(laws, step, series, extent, first + i, -1)
     peak = first + len(laws.rule) + i
     stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
     if has_series(series, i):
         copy_force(series, terms, i, 1.0, p)
-        count_crest(laws, step, series, terms, h, end, t, peak, i)
+        count_crest(laws, step, series, extent, peak, i)
         return
     far *= abs(stiffness)
     high = extremes.high[peak]
@@ -176,13 +174,11 @@ def track_law(
         p[0] += laws.offset[i]
         if damping != 0.0:
             for k in range(terms):
-                p[k] += damping * (k + 1) / h * d[i, k + 1]
-        count_crest(laws, step, series, terms, h, end, t, peak, i)
+                p[k] += damping * (k + 1) / extent.h * d[i, k + 1]
+        count_crest(laws, step, series, extent, peak, i)
 
 
-def track_laws(
-    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int
-) -> None:
-    """Count deformations and forces of the laws up to `end` into the peaks, from peak `first` on."""
+def track_laws(laws: Laws, step: Step, series: Series, extent: Extent, first: int) -> None:
+    """Count deformations and forces of the laws over a step into the peaks, from peak `first` on."""
     for i in range(len(laws.rule)):
-        track_law(laws, step, series, terms, h, end, t, first, i)
+        track_law(laws, step, series, extent, first, i)

@@ -8,7 +8,7 @@ the step, a linear dashpot, and a rest that is known from the terms before,
           r_k = \frac{1}{k x_0} \sum_{j=1}^{k-1} (n j - k + j)\, x_j\, |f|_{k-j} .
 
 So nodes without mass follow at the rate that their springs leave to the tangents: Newton's iteration finds
-it at the start of every step (`march.settle_state`).
+it at the start of every step (`branches.settle_state`).
 
 The series ends where the damper turns, before or behind: steps shorten in proportion to the rate.  Where
 it, or the force, is below a share `SLOW_RATE` of the largest, the force goes straight through zero: what

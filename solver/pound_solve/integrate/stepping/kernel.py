@@ -35,12 +35,14 @@ from pound_solve.integrate.kernels.state import (
     WHOLE,
     Goals,
     Laws,
+    Piece,
     Scheme,
     Simulation,
     Step,
+    piece_of,
 )
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.stepping.changing import go_on
+from pound_solve.integrate.stepping.branches import go_on
 from pound_solve.integrate.stepping.parts import step_in_parts
 from pound_solve.integrate.stepping.step import (
     MAX_UPDATES,
@@ -113,13 +115,7 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
 
 
 def step_through(
-    sim: Simulation,
-    rules: Tables,
-    scheme: Scheme,
-    coefs: Array,
-    piece_start: float,
-    length: float,
-    tried: bool,
+    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, length: float, tried: bool
 ) -> int:
     """Advance by `length` without cutting the step at events: iterate until the step agrees with the laws
     at its end, each driven along a straight path from its start; `tried`: the first trial step is made
@@ -128,9 +124,9 @@ def step_through(
     laws, run = sim.laws, sim.run
     for i in range(len(laws.rule)):
         laws.saved[i] = 0
-    end = run.time + length - piece_start
+    end = run.time + length - piece.begin
     for _ in range(50):
-        if not tried and not try_step(sim, rules, scheme, coefs, end, length, WHOLE):
+        if not tried and not try_step(sim, rules, scheme, piece.coefs, end, length, WHOLE):
             break
         tried, run.driven = False, 0
         why = drive_laws(sim, rules, scheme, length)
@@ -167,9 +163,7 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
     return False
 
 
-def plain_steps(
-    sim: Simulation, rules: Tables, scheme: Scheme, coefs: Array, piece_start: float, h: float, last: int
-) -> bool:
+def plain_steps(sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, h: float, last: int) -> bool:
     """Take steps of length `h` up to step `last` while every law stays on its branch.
 
     Returns
@@ -179,8 +173,8 @@ def plain_steps(
     """
     run = sim.run
     while run.step < last and run.updates <= MAX_UPDATES and run.longest_part >= h:
-        end = run.time + h - piece_start
-        if not try_step(sim, rules, scheme, coefs, end, h, WHOLE):
+        end = run.time + h - piece.begin
+        if not try_step(sim, rules, scheme, piece.coefs, end, h, WHOLE):
             return False
         if passes_event(sim.laws, sim.step, scheme, h):
             return True
@@ -193,15 +187,15 @@ def plain_steps(
     return False
 
 
-def begin_goal(sim: Simulation, scheme: Scheme, coefs: Array, s: float, h: float) -> None:
-    """Copy the excitation at the local time `s` before the first step towards a goal; make the state
+def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
+    """Copy the present excitation before the first step towards a goal; make the state
     consistent where a load jumps, and with it the acceleration.
     """
     run = sim.run
     if run.step > 0:
         return
-    now, load = sim.step.now, sim.step.product
-    evaluate_inputs(coefs, s, now.inputs, now.input_rates)
+    now, load = sim.step.now, sim.step.scratch[0]
+    evaluate_inputs(piece.coefs, run.time - piece.begin, now.inputs, now.input_rates)
     form_load(sim.linear, now.inputs, load)
     # accelerations of the alpha methods lag behind: after steps much shorter, as through a spike of
     # the load, that of its past would act for too long
@@ -234,10 +228,10 @@ def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
 def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
     """Take a sample at a goal; RUNAWAY where the kinetic energy is far above what was put in."""
     step, run = sim.step, sim.run
-    kinetic, velocity = 0.0, step.now.velocity
-    multiply(sim.linear.mass, velocity, step.product)
+    kinetic, velocity, momentum = 0.0, step.now.velocity, step.scratch[0]
+    multiply(sim.linear.mass, velocity, momentum)
     for i in range(len(velocity)):
-        kinetic += 0.5 * velocity[i] * step.product[i]
+        kinetic += 0.5 * velocity[i] * momentum[i]
     if runs_away(kinetic, run.initial_energy, sim.works.gross_input):
         run.initial_energy = kinetic
         return RUNAWAY
@@ -254,8 +248,7 @@ def take_steps(
     sim: Simulation,
     rules: Tables,
     scheme: Scheme,
-    coefs: Array,
-    begin: float,
+    piece: Piece,
     h: float,
     goal: float,
     count: int,
@@ -272,7 +265,7 @@ def take_steps(
     else:
         last = min(count - 1, run.step + most)
         first, fresh = run.step, run.updates == 0
-        tried = plain_steps(sim, rules, scheme, coefs, begin, h, last)
+        tried = plain_steps(sim, rules, scheme, piece, h, last)
         # iterations that fail from a new factor on would fail again: the step is taken in parts
         used_up = run.updates > MAX_UPDATES and (run.step > first or not fresh)
         if not tried and (run.step == last < count - 1 or used_up):
@@ -280,10 +273,10 @@ def take_steps(
         length = h if run.step < count - 1 else goal - run.time
         run.same_instant = 0
         if not scheme.locate:
-            why = step_through(sim, rules, scheme, coefs, begin, length, tried)
+            why = step_through(sim, rules, scheme, piece, length, tried)
             tried = False
     if why == NEWTON:  # cut at its events a step always has a solution
-        why = step_in_parts(sim, rules, scheme, coefs, begin, length, h, tried)
+        why = step_in_parts(sim, rules, scheme, piece, length, h, tried)
     if why == DONE:
         run.step += 1
         run.steps += 1
@@ -313,9 +306,8 @@ def advance(
         take_first_sample(sim, rules)
     while run.goal < len(goals.times):
         goal = run.goal
-        h, piece = lengths[goal], goals.piece[goal]
-        begin, coefs = goals.begins[piece], goals.coefs[piece]
-        begin_goal(sim, scheme, coefs, run.time - begin, h)
+        h, piece = lengths[goal], piece_of(goals, goal)
+        begin_goal(sim, scheme, piece, h)
         while run.step < steps[goal]:
             crowded = len(buffers.log) - run.logged < room or run.tied > len(buffers.ties) // 2
             # steps that have room
@@ -325,17 +317,8 @@ def advance(
             why = renew_factor(sim, scheme, h)
             if why != DONE:
                 return why
-            why = take_steps(
-                sim,
-                rules,
-                scheme,
-                coefs,
-                begin,
-                h,
-                goals.times[goal],
-                steps[goal],
-                min(pause - run.steps, more),
-            )
+            most = min(pause - run.steps, more)
+            why = take_steps(sim, rules, scheme, piece, h, goals.times[goal], steps[goal], most)
             if why != DONE:
                 return why
         run.time = goals.times[goal]

@@ -11,12 +11,11 @@ import numpy as np
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEARLY_MET
-from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Scheme, Simulation
+from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Piece, Scheme, Simulation
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.step import factorise_step, start_again, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import next_trial
-from pound_solve.numerics.types import Array
 
 SAME_INSTANT_OF_STEP = 1e-9  #: share of a step within which two events are at one instant
 GO_ON, MET, NONE = range(3)
@@ -92,13 +91,12 @@ def locate_event(
     sim: Simulation,
     rules: Tables,
     scheme: Scheme,
-    coefs: Array,
-    begin: float,
+    piece: Piece,
     length: float,
     h: float,
     event: LocatedEvent,
 ) -> tuple[int, LocatedEvent]:
-    """Shorten a step from the local time `begin`, in which events are passed, to the first of them.
+    """Shorten a step in which events are passed to the first of them.
 
     Parameters
     ----------
@@ -115,7 +113,7 @@ def locate_event(
         Law -1 where none is met after all; its time is the length that was tried last, or 0 where it is met
         at once.  Others at this instant are marked, see `mark_others`.
     """
-    laws, step = sim.laws, sim.step
+    laws, step, begin = sim.laws, sim.step, sim.run.time - piece.begin
     law, index, tau = event.law, event.event_index, event.time
     g = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])[0]
     b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
@@ -134,7 +132,7 @@ def locate_event(
         if bad >= 0:
             sim.run.fault = bad
             return PIVOT, event
-        if not try_step(sim, rules, scheme, coefs, begin + tau, tau, PART):
+        if not try_step(sim, rules, scheme, piece.coefs, begin + tau, tau, PART):
             if last:
                 return NEWTON, event
             start_again(laws, rules)  # at `high` there was a solution: look for the event nearer to it

@@ -16,10 +16,11 @@ from pound_solve.integrate.kernels.state import (
     PART,
     PIVOT,
     WHOLE,
+    Piece,
     Scheme,
     Simulation,
 )
-from pound_solve.integrate.stepping.changing import change_branches
+from pound_solve.integrate.stepping.branches import change_branches
 from pound_solve.integrate.stepping.locating import locate_event
 from pound_solve.integrate.stepping.step import (
     MAX_UPDATES,
@@ -29,7 +30,6 @@ from pound_solve.integrate.stepping.step import (
     try_step,
 )
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.types import Array
 
 MAX_HALVINGS = 25
 SHORTEST_PART = 3e-8  #: shortest part of a step, used where laws change to and fro
@@ -47,14 +47,7 @@ def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int
 
 
 def solve_part(
-    sim: Simulation,
-    rules: Tables,
-    scheme: Scheme,
-    coefs: Array,
-    piece_start: float,
-    part: float,
-    at: int,
-    tried: bool,
+    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, part: float, at: int, tried: bool
 ) -> tuple[int, float, int]:
     """Solve a part of a step at most as long as `part`, halved until Newton's iterations converge.
 
@@ -76,7 +69,7 @@ def solve_part(
             why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:
                 return why, part, at
-        if tried or try_step(sim, rules, scheme, coefs, run.time + part - piece_start, part, at):
+        if tried or try_step(sim, rules, scheme, piece.coefs, run.time + part - piece.begin, part, at):
             return DONE, part, at
         run.updates = MAX_UPDATES + 1
         start_again(laws, rules)
@@ -85,21 +78,14 @@ def solve_part(
 
 
 def end_part_at_event(
-    sim: Simulation,
-    rules: Tables,
-    scheme: Scheme,
-    coefs: Array,
-    begin: float,
-    part: float,
-    h: float,
-    event: LocatedEvent,
+    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, part: float, h: float, event: LocatedEvent
 ) -> tuple[int, LocatedEvent]:
-    """Shorten a part from the local time `begin` to the first event in it, see `locate_event`."""
+    """Shorten a part to the first event in it, see `locate_event`."""
     laws, run = sim.laws, sim.run
     curved = laws.curved.any()
     if curved:  # shorter trials move the tangents away from the factor at hand
         run.updates = MAX_UPDATES + 1
-    why, event = locate_event(sim, rules, scheme, coefs, begin, part, h, event)
+    why, event = locate_event(sim, rules, scheme, piece, part, h, event)
     if why == DONE and event.time > 1e-9 * h:
         run.same_instant = 0
     elif why == DONE and event.time == 0.0 and curved:
@@ -135,14 +121,7 @@ def pass_event(
 
 
 def step_in_parts(
-    sim: Simulation,
-    rules: Tables,
-    scheme: Scheme,
-    coefs: Array,
-    piece_start: float,
-    length: float,
-    h: float,
-    tried: bool,
+    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, length: float, h: float, tried: bool
 ) -> int:
     """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
     and `tried` says that the first trial is made.
@@ -159,14 +138,14 @@ def step_in_parts(
             return CROWD
         part = min(left, run.longest_part)
         at = at if part == left else PART
-        why, part, at = solve_part(sim, rules, scheme, coefs, piece_start, part, at, tried)
+        why, part, at = solve_part(sim, rules, scheme, piece, part, at, tried)
         if why != DONE:
             return why
         tried = False
         event = first_event(laws, sim.step, part)
         if event.law >= 0:
-            begin, at = run.time - piece_start, PART
-            why, event = end_part_at_event(sim, rules, scheme, coefs, begin, part, h, event)
+            at = PART
+            why, event = end_part_at_event(sim, rules, scheme, piece, part, h, event)
             if why != DONE:
                 return why
             part = event.time

@@ -61,7 +61,7 @@ from pound_solve.laws.functions import Tables
 from pound_solve.numerics.ldl import solve as solve_factored
 from pound_solve.numerics.ldl import update
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import KIND, LENGTH, STRING
+from pound_solve.structure.corotational import ACROSS, AXIAL, KIND, LENGTH, STRING
 
 MAX_UPDATES = 200  #: updates of rank one before a factor is made anew
 CONVERGED = 1e-12  #: largest deviation of a curved law's force from its tangent, as a share of the force
@@ -94,22 +94,25 @@ def predict_step(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: f
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     now, trial, right = step.now, step.trial, step.right_side
-    b2, g1 = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
+    on_displacement, on_velocity = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
     n = len(right)
     evaluate_inputs(coefs, end, trial.inputs, trial.input_rates)
     form_load(linear, trial.inputs, trial.load)
     for i in range(n):
-        trial.displacement[i] = now.displacement[i] + h * now.velocity[i] + b2 * now.acceleration[i]
+        trial.displacement[i] = (
+            now.displacement[i] + h * now.velocity[i] + on_displacement * now.acceleration[i]
+        )
     for i in range(n):
-        trial.velocity[i] = now.velocity[i] + g1 * now.acceleration[i]
+        trial.velocity[i] = now.velocity[i] + on_velocity * now.acceleration[i]
     multiply(linear.stiffness, trial.displacement, right)
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
-        multiply(linear.mass, now.acceleration, step.product)
+        inertia = step.scratch[0]
+        multiply(linear.mass, now.acceleration, inertia)
         one = 1.0 / (1.0 - scheme.alpha_f)
         for i in range(n):
-            right[i] -= one * (scheme.alpha_f * step.residual[i] - scheme.alpha_m * step.product[i])
+            right[i] -= one * (scheme.alpha_f * step.residual[i] - scheme.alpha_m * inertia[i])
     for i in range(n):
-        right[i] = trial.load[i] - right[i] - now.damping_force[i] - g1 * now.damping_rate[i]
+        right[i] = trial.load[i] - right[i] - now.damping_force[i] - on_velocity * now.damping_rate[i]
     for i in range(len(laws.rule)):
         d, v, terms = 0.0, 0.0, 0.0
         for j in range(len(trial.inputs)):
@@ -151,7 +154,7 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         factor fails.
     """
     laws = sim.laws
-    bk, gk = scheme.beta * h * h, scheme.gamma * h
+    beta_h2, gamma_h = scheme.beta * h * h, scheme.gamma * h
     acceleration, worst, law = sim.step.trial.acceleration, 0.0, -1
     for i in range(len(laws.rule)):
         if not laws.curved[i]:
@@ -159,9 +162,11 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         j = laws.normal[i]
         if j >= 0:
             a = row_product(laws.rows, j, acceleration)
-            set_normal_force(laws, i, laws.trial.deformation[j] + bk * a, laws.trial.rate[j] + gk * a, a)
+            set_normal_force(
+                laws, i, laws.trial.deformation[j] + beta_h2 * a, laws.trial.rate[j] + gamma_h * a, a
+            )
         a = row_product(laws.rows, i, acceleration)
-        d, v = laws.trial.deformation[i] + bk * a, laws.trial.rate[i] + gk * a
+        d, v = laws.trial.deformation[i] + beta_h2 * a, laws.trial.rate[i] + gamma_h * a
         c = curved_force(laws, rules, i, d, v)
         k, proportional = c[1], proportional_damping(laws, i, c[1])
         damp, force = c[2] + proportional, c[0] + proportional * v
@@ -169,7 +174,7 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         size = max(abs(force), abs(k * laws.largest_deformation[i]), 1e-300)
         if abs(force - guess) > worst * size:
             worst, law = abs(force - guess) / size, i
-        change = bk * (k - laws.stiffness[i]) + gk * (damp - laws.damping[i])
+        change = beta_h2 * (k - laws.stiffness[i]) + gamma_h * (damp - laws.damping[i])
         laws.stiffness[i], laws.damping[i], laws.offset[i] = k, damp, force - k * d - damp * v
         sim.run.updates += 1
         if sim.linear.explicit or update_factor(sim, i, change, at):
@@ -228,15 +233,15 @@ def try_step(
     predict_step(sim, scheme, coefs, end, h)
     if not iterate_newton(sim, rules, scheme, h, at):
         return False
-    trial, bk, gk = sim.step.trial, scheme.beta * h * h, scheme.gamma * h
+    trial, beta_h2, gamma_h = sim.step.trial, scheme.beta * h * h, scheme.gamma * h
     for i in range(len(trial.acceleration)):
-        trial.displacement[i] += bk * trial.acceleration[i]
+        trial.displacement[i] += beta_h2 * trial.acceleration[i]
     for i in range(len(trial.acceleration)):
-        trial.velocity[i] += gk * trial.acceleration[i]
+        trial.velocity[i] += gamma_h * trial.acceleration[i]
     for i in range(len(laws.rule)):
         a = row_product(laws.rows, i, trial.acceleration)
-        laws.trial.deformation[i] += bk * a
-        laws.trial.rate[i] += gk * a
+        laws.trial.deformation[i] += beta_h2 * a
+        laws.trial.rate[i] += gamma_h * a
         if laws.contact[i]:  # of bodies that move alike the deformation is rounding
             far = row_magnitude(laws.rows, i, trial.displacement)
             laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
@@ -277,8 +282,8 @@ def add_external_work(sim: Simulation, h: float) -> None:
     for c in range(len(p)):
         if p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
             s0, s1 = members.now.quantities, members.trial.quantities
-            square = s0[c, 3] * s0[c, 3] + s1[c, 3] * s1[c, 3]
-            works.input += 0.25 * square / p[c, LENGTH] * (s1[c, 0] - s0[c, 0])
+            square = s0[c, ACROSS] * s0[c, ACROSS] + s1[c, ACROSS] * s1[c, ACROSS]
+            works.input += 0.25 * square / p[c, LENGTH] * (s1[c, AXIAL] - s0[c, AXIAL])
     works.input += work * h / 6.0
     works.damping += loss * h / 3.0
     works.gross_input += abs(works.input - before)
@@ -319,14 +324,13 @@ def accept_members(laws: Laws) -> None:
 def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
     """Residual of the alpha methods at the end of the step."""
     one = 1.0 / (1.0 - scheme.alpha_f)
-    now, trial, residual = step.now, step.trial, step.residual
-    for i in range(len(residual)):  # the acceleration at the start is of no further use
-        now.acceleration[i] = (1.0 - scheme.alpha_m) * trial.acceleration[
-            i
-        ] + scheme.alpha_m * now.acceleration[i]
-    multiply(linear.mass, now.acceleration, step.right_side)
+    before, after, residual = step.now.acceleration, step.trial.acceleration, step.residual
+    mean, inertia = step.scratch[0], step.scratch[1]
     for i in range(len(residual)):
-        residual[i] = one * (step.right_side[i] - scheme.alpha_f * residual[i])
+        mean[i] = (1.0 - scheme.alpha_m) * after[i] + scheme.alpha_m * before[i]
+    multiply(linear.mass, mean, inertia)
+    for i in range(len(residual)):
+        residual[i] = one * (inertia[i] - scheme.alpha_f * residual[i])
 
 
 def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: int) -> None:
@@ -345,10 +349,10 @@ def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: i
             break
     multiply(linear.damping, trial.acceleration, trial.damping_rate)
     if linear.all_mass:
-        g1, gk = (1.0 - scheme.gamma) * h, scheme.gamma * h
+        on_velocity, gamma_h = (1.0 - scheme.gamma) * h, scheme.gamma * h
         for i in range(n):
             trial.damping_force[i] = (
-                now.damping_force[i] + g1 * now.damping_rate[i] + gk * trial.damping_rate[i]
+                now.damping_force[i] + on_velocity * now.damping_rate[i] + gamma_h * trial.damping_rate[i]
             )
     else:
         multiply(linear.damping, trial.velocity, trial.damping_force)

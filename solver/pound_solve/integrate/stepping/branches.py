@@ -61,14 +61,14 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
 def leaves_with(sim: Simulation, i: int) -> bool:
     """Whether a law that is marked leaves its branch whatever the others do that have left at this instant.
 
-    A law that turns follows its acceleration, which changes where another one holds the same mass; their
-    unknowns are marked in `step.product`.
+    A law that turns follows its acceleration, which changes where another one holds the same mass; the
+    unknowns of those that have left are in `step.marked`.
     """
     laws = sim.laws
     if laws.events[i, laws.saved[i] - 1, 0] != 0.0:
         return True
     for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-        if not sim.linear.diagonal or sim.step.product[laws.rows.columns[q]] != 0.0:
+        if not sim.linear.diagonal or sim.step.marked[laws.rows.columns[q]]:
             return False
     return True
 
@@ -81,8 +81,8 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
     first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
     event = LocatedEvent(first, its_event, event.time)
     laws.saved[event.law] = 1 + event.event_index
-    for j in range(len(step.product)):
-        step.product[j] = 0.0
+    for j in range(len(step.marked)):
+        step.marked[j] = False
     for k in range(-1, len(laws.rule)):
         i = event.law if k < 0 else k
         room = len(sim.buffers.log) - run.logged > len(laws.coupled)
@@ -92,7 +92,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
         if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
             run.longest_part = FIRST_PART * h
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            step.product[laws.rows.columns[q]] = 1.0
+            step.marked[laws.rows.columns[q]] = True
         laws.saved[i] = 0
     if run.fell < 0:
         go_on(sim, rules)

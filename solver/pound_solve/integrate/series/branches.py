@@ -1,0 +1,146 @@
+"""Kernels of TAYLOR: laws change their branches, and the state is made consistent with the new ones."""
+
+from __future__ import annotations
+
+from pound_solve.integrate.events.protocol import LocatedEvent
+from pound_solve.integrate.kernels.laws import law_force, leave_branch
+from pound_solve.integrate.kernels.recording import log_transition
+from pound_solve.integrate.kernels.state import CHATTER, DONE, FALL, LOOSE, Piece, Run, Simulation
+from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
+from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, SAME_INSTANT
+from pound_solve.integrate.series.expansion import begin_series, next_term
+from pound_solve.integrate.series.forces import take_over, update_branch_forces
+from pound_solve.integrate.series.friction import touch_event
+from pound_solve.integrate.series.massless import factorise_orders, first_violated, joints_jump
+from pound_solve.integrate.series.modal import renew_modes
+from pound_solve.integrate.series.smooth import linearise_smooth
+from pound_solve.integrate.series.springs import add_up, deformation_term
+from pound_solve.integrate.series.state import Extent, Series
+from pound_solve.integrate.series.tracking import event_of
+from pound_solve.integrate.series.viscous import linearise_dampers, tangents_settled
+from pound_solve.laws.functions import Tables
+
+AHEAD = 1e-3  #: part of a step in which laws are searched for events at the instant of another one's
+
+
+def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, event: LocatedEvent) -> None:
+    """Let a law leave its branch."""
+    laws, run = sim.laws, sim.run
+    law = event.law
+    before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
+    note_rests(sim, rules, law, event.event_index)
+    leave_branch(laws, rules, law, event.event_index, d, v)
+    take_over(laws, rules, series, law)
+    # the rate of what has no mass jumps, and with it the force of its dashpot
+    force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
+    if before != laws.branch[law]:
+        log_transition(sim, law, before, t, force)
+    run.events += 1
+    run.fault = law
+    run.stale = 1
+
+
+def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
+    """Let friction laws engage or release with the contacts that have touched or parted."""
+    for r in range(len(series.friction.laws)):
+        event = touch_event(sim.laws, rules, series.friction, r)
+        if event >= 0:
+            law = series.friction.laws[r]
+            change_branch(sim, rules, series, sim.run.time, LocatedEvent(law, event, 0.0))
+
+
+def change_branches(
+    sim: Simulation, rules: Tables, series: Series, extent: Extent, event: LocatedEvent
+) -> None:
+    """Change the branch of a law, and of others whose events are at the same instant."""
+    laws = sim.laws
+    now, instant = sim.run.time, SAME_INSTANT * max(sim.run.time, extent.h)
+    ahead = Extent(extent.begin, extent.h, extent.terms, min(event.time + AHEAD, extent.end))
+    first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
+    event = LocatedEvent(first, its_event, event.time)
+    stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
+    change_branch(sim, rules, series, now, event)
+    note_ties(sim, rules, event.law, stiffness, offset)
+    # with unknowns without mass `settle_state` decides
+    for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):
+        if i != event.law and series.rigid.number[i] < 0:
+            other = event_of(laws, series, ahead, i)
+            if other.law >= 0 and other.event_index >= 0 and other.time <= event.time + instant / extent.h:
+                change_branch(sim, rules, series, now, other)
+    change_friction(sim, rules, series)
+
+
+def count_instant(run: Run, h: float) -> None:
+    """Count the events at one instant."""
+    same = run.time - run.last_event <= SAME_INSTANT * max(run.time, h)
+    run.same_instant = run.same_instant + 1 if same else 0
+    run.last_event = run.time
+
+
+def renew_branches(sim: Simulation, rules: Tables, series: Series) -> bool:
+    """Update what depends on the branches after a change: tangents of smooth laws and dampers, sums, modes,
+    factors; False where an unknown without mass is not held, which `run.fault` names.
+    """
+    laws, run = sim.laws, sim.run
+    held = series.massless
+    if run.stale:
+        linearise_smooth(laws, rules, series.smooth)
+        linearise_dampers(laws, rules, series.viscous)
+        add_up(sim.linear, laws, series)
+        renew_modes(laws, series)
+        fault = factorise_orders(laws, held) if len(held.unknown) else -1
+        if fault >= 0:
+            run.fault = held.unknown[fault]
+            return False
+        run.stale, run.factor_length = 0, -1.0
+    return True
+
+
+def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -> int:
+    """Make the velocities of unknowns without mass and the forces of closed rigid contacts consistent with
+    the present branches.
+
+    These rates jump where a stiffness or a dashpot among them changes, and a law whose rate changes its
+    sign so must leave its branch, too.  Of several the first in number does, then all are looked at again:
+    such a rule of least index ends where the laws harden (Murty's, for linear complementarity problems).
+
+    Returns
+    -------
+    int
+        DONE, or what is wrong.
+
+    References
+    ----------
+    Murty KG (1974), Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11:
+    123-130.
+    """
+    laws, run = sim.laws, sim.run
+    held, now, top = series.massless, sim.step.now, len(piece.coefs)
+    in_series = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
+    in_series += len(series.smooth.laws) + len(series.viscous.laws)
+    if len(held.unknown) + in_series == 0:
+        return DONE
+    for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
+        change_friction(sim, rules, series)
+        if not renew_branches(sim, rules, series):
+            return LOOSE
+        begin_series(sim, series, piece, 1.0)
+        if in_series:  # forces that are series need the accelerations
+            next_term(sim, series, 0, 1.0, top)
+        # at the start no law has lost a force: what moves there is the rounding of the state of rest
+        if run.fault >= 0 and joints_jump(laws, series, top):
+            return FALL
+        for i in held.unknown:
+            now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
+        for i in held.laws:
+            laws.now.deformation[i] = deformation_term(laws, series, 0, top, i)
+            laws.now.rate[i] = deformation_term(laws, series, 1, top, i)
+        if not tangents_settled(laws, series.viscous, now.velocity):
+            run.stale = 1
+            continue
+        law, event = first_violated(laws, held.laws)
+        if law < 0:
+            update_branch_forces(laws, series, 2, 0.0, 1.0)
+            return DONE
+        change_branch(sim, rules, series, run.time, LocatedEvent(law, event, 0.0))
+    return CHATTER
