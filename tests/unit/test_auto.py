@@ -428,7 +428,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
 
     monkeypatch.setattr(auto, "has_series", lambda system: False)
     monkeypatch.setattr(trial.exact, "integrate", endless)
-    monkeypatch.setattr(trial, "LEAST_OF_MANY", 0.0)
+    monkeypatch.setattr(trial, "MIN_COST_OF_MANY", 0.0)
     monkeypatch.setattr(costs, "DECOMPOSITION", 0.0)
     monkeypatch.setattr(tolerance_refinement.ToleranceRefinement, "run", unfit)
     monkeypatch.setattr(step_refinement.StepRefinement, "least_cost", least_cost)
@@ -448,7 +448,7 @@ def test_others_follow_a_trial_of_exact_that_rounding_stops(tmp_path, monkeypatc
 
     monkeypatch.setattr(auto, "has_series", lambda system: False)
     monkeypatch.setattr(trial.exact, "integrate", stops)
-    monkeypatch.setattr(trial, "LEAST_OF_MANY", 0.0)
+    monkeypatch.setattr(trial, "MIN_COST_OF_MANY", 0.0)
     monkeypatch.setattr(costs, "DECOMPOSITION", 0.0)
     found = run(tmp_path, "AUTO TOL=1e-5")
     assert found.status == status and len(tried) == 1

@@ -15,7 +15,7 @@ from decks import solved, structure_of
 from pound_solve import run
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
-from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.analyses.tangent_solution import InstabilityError
 
 E, A, INERTIA, L = 2e8, 0.01, 1e-4, 5.0
 EI = E * INERTIA

@@ -254,7 +254,7 @@ def test_only_so_many_dynamic_stiffnesses_are_kept(monkeypatch: pytest.MonkeyPat
     """The oldest goes, and is formed again; the answers are the same."""
     deck = OSCILLATOR.replace("gap = 9", "gap = 0.5")
     whole = run_text(deck, method="LAPLACE", dt=0.005)
-    monkeypatch.setattr(laplace, "MOST_NUMBERS", 2049)
+    monkeypatch.setattr(laplace, "MAX_NUMBERS", 2049)
     kept = run_text(deck, method="LAPLACE", dt=0.005)
     assert np.array_equal(kept.u, whole.u)
     assert figure(kept, "combinations of stiffnesses") > figure(whole, "combinations of stiffnesses")

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from decks import model_of, solved
 from pound_solve import run
 from pound_solve.analyses import modal, static
-from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.numerics import matrices, modes
 from pound_solve.structure.assembly import assemble
 
@@ -157,7 +157,7 @@ ANALYSIS
 def test_a_whole_static_analysis_is_the_same(monkeypatch):
     plain = solved(PORTAL)
     table = modal.natural_modes(static.after(plain.structure, plain.state), 2)
-    monkeypatch.setattr(matrices, "MOST_DENSE", 0)
+    monkeypatch.setattr(matrices, "MAX_DENSE", 0)
     s = assemble(model_of(PORTAL))
     state = static.solve(s)
     assert state.u == pytest.approx(plain.state.u, rel=1e-11, abs=1e-15)
@@ -175,7 +175,7 @@ def test_a_mechanism_has_the_same_name(monkeypatch):
         return str(err.value)
 
     plain = said()
-    monkeypatch.setattr(matrices, "MOST_DENSE", 0)
+    monkeypatch.setattr(matrices, "MAX_DENSE", 0)
     assert said() == plain
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from decks import model_of
 from pound_solve import run
 from pound_solve.analyses import pushover, static
-from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import BranchKind, Law, Rule, above, drive, linear
 from pound_solve.structure.assembly import assemble

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from decks import solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
-from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, BranchKind, Law, Rule, linear
 from pound_solve.laws.contact.kelvin_voigt import PRESSED
 

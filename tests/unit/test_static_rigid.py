@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from decks import scene_of, solved, structure_of
 from pound_solve.analyses import static
-from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.analyses.ties import Ties
 from pound_solve.integrate.rigid.contacts import ACCELERATION_ROUNDING, RigidContacts, linear_forces
 from pound_solve.numerics.types import Array

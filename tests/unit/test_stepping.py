@@ -106,7 +106,7 @@ def test_iterations_that_use_a_factor_up_and_fail_end_in_parts(tmp_path, monkeyp
             return parts.try_step(sim, rules, scheme, coefs, end, h, at)
         tries.append(float(sim.run.time))
         assert tries.count(tries[-1]) < 4, "the same step is tried again and again"
-        sim.run.updates = kernel.REFRESH + 1
+        sim.run.updates = kernel.MAX_UPDATES + 1
         return False
 
     right = run(tmp_path, "NEWMARK DT=0.001", every=0.2).history("node/u")
@@ -228,8 +228,8 @@ def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, mo
         return within_step.event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
 
     monkeypatch.setattr(locating, "value_at_start", at_start)
-    monkeypatch.setattr(within_step, "ALIKE", 1.0)  # else that counts as rounding
-    monkeypatch.setattr(parts, "SHORTEST", 1.0)
+    monkeypatch.setattr(within_step, "MOVING_ALIKE", 1.0)  # else that counts as rounding
+    monkeypatch.setattr(parts, "SHORTEST_PART", 1.0)
     with interpreted():
         told = bar(tmp_path, 0.05).message
     assert told.startswith("A503 at t = 0.703") and "at one instant" in told

@@ -12,7 +12,7 @@ from kernels import FAST, interpreted
 from pound_deck.schema import REQUIRED, Spec
 from pound_solve.assess.law_test import has_loop, specimen
 from pound_solve.catalog import catalog
-from pound_solve.integrate.series import march, taylor
+from pound_solve.integrate.series import branches, taylor
 from samples import written
 from tiers import at_night, each_once
 from unit.test_laplace import SOIL
@@ -671,7 +671,7 @@ def test_changes_at_one_instant_are_told(monkeypatch: pytest.MonkeyPatch) -> Non
     """Were every change taken for one of the same instant, the first reduced system that has many would
     stop.
     """
-    monkeypatch.setattr(march, "INSTANT", 10.0)
+    monkeypatch.setattr(branches, "SAME_INSTANT", 10.0)
     with interpreted():
         r = run_text(storeys().replace("KX=500", "KX=500 FX=1 RULE=BILINEAR R=0.5"), None, "TAYLOR")
     assert r.message.startswith("A503") and "changes at one instant, the last in element" in r.message

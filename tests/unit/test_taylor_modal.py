@@ -56,7 +56,7 @@ def test_modes_find_what_series_find(monkeypatch: pytest.MonkeyPatch) -> None:
     """Histories, peaks, collisions, energies, with yielding and pounding in between."""
     deck, params = ROOT / "examples" / "cole2011" / "distributed.inp", {"n": 10}
     r = run_deck(deck, params, "TAYLOR")
-    monkeypatch.setattr(modal_tables, "WORTH", math.inf)
+    monkeypatch.setattr(modal_tables, "MIN_RADIANS", math.inf)
     s = run_deck(deck, params, "TAYLOR")
     same(r, s, 1e-9)
     assert counts(s)[1] == 0
@@ -70,7 +70,7 @@ def test_more_unknowns_than_plain_arrays_hold(monkeypatch: pytest.MonkeyPatch) -
     deck, params = ROOT / "examples" / "cole2011" / "distributed.inp", {"n": 80, "t": 0.8, "gap": 0.0005}
     r = run_deck(deck, params, "TAYLOR")
     assert int(item(r, "unknowns")) > MAX_DENSE
-    monkeypatch.setattr(modal_tables, "WORTH", math.inf)
+    monkeypatch.setattr(modal_tables, "MIN_RADIANS", math.inf)
     same(r, run_deck(deck, params, "TAYLOR"), 1e-9)
     assert counts(r)[1] > 0
 
@@ -79,7 +79,7 @@ def test_bounds_hold_between_the_ends_of_cells(monkeypatch: pytest.MonkeyPatch) 
     """Every followed quantity stays within its bounds, and its series over a cell is the quantity."""
     tightest, series_off, seen = math.inf, 0.0, 0
 
-    def checked(laws, series, n_inputs):
+    def checked(laws, series, n_inputs, t):
         nonlocal tightest, series_off, seen
         own = series.modal
         cells = len(own.values) - 1
@@ -99,7 +99,7 @@ def test_bounds_hold_between_the_ends_of_cells(monkeypatch: pytest.MonkeyPatch) 
                 powers = np.polynomial.polynomial.polyval(SHARES, p[: terms + 1])
                 series_off = max(series_off, np.abs(powers - y).max() / size)
                 seen += 1
-        return quiet(laws, series, n_inputs)
+        return quiet(laws, series, n_inputs, t)
 
     quiet = modal.is_quiet
     monkeypatch.setattr(modal, "is_quiet", checked)

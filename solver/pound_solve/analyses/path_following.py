@@ -37,12 +37,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pound_solve.analyses.tangent_solution import InstabilityError, solve_under_control, solve_under_load
 from pound_solve.analyses.ties import Ties
 from pound_solve.laws.automaton import Law, State
-from pound_solve.numerics.matrices import Matrix, bordered, by_rows, dense, gathered, scaled, used_rows
-from pound_solve.numerics.modes import Held, scaling
-from pound_solve.numerics.types import Array, Index
-from pound_solve.structure.dofs import label
+from pound_solve.numerics.matrices import Matrix, by_rows, dense, gathered
+from pound_solve.numerics.modes import scaling
+from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
 RATE_ROUNDING = 1e-12  #: share of its terms below which a rate is rounding
@@ -56,20 +56,6 @@ INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are cur
 ITERATIONS = 80
 MAX_CHANGES = 10_000
 MAX_RETURNS = 5  #: of all laws to the same branches at one point
-
-
-class InstabilityError(Exception):
-    """No further equilibrium: a mechanism, named by its worst DOF; `code` is the number of the message.
-
-    Attributes
-    ----------
-    motion : ndarray, shape (n_free,), or None
-        Motion of a mechanism under its load.
-    """
-
-    def __init__(self, why: str, code: str = "A501", motion: Array | None = None) -> None:
-        super().__init__(why)
-        self.code, self.motion = code, motion
 
 
 class Mark(NamedTuple):
@@ -164,15 +150,15 @@ class EquilibriumPath:
         *self._outer, self._product = np.array(pairs).reshape(-1, 4).T
         self.lead = np.zeros(len(self.laws)) if lead is None else lead
         self.factor, self.changes = 0.0, 0
-        self._here: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
+        self._visits: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
         self.corotational = structure.corotational.on(slice(n))
         self.curved = len(self.corotational) > 0 or any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
         self._root = scaling(structure.initial_stiffness[:n, :n])
-        self._lost = np.zeros(n)  # forces that laws have released, not yet redistributed
-        self._most = float(np.abs(applied).max(initial=0.0))
-        self._longest = self._stride = np.inf
-        self._given = np.zeros(0)  # what the last rates were found with
+        self._released = np.zeros(n)  # forces that laws have released, not yet redistributed
+        self._largest_load = float(np.abs(applied).max(initial=0.0))
+        self._longest_increment = self._next_increment = np.inf
+        self._rates_key = np.zeros(0)  # what the last rates were found with
         self._rates: Rates | None = None
         self.ties = self._closed()
 
@@ -181,7 +167,7 @@ class EquilibriumPath:
         d: Array = self.rows @ u + (1.0 - factor) * self.lead
         return d
 
-    def _terms(self, u: Array) -> Array:
+    def _deformation_terms(self, u: Array) -> Array:
         """Sum of the absolute terms of each deformation, on which its rounding depends."""
         return np.asarray(np.abs(self.rows) @ np.abs(u) + np.abs(self.lead))
 
@@ -210,8 +196,8 @@ class EquilibriumPath:
 
     def unbalanced(self) -> float:
         """Largest residual force, as a share of the largest force applied so far."""
-        rest, size = self._rest(self.u, self.factor)
-        return _share(rest, np.append(size, self._most))
+        residual, size = self._residual(self.u, self.factor)
+        return _relative_size(residual, np.append(size, self._largest_load))
 
     def step(self, marks: Sequence[Mark]) -> PathEvent | int | None:
         """Move to the first event of a law, to the first mark (its index), or, after a law has released a
@@ -223,7 +209,7 @@ class EquilibriumPath:
             There is no further equilibrium.
         """
         try:
-            if self._lost.any():
+            if self._released.any():
                 return self._redistribute()
             while (hit := self._increment(marks) if self.curved else self._segment(marks)) is None:
                 pass
@@ -249,16 +235,18 @@ class EquilibriumPath:
         released = held - law.force(self.states[i], d)[0]
         if law.rigid:  # it opens without force
             self.ties = self._closed()
-        elif abs(released) > FORCE_JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
-            self._lost = self._lost + released * self.rows[i]
+        elif abs(released) > FORCE_JUMP * (
+            abs(held) + abs(law.p[0]) * float(self._deformation_terms(self.u)[i])
+        ):
+            self._released = self._released + released * self.rows[i]
         self.changes += 1
         if self.changes > MAX_CHANGES:
             raise InstabilityError(
                 f"more than {MAX_CHANGES} changes of state of springs and contacts", "A507"
             )
         same = tuple(state[0] for state in self.states)
-        self._here[same] += 1
-        if self._here[same] > MAX_RETURNS:
+        self._visits[same] += 1
+        if self._visits[same] > MAX_RETURNS:
             raise InstabilityError(
                 "there is no further equilibrium without a jump: "
                 f"element {self.laws[i].element} loses its strength "
@@ -270,50 +258,50 @@ class EquilibriumPath:
 
     def _segment(self, marks: Sequence[Mark]) -> PathEvent | int:
         """Move along a straight segment to its end."""
-        du, rise, best, hit = self._ahead(marks)
+        du, factor_rate, distance, hit = self._first_ahead(marks)
         if hit is None:
             raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
-        if best > 0.0:
-            self._move(self.u + best * du, self.factor + best * rise)
+        if distance > 0.0:
+            self._move(self.u + distance * du, self.factor + distance * factor_rate)
         return hit
 
     def _redistribute(self) -> PathEvent | None:
         """Redistribute the forces that laws have released, at fixed control."""
         if self.curved:
-            self._lost = np.zeros(len(self.u))
-            there = self._point(0.0, 0.0 * self.u, 0.0, ())
+            self._released = np.zeros(len(self.u))
+            there = self._equilibrium(0.0, 0.0 * self.u, 0.0, ())
             if there is None:
                 raise InstabilityError("no equilibrium for the force that a law has released", "A507")
             self._move(*there[0])
             return None
-        du, rise, best, hit = self._ahead(())
-        share = min(best, 1.0)
-        self._lost = (1.0 - share) * self._lost
-        self._move(self.u + share * du, self.factor + share * rise)
-        return hit if isinstance(hit, PathEvent) and best < 1.0 else None
+        du, factor_rate, distance, hit = self._first_ahead(())
+        share = min(distance, 1.0)
+        self._released = (1.0 - share) * self._released
+        self._move(self.u + share * du, self.factor + share * factor_rate)
+        return hit if isinstance(hit, PathEvent) and distance < 1.0 else None
 
-    def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
+    def _first_ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
         """Rates of displacements and load factor, distance to the first mark or event, and which it is."""
         try:
-            du, rise, rate, noise = self.rates(self.u, self.factor)
+            du, factor_rate, rate, noise = self.rates(self.u, self.factor)
         except InstabilityError as err:
             if err.motion is None or (event := self._blocking(err.motion)) is None:
                 raise
             return 0.0 * self.u, 0.0, 0.0, event
-        best = np.inf
+        distance = np.inf
         hit: PathEvent | int | None = None
         for j, (row, share, value) in enumerate(marks):
-            slope = float(row @ du) + share * rise
+            slope = float(row @ du) + share * factor_rate
             if slope > 0.0:
                 at = max((value - float(row @ self.u) - share * self.factor) / slope, 0.0)
-                if at < best:
-                    best, hit = at, j
-        if np.isfinite(best) and not np.isfinite(self._longest):
-            self._longest = self._stride = best / INCREMENTS
+                if at < distance:
+                    distance, hit = at, j
+        if np.isfinite(distance) and not np.isfinite(self._longest_increment):
+            self._longest_increment = self._next_increment = distance / INCREMENTS
         for event, at in self._events(rate, noise):
-            if at < best:
-                best, hit = at, event
-        return du, rise, best, hit
+            if at < distance:
+                distance, hit = at, event
+        return du, factor_rate, distance, hit
 
     def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float]]:
         """Events that lie ahead at these rates of what they depend on, and their distances."""
@@ -344,16 +332,16 @@ class EquilibriumPath:
         """Arguments of the event functions of each law, shape (n_laws,), and the sums of their absolute
         terms: its deformation or, of a closed rigid contact, its force.
         """
-        now, size = self.deformations(u, factor), self._terms(u)
+        now, size = self.deformations(u, factor), self._deformation_terms(u)
         if len(self.ties):
             now[self.ties.laws], size[self.ties.laws] = self._reactions(u, factor)
         return now, size
 
     def _reactions(self, u: Array, factor: float) -> tuple[Array, Array]:
         """Forces of the closed rigid contacts, shape (n_closed,), and the magnitudes of their terms."""
-        rest, terms = self._rest(u, factor)
+        residual, terms = self._residual(u, factor)
         known = np.array([self.branches[i].force0 for i in self.ties.laws])
-        return known - self.ties.forces(rest + self._lost), self.ties.magnitudes(terms)
+        return known - self.ties.forces(residual + self._released), self.ties.magnitudes(terms)
 
     def _closed(self) -> Ties:
         """Ties of the rigid contacts that are closed."""
@@ -370,27 +358,29 @@ class EquilibriumPath:
         stiffness = self._stiffnesses(self.deformations(u, factor))
         control = np.zeros(len(u)) if self.control is None else self.control
         key = np.concatenate(
-            [stiffness, self._lost, self.load, control, [self.sign], self.ties.laws], dtype=float
+            [stiffness, self._released, self.load, control, [self.sign], self.ties.laws], dtype=float
         )
-        if self._rates is None or self.curved or not np.array_equal(key, self._given):
-            self._given, self._rates = key, self._rates_with(u, stiffness)
+        if self._rates is None or self.curved or not np.array_equal(key, self._rates_key):
+            self._rates_key, self._rates = key, self._rates_with(u, stiffness)
         return self._rates
 
     def _rates_with(self, u: Array, stiffness: Array) -> Rates:
         """`rates` with the stiffnesses of the laws."""
-        du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
-        rate = self.rows @ du - self.lead * rise
-        terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise)
+        du, factor_rate = self._linear(
+            u, stiffness, self._released, 0.0 if self._released.any() else self.sign
+        )
+        rate = self.rows @ du - self.lead * factor_rate
+        terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * factor_rate)
         fastest = float(np.abs(du / self._root).max(initial=0.0))
         noise = np.maximum(
             RATE_ROUNDING * terms, SOLUTION_ROUNDING * fastest * (np.abs(self.rows) @ self._root)
         )
         if at := list(self.ties.laws):
-            k, push = self._stiffness(u, stiffness), self._push(stiffness)
-            rate[at] = self.ties.forces(self._lost + rise * push - k @ du)
-            most = np.abs(self._lost) + np.abs(rise * push) + np.abs(k) @ np.abs(du)
+            k, unit_load = self._stiffness(u, stiffness), self._unit_load(stiffness)
+            rate[at] = self.ties.forces(self._released + factor_rate * unit_load - k @ du)
+            most = np.abs(self._released) + np.abs(factor_rate * unit_load) + np.abs(k) @ np.abs(du)
             noise[at] = RATE_ROUNDING * self.ties.magnitudes(most)
-        return Rates(du, rise, rate, noise)
+        return Rates(du, factor_rate, rate, noise)
 
     def _move(self, u: Array, factor: float) -> None:
         self.applied = self.applied + (factor - self.factor) * self.load
@@ -398,25 +388,25 @@ class EquilibriumPath:
         for i, force in zip(self.ties.laws, self._reactions(u, factor)[0].tolist() if self.ties else ()):
             self.states[i] = (*self.states[i][:3], (force,))
             self.branches[i] = self.laws[i].law.branch(self.states[i])
-        self._here.clear()
-        self._most = max(self._most, float(np.abs(self.applied).max(initial=0.0)))
+        self._visits.clear()
+        self._largest_load = max(self._largest_load, float(np.abs(self.applied).max(initial=0.0)))
 
     def _increment(self, marks: Sequence[Mark]) -> PathEvent | int | None:
         """Move one increment along a curved segment, or to its end; None where there was no event."""
-        du, rise, best, hit = self._ahead(marks)
-        if best == 0.0:
+        du, factor_rate, distance, hit = self._first_ahead(marks)
+        if distance == 0.0:
             return hit
-        span = min(best, self._stride)
+        span = min(distance, self._next_increment)
         if not np.isfinite(span):
             raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
-        while (found_there := self._point(span, du, rise, marks)) is None:
-            span = self._stride = 0.5 * span
-            if span < 1e-9 * self._longest:
+        while (end_point := self._equilibrium(span, du, factor_rate, marks)) is None:
+            span = self._next_increment = 0.5 * span
+            if span < 1e-9 * self._longest_increment:
                 # with the load as control there is none; with a displacement there may be one
                 code = "A501" if self.control is None else "A507"
                 raise InstabilityError("no equilibrium was found further on: the strength is used up", code)
-        self._stride = min(2.0 * self._stride, self._longest)
-        end, values = found_there
+        self._next_increment = min(2.0 * self._next_increment, self._longest_increment)
+        end, values = end_point
         start = self._values(self.u, self.factor, marks)
         if not (crossed := _crossed(start, values)):
             self._move(*end)
@@ -428,7 +418,7 @@ class EquilibriumPath:
             share = min(max(min(shares), 0.01), 0.99) if tries % 2 == 0 else 0.5
             tries += 1
             middle = low + share * (high - low)
-            there = self._point(middle, du, rise, marks)
+            there = self._equilibrium(middle, du, factor_rate, marks)
             if there is None:
                 break
             if inside := _crossed(start, there[1]):
@@ -460,30 +450,30 @@ class EquilibriumPath:
                 values.append(0.0 if abs(now) <= small else now)
         return values
 
-    def _point(
-        self, span: float, du: Array, rise: float, marks: Sequence[Mark]
+    def _equilibrium(
+        self, span: float, du: Array, factor_rate: float, marks: Sequence[Mark]
     ) -> tuple[tuple[Array, float], list[float]] | None:
         """Displacements and load factor at a distance along the path, by Newton's method,
         with the `_values` there; None if there is no stable equilibrium.
         """
-        u, factor = self.u + span * du, self.factor + span * rise
+        u, factor = self.u + span * du, self.factor + span * factor_rate
         last = np.inf
         for _ in range(ITERATIONS):
-            rest, size = self._rest(u, factor)
-            error = _share(self.ties.along(rest), size)
+            residual, size = self._residual(u, factor)
+            error = _relative_size(self.ties.along(residual), size)
             if not np.isfinite(error):
                 return None
             try:
                 if error <= 1e-15 or 0.25 * last <= error <= 1e-11:
                     return (u, factor), self._values(u, factor, marks)
                 stiffness = self._stiffnesses(self.deformations(u, factor))
-                more, up = self._linear(u, stiffness, -rest, 0.0)
+                u_change, factor_change = self._linear(u, stiffness, -residual, 0.0)
             except InstabilityError:
                 return None
-            last, u, factor = error, u + more, factor + up
+            last, u, factor = error, u + u_change, factor + factor_change
         return None
 
-    def _rest(self, u: Array, factor: float) -> tuple[Array, Array]:
+    def _residual(self, u: Array, factor: float) -> tuple[Array, Array]:
         """Residual forces, and the sum of the absolute terms of each equation."""
         force = self.forces(self.deformations(u, factor))[0]
         applied = self.applied + (factor - self.factor) * self.load
@@ -496,23 +486,24 @@ class EquilibriumPath:
         k = self.k + gathered(self.k.shape, i, j, stiffness[law] * self._product)
         return k + self.corotational.stiffness(u) if self.corotational else k
 
-    def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
-        """Change of displacements and load factor for a `force` and a change `go` of the control."""
+    def _linear(self, u: Array, stiffness: Array, force: Array, change: float) -> tuple[Array, float]:
+        """Changes of displacements and load factor for a `force` and a `change` of the control."""
         k = self._stiffness(u, stiffness)
         along = self.ties.along
-        k, push, force = self.ties.among(k), along(self._push(stiffness)), along(force)
+        k, unit_load, force = self.ties.among(k), along(self._unit_load(stiffness)), along(force)
         try:
             if self.control is None:
-                x, rise = solve(self.structure, k, force + go * push, push), go
+                load = force + change * unit_load
+                x, factor_rate = solve_under_load(self.structure, k, load, unit_load), change
             else:
-                x, rise = controlled(k, push, along(self.control), force, go)
+                x, factor_rate = solve_under_control(k, unit_load, along(self.control), force, change)
         except InstabilityError as err:
             if err.motion is not None:
                 err.motion = self.ties.whole(err.motion)
             raise
-        return self.ties.whole(x), rise
+        return self.ties.whole(x), factor_rate
 
-    def _push(self, stiffness: Array) -> Array:
+    def _unit_load(self, stiffness: Array) -> Array:
         """Force per load factor, that of the deformations applied with it included, shape (n_free,)."""
         return np.asarray(self.load + self.rows.T @ (stiffness * self.lead))
 
@@ -526,118 +517,10 @@ def _secant(law: Law, state: State, size: float) -> float:
     return secant
 
 
-def _share(rest: Array, size: Array) -> float:
-    return float(np.abs(rest).max(initial=0.0) / max(float(size.max(initial=0.0)), 1e-300))
+def _relative_size(residual: Array, size: Array) -> float:
+    return float(np.abs(residual).max(initial=0.0) / max(float(size.max(initial=0.0)), 1e-300))
 
 
 def _crossed(before: Sequence[float], after: Sequence[float]) -> list[int]:
     """Numbers of the values that rose above zero."""
     return [j for j, (a, b) in enumerate(zip(before, after)) if a <= 0.0 < b]
-
-
-def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
-    """Solve K u = load; DOFs without stiffness stay at zero if nothing loads them.
-
-    What is small beside the `usual` load counts as nothing.
-
-    Raises
-    ------
-    InstabilityError
-        K is not positive definite on what the load moves.
-    """
-    held = used_rows(k)
-    loose = ~held & (load != 0.0)
-    if loose.any():
-        first = int(np.flatnonzero(loose)[0])
-        coupling = dense(structure.law_rows[:, [first]]).ravel()
-        touched = any(s.role.collides and x != 0.0 for s, x in zip(structure.laws, coupling))
-        hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
-        why = f"{name_of(structure, first)} is loaded, but nothing holds it{hint}"
-        raise InstabilityError(why, motion=np.where(loose, load, 0.0))
-    at, u = np.flatnonzero(held), np.zeros(len(load))
-    if not len(at):
-        return u
-    root = _root(k[np.ix_(at, at)])
-    whole, push = Held(scaled(k[np.ix_(at, at)], root)), root * load[at]
-    if whole.negative is not None:
-        worst = at[_largest(whole.negative)]
-        raise InstabilityError(
-            "the stiffness is negative: the structure has collapsed, "
-            f"worst at {name_of(structure, int(worst))}"
-        )
-    along = whole.slack.T @ push
-    size = max(float(np.linalg.norm(push)), float(np.abs(root * usual[at]).max()))
-    if np.any(np.abs(along) > 1e-10 * size):
-        worst = at[_largest(whole.slack @ along)]
-        raise InstabilityError(
-            f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
-            "(or parts of it are so much stiffer than others that it looks like one: END1, END2 "
-            "or SLAVED make parts rigid)",
-            motion=_placed(root * (whole.slack @ along), at, len(load)),
-        )
-    # an unloaded mechanism (a free diaphragm) stays where it is
-    u[at] = root * whole.solve(push)
-    return u
-
-
-def _placed(x: Array, at: Index, n: int) -> Array:
-    """Values at some of `n` places, zeros elsewhere, shape (n,)."""
-    placed = np.zeros(n)
-    placed[at] = x
-    return placed
-
-
-def _largest(motion: Array) -> int:
-    """First of the unknowns that move most, to within 1e-9."""
-    size = np.abs(motion)
-    return int(np.argmax(size > (1.0 - 1e-9) * size.max()))
-
-
-def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) -> tuple[Array, float]:
-    """Solve ``K u - push y = force`` with ``control . u = go`` for u and the load factor y;
-    K may be singular or indefinite.
-
-    Raises
-    ------
-    InstabilityError
-        The control does not fix the motion.
-    """
-    at = np.flatnonzero(used_rows(k) | (push != 0.0) | (control != 0.0))
-    root = _root(k[np.ix_(at, at)])
-    whole = scaled(k[np.ix_(at, at)], root)
-    p, c, f = root * push[at], root * control[at], root * force[at]
-    p_size, c_size = float(np.linalg.norm(p)), float(np.linalg.norm(c))
-    if p_size == 0.0:
-        raise InstabilityError("the pattern loads nothing that can move", "A505")
-    # a mechanism that neither the load nor the control moves (a free diaphragm) stays where it is
-    m, slack = len(at), Held(whole).slack
-    idle = slack[
-        :,
-        (np.abs((slack * (whole @ slack)).sum(axis=0)) < 1e-13 * m)
-        & (np.abs(p @ slack) < 1e-10 * p_size)
-        & (np.abs(c @ slack) < 1e-10 * c_size),
-    ]
-    x = bordered(
-        whole,
-        np.column_stack([-p / p_size, idle]),
-        np.column_stack([c / c_size, idle]),
-        np.concatenate([f, [go / c_size], np.zeros(idle.shape[1])]),
-    )
-    x = x[: m + 1]
-    if not np.all(np.isfinite(x)) or np.abs(x).max() > 1e13 * max(abs(go) / c_size, np.abs(f).max()):
-        raise InstabilityError("the forces no longer move the control displacement: other parts give way")
-    u = np.zeros(k.shape[0])
-    u[at] = root * x[:m]
-    return u, float(x[m]) / p_size
-
-
-def _root(k: Matrix) -> Array:
-    """Factors as by `scaling`, limited so that negligible stiffness is not scaled up to one."""
-    root = scaling(k)
-    limited: Array = np.minimum(root, 1e12 * root.min(initial=np.inf))
-    return limited
-
-
-def name_of(structure: Structure, index: int) -> str:
-    """Unknown in words."""
-    return label(structure.dofs.free[index])

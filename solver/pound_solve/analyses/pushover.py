@@ -41,8 +41,9 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SUM_ROUNDING, SupportReactions
 from pound_solve.analyses.load_pattern import LoadPattern
-from pound_solve.analyses.path_following import Change, EquilibriumPath, InstabilityError, Mark, PathEvent
+from pound_solve.analyses.path_following import Change, EquilibriumPath, Mark, PathEvent
 from pound_solve.analyses.static import StaticState
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import building, buildings

@@ -18,7 +18,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.analyses.path_following import EquilibriumPath, InstabilityError, Mark, PathEvent
+from pound_solve.analyses.path_following import EquilibriumPath, Mark, PathEvent
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import Factor, Matrix, scaled, used_rows
 from pound_solve.numerics.modes import scaling

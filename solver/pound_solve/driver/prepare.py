@@ -10,7 +10,7 @@ import numpy as np
 from pound_deck.diagnostics import Diagnostic, doubted, has_errors, render
 from pound_deck.model import Model
 from pound_solve.analyses import static
-from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden, with_motion

@@ -12,9 +12,9 @@ import numpy as np
 
 from pound_deck.model import Card
 from pound_solve.analyses import history, modal, plausibility, pushover, restart, static
-from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.analyses.recorder import RecordedItems, SampleBlock
 from pound_solve.analyses.static_response import StaticResponse, static_response
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.driver.identity import identity
 from pound_solve.driver.prepare import Prepared
 from pound_solve.driver.request import Request
