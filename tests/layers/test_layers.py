@@ -331,12 +331,7 @@ def test_imports_go_down_within_a_room(name):
                 assert order.index(words[2]) <= order.index(own), f"{place(path)} imports {dotted}"
 
 
-#: rooms in which a folder and a file beside it use each other: `motions` and `spectrum`, `damping` and
-#: `buildings`
-ROUND = {"loading", "structure"}
-
-
-@pytest.mark.parametrize("name", [x for x in ROOMS if (SOLVER / x).is_dir() and x not in ROUND])
+@pytest.mark.parametrize("name", [x for x in ROOMS if (SOLVER / x).is_dir()])
 def test_parts_of_a_room_import_each_other_one_way(name):
     """Files and folders of a room, each folder as one part."""
     needs = {}

@@ -4,8 +4,8 @@ import pytest
 
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.motions.doubts import mispaced, pace
-from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.motions.record import samples
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.records.known import KNOWN
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from pound_solve.loading.motions.base import LoadingContext, Motion, common_breaks, finish
-from pound_solve.loading.motions.piecewise import Piecewise, merged
+from pound_solve.loading.piecewise import Piecewise, merged
 
 
 @st.composite

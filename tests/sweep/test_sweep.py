@@ -17,7 +17,7 @@ import pytest
 
 from decks import results_of
 from pound_solve.cli.main import main
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
 from pound_solve.results import ResultsError
 from pound_solve.results.sweep_file import OF_THE_DAY, Sweep

@@ -19,7 +19,7 @@ from pound_solve.loading.intensity import (
     intensity,
     significant_duration,
 )
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
 
 

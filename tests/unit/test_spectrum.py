@@ -18,7 +18,7 @@ from scipy.linalg import expm
 from pound_solve import run
 from pound_solve.cli.main import main
 from pound_solve.loading import spectrum
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
 from pound_solve.numerics.types import Array
 

@@ -20,7 +20,7 @@ from pound_solve.driver import record_card
 from pound_solve.driver.prepare import ground
 from pound_solve.driver.reading import Deck
 from pound_solve.driver.request import Request
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.results import Results
 from pound_solve.user_error import UserError
 

@@ -30,7 +30,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.spectrum import pseudo_acceleration
 from pound_solve.numerics.cubic import cubic_rise
 from pound_solve.numerics.types import Array

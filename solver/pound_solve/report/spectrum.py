@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_deck.model import Units
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.spectrum import Spectrum
 from pound_solve.report.export import export_rows
 from pound_solve.report.text import block

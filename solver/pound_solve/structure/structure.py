@@ -13,10 +13,10 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMembers
-from pound_solve.structure.damping.base import Proportional
 from pound_solve.structure.dofs import Dof, DofMap
 from pound_solve.structure.elements.base import ElementMatrix, Geometric, LawSpring, Output, Parts
 from pound_solve.structure.mass import MassBlock
+from pound_solve.structure.proportional import Proportional
 
 
 @dataclass

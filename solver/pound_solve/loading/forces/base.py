@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from pound_deck.schema import Field, Kind
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.records.base import RecordError
 
 COMMON: Final = (

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind
-from pound_solve.loading.motions.piecewise import Piecewise, merged
+from pound_solve.loading.piecewise import Piecewise, merged
 from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from pound_solve.loading.intensity import significant_duration
-from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.loading.piecewise import Piecewise
 
 #: mean time between every second crossing of zero within the significant duration [s]: rock has 0.05 to
 #: 0.2, firm soil 0.2 to 0.5, the bed of a lake 2

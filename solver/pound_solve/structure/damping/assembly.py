@@ -14,10 +14,11 @@ from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, entries, gathered, weighted
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import building
-from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group, Proportional
+from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group
 from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import Role
+from pound_solve.structure.proportional import Proportional
 from pound_solve.structure.structure import Structure
 
 MECHANISM = "the modes that this damping needs cannot be computed: the structure is a mechanism"

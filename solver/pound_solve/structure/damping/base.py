@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_deck.model import Card, Element
+from pound_deck.model import Card
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.refusal import ItemError
 from pound_solve.numerics import matrices
 from pound_solve.numerics.modes import Modes
 from pound_solve.numerics.types import Array
+from pound_solve.structure.proportional import Chosen, Proportional
 
 BUILDING = Field(
     "BUILDING",
@@ -91,28 +92,6 @@ AFTER = Field(
     words=("REST", "STATIC"),
     doc="modes of the structure at rest, or of the loaded structure, as in MODAL AFTER=STATIC",
 )
-
-
-class Chosen(NamedTuple):
-    """A choice of elements: of property sets (None: of all) that end at some nodes (None: at any)."""
-
-    props: Collection[str] | None
-    nodes: Collection[int] | None
-
-    def has(self, element: Element) -> bool:
-        """Whether an element belongs to the choice."""
-        of_these = self.props is None or element.prop in self.props
-        return of_these and (self.nodes is None or element.i in self.nodes)
-
-
-class Proportional(NamedTuple):
-    """Damping `beta` [T] times the initial stiffness of elements; `laws` False: without that of hysteretic
-    laws.
-    """
-
-    elements: Chosen
-    beta: float
-    laws: bool
 
 
 class Dashpots(NamedTuple):

@@ -25,16 +25,15 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.damping.base import (
     AFTER,
     BUILDING,
-    Chosen,
     DampingContext,
     DampingError,
     Dashpots,
     Group,
-    Proportional,
     frequencies,
     ratios,
     values,
 )
+from pound_solve.structure.proportional import Chosen, Proportional
 
 
 def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float, float]:
