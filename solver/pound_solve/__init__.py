@@ -61,7 +61,7 @@ def run(
     ------
     ValueError
         The name is none for a file.
-    pound_solve.driver.prepare.DeckError
+    DeckError
         The deck has mistakes; the text names file, line and column of each.
     OSError
         A file cannot be read or written.

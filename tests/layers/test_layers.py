@@ -3,6 +3,8 @@ them).
 """
 
 import ast
+import builtins
+import re
 import sys
 from functools import cache
 from graphlib import TopologicalSorter
@@ -413,3 +415,25 @@ def test_functions_fit_on_a_page():
                 lines = docstring.end_lineno - docstring.lineno + 1 if docstring else 0
                 assert x.end_lineno - x.lineno + 1 - lines <= 60, f"{place(path)}: {x.name}"
                 assert x.name not in SAYS_NOTHING, f"{place(path)}: {x.name}"
+
+
+def raised_in(docstring):
+    """Names in the section Raises of a docstring."""
+    section = re.search(r"^Raises\n-+\n((?:.+\n?)+)", docstring or "", re.M)
+    entries = re.findall(r"^[\w., ]+$", section.group(1), re.M) if section else []
+    return [name for entry in entries if not entry.startswith(" ") for name in entry.split(", ")]
+
+
+def test_exceptions_in_docstrings_exist():
+    trees = {path: ast.parse(path.read_text("utf-8")) for path in modules()}
+    classes = {x.name for tree in trees.values() for x in ast.walk(tree) if isinstance(x, ast.ClassDef)}
+    documented = [
+        (place(path), name)
+        for path, tree in trees.items()
+        for x in ast.walk(tree)
+        if isinstance(x, ast.FunctionDef | ast.ClassDef)
+        for name in raised_in(ast.get_docstring(x))
+    ]
+    assert len(documented) > 200
+    known = classes | set(dir(builtins)) | {"numpy.linalg.LinAlgError"}
+    assert not [(path, name) for path, name in documented if name not in known]

@@ -93,7 +93,7 @@ def run(
     ------
     StudyError
         There is no HISTORY, an unknown method, or no run that could be a reference.
-    app.DeckError, OSError
+    DeckError, OSError
         See `app.prepare`.
     """
     ready = driver.prepare(request)
