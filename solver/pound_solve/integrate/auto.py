@@ -1,18 +1,18 @@
 r"""AUTO: EXACT or TAYLOR where they cost less, else runs of LAGUERRE or NEWMARK that meet a tolerance.
 
-EXACT needs no step, but piecewise linear laws, and every new combination of stiffnesses costs it a modal
-decomposition.  TAYLOR has no truncation error either; its steps resolve the fastest mode.  LAGUERRE, for
-piecewise linear laws, and NEWMARK, for all others and where LAGUERRE stops, have errors: the whole run is
-repeated with a smaller tolerance or a shorter step until the peaks no longer change, or until that brings
-no improvement (a force that rings at a node without mass): see :mod:`.convergence`.
+EXACT takes no time steps, but needs piecewise linear laws and computes a modal decomposition for every new
+combination of stiffnesses.  TAYLOR has no truncation error either; its steps resolve the fastest mode.
+LAGUERRE (for piecewise linear laws) and NEWMARK (for all others, and where LAGUERRE stops) have errors:
+AUTO repeats the whole run with a smaller tolerance or a shorter step until the peaks no longer change, or
+until repeating brings no improvement (a force that rings at a node without mass): see :mod:`.convergence`.
 
-The cost of TAYLOR is known in advance; that of EXACT depends on the events.  TAYLOR is used where it
-costs little, or no more than the runs that were made and the one to come.  Where that is not so
-from the start, and before each such run, EXACT is tried with a share of what the others cost
-(:mod:`.trial`).  Costs are counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not
-measured, so that a deck is always solved in the same way.
+The cost of TAYLOR is known in advance; that of EXACT depends on the events.  AUTO uses TAYLOR if it costs
+little, or no more than the runs already made plus the next one.  Otherwise it tries EXACT, at the start and
+before each such run, within a fraction of the cost of the other methods (:mod:`.trial`).  Costs are counted
+from windows, decompositions, steps and unknowns (:mod:`.costs`), not measured, so that a deck is always
+solved in the same way.
 
-A run of EXACT or TAYLOR is followed by its twin, which tells whether the motion magnifies rounding
+A twin run follows each run of EXACT or TAYLOR and shows whether the motion magnifies rounding errors
 (:mod:`.convergence.twin`).
 """
 

@@ -1,5 +1,5 @@
-"""Counted costs of the methods, by which AUTO chooses: in seconds of a nominal machine, never measured, so
-that a choice by them repeats.
+"""Counted costs of the methods, by which AUTO chooses.  They are seconds of a nominal machine and never
+measured, so that AUTO always makes the same choice.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Intervals between the times of output: which of them modes take as a whole, and where that pays."""
+"""Intervals between output times: which of them can be advanced in modes as a whole, and when that pays."""
 
 from __future__ import annotations
 

@@ -258,7 +258,7 @@ class Outcome:
 
     @property
     def one_of_several(self) -> bool:
-        """Whether a check tells that rounding, or a convention, has chosen among several motions."""
+        """Whether a check says that rounding, or a convention, has chosen one of several motions."""
         chosen = (Subject.MAGNIFICATION, Subject.UNIQUENESS)
         return any(check.subject in chosen for check in looked(self.checks))
 

@@ -1,14 +1,13 @@
 r"""Joints without mass at the instant at which the force of a law falls.
 
-A law that fails may lose a force at once.  What joins the unknowns Z without mass and without dashpots
-then moves in no time, and laws there may yield, unload or fail on the way.  Such a path is that of a force
-which falls little by little while everything else is still: with the force F that is lost, of a law along
-:math:`b`,
+A law that fails may lose its force suddenly.  Joints without mass and without dashpots (unknowns Z) then
+move instantly, and other laws there may yield, unload or fail on the way.  The path is found by reducing
+the lost force F of the law, which acts along :math:`b`, gradually while everything else is at rest,
 
 .. math:: K_{ZZ}\,u_Z + f_Z(u_Z) = p_Z - (1 - \lambda)\,F\,b_Z, \qquad 0 \le \lambda \le 1 ,
 
-from one change of branch to the next.  The force at work on the way is lost with the law that failed; loads
-put in what they do on it.
+from one change of branch to the next.  The work of the falling force counts as a loss of the law that
+failed; the work of the loads along the path counts as input.
 """
 
 from __future__ import annotations

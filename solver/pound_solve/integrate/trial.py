@@ -1,6 +1,6 @@
 """EXACT within a budget: what AUTO spends on trying it is at most a third of the whole.
 
-What a trial has cost is lost where it does not end.  So all of them together cost no more than half
+The cost of a trial that does not end is lost.  All trials together therefore cost no more than half
 (`TRIAL_SHARE`) of what is certain to be needed without them: the rest of the program, the loading of
 kernels, the runs with steps that were made, and the one that follows, or the run of TAYLOR.  A trial ends
 early where, at the rate so far, the run would cost more.

@@ -1,17 +1,18 @@
-r"""Whether the answer depends on rounding where laws give way at one instant.
+r"""Whether the motion is unique where several laws yield or fail at one instant.
 
-Between laws in series the split of the deformation follows from the tangent stiffness of the unknowns
-without mass, which inertia does not hold.  If it is positive definite with the tangents of *all* laws that
-come to the end of their branches together (Hill's comparison solid), the rates are unique.  If there is a
-motion that it does not hold, in which some of these laws go on and others turn back, any of them may go on
-alone, and rounding chooses.  Dashpots hold such a motion where the tangent is zero; where it is negative
-they only slow it down, and what rounding makes of it grows without the structure's doing.
+The deformation of laws in series is shared out by the tangent stiffness of the unknowns without mass, which
+have no inertia.  The rates are unique if that stiffness is positive definite with the tangents of *all*
+laws that reach the ends of their branches together (Hill's comparison solid).  If it leaves a motion free
+in which some of these laws continue and others reverse, any of them may continue alone, and rounding
+decides.  Dashpots resist such a motion where the tangent is zero; where it is negative they only slow it
+down, and the rounding error grows without any physical cause.
 
-A law that hardens rests where its line of yielding begins as long as another in series yields at the same
-force.  Whether it would have yielded is open, and some rules never forget it (see `remembers_yield`).
+A hardening law rests at the start of its yield line as long as another law in series yields at the same
+force.  Whether it has yielded is then undecided, and some rules never forget a yield (see
+`remembers_yield`).
 
-Laws may also come to lose a force together.  What one loses others take over, or are relieved: those that
-turn back then, and do not lose theirs, might as well have been the first.
+Several laws may also lose their forces together.  The force that one loses loads or relieves the others:
+those that reverse then, and do not lose theirs, might equally have failed first.
 
 References
 ----------

@@ -1,9 +1,9 @@
 r"""Extremes of sampled quantities between their samples.
 
-A quantity y is known at instants, and between two of them, over a *cell*, it is smooth.  Its cells are
-looked at in two ways.  First the samples alone tell in which cells y may exceed what is known: where a cell
-has no more than 2.5 radians of an oscillation, this exceeds the larger of two samples by no more than its
-largest change over the cells next to it.  There, and nowhere else, y is sampled at the
+A quantity y is known at instants, and smooth over the *cell* between two of them.  Its cells are examined
+twice.  First the samples alone show in which cells y may exceed its known extremes: in a cell of at most
+2.5 radians of an oscillation, y exceeds the larger of two samples by no more than its largest change over
+the adjacent cells.  Only in those cells is y sampled at the
 `NODES` of Chebyshev, whose polynomial is right to about :math:`J_{13}(1.25) \approx 4\cdot 10^{-13}` of the
 fastest part; its extreme is found on a fine grid and by Newton's method.
 """

@@ -12,7 +12,7 @@ KERNELS = (
     "laws/**/*.py",
     "structure/corotational.py",
     "integrate/[!a]*.py",  # AUTO calls the other methods and has no kernel
-    "integrate/[!c]*/*.py",  # all methods but the closed forms, which numpy serves
+    "integrate/[!c]*/*.py",  # all methods but the closed forms, which are written in numpy
 )
 
 

@@ -151,7 +151,7 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
     kept = kernel_cache.place().folder is not None
     how = {"cache": kept, "error_model": "numpy", "_nrt": False}
-    if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
+    if inner:  # Python never calls it: it needs no wrapper, and a name of its own in the cache
         twin.__qualname__ += INNER
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
     if "loose" in vars(function):
@@ -212,7 +212,7 @@ class Called:
     def __call__(self, *arguments: Any) -> Any:
         """Call it."""
         same = len(self._given) == len(arguments) and all(x is y for x, y in zip(self._given, arguments))
-        if not same:  # numba takes longer to see of what types they are than many a call takes
+        if not same:  # numba's dispatch on types takes longer than many a call
             self._take(arguments)
         return self._entry(*self._taken)
 

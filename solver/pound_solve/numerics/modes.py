@@ -4,8 +4,8 @@ Massless DOFs are condensed first, which is exact for free vibration.  Modes are
 :math:`\phi^T M \phi = 1` with the largest component positive.
 
 Of a sparse K only the slowest modes are found, by Lanczos' method on :math:`(K - \sigma M)^{-1} M`, which
-takes massless DOFs as they are (Ericsson and Ruhe 1980).  As many pivots of :math:`K - \mu M` are
-negative as there are modes below :math:`\mu` (Sylvester): that none was passed over is seen by counting.
+needs no condensation (Ericsson and Ruhe 1980).  The number of negative pivots of :math:`K - \mu M` is the
+number of modes below :math:`\mu` (Sylvester's law of inertia): counting them shows that no mode was missed.
 
 References
 ----------

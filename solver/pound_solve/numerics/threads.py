@@ -1,4 +1,4 @@
-"""The number of threads of numpy's linear algebra, which must be told before numpy is imported."""
+"""The number of threads of numpy's linear algebra, which must be set before numpy is imported."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ VARIABLES: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"
 
 
 def one() -> None:
-    """Have one thread, unless the user asks for more: the last digits depend on the number of threads, and
-    small matrices are slower with several.
+    """Use one thread unless the user asks for more: the last digits depend on the number of threads, and
+    several make small matrices slower.
     """
     for name in VARIABLES:
         os.environ.setdefault(name, "1")

@@ -1,7 +1,7 @@
 """Modal decomposition of a subsystem: its exact motion for one set of stiffnesses, kept for reuse.
 
-Springs that yield and unload and contacts that close and open return to the same stiffnesses again and
-again: a run of hundreds of events needs a few decompositions.
+Yielding springs and closing contacts return to the same stiffnesses again and again: a run with hundreds of
+events needs only a few decompositions.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Work of a run, integrated late: the intervals of one decomposition are integrated together, when the
-work is needed.
+"""Deferred integration of work: the intervals of one decomposition are integrated together when the work is
+needed.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""What the methods with a closed form between events share: the laws on their branches, the response
-tracker, and when a run stops.
+"""The base of the methods with a closed form between events: laws on their branches, response tracker, and
+reasons to stop.
 """
 
 from __future__ import annotations

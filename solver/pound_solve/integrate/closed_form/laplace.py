@@ -2,11 +2,11 @@ r"""LAPLACE: between events the response by a numerical Laplace transform.
 
 A structure that is linear between events, soil and foundation included, is transformed from its present
 state on (:mod:`.laplace_transform`).  The earliest event ends the window: the law changes its branch, and
-the next window starts from the state there.  So did Chouw with buildings, their contact and the soil in one
-transform.
+the next window starts from the state there.  Chouw (2002) treats buildings, their contact and the soil in
+this way.
 
 Apart from the transforms of the polynomial pieces of the excitation, which are exact, this has nothing in
-common with EXACT: it is a check of EXACT, not an alternative.
+common with EXACT: it checks EXACT and is no alternative to it.
 
 References
 ----------

@@ -1,4 +1,5 @@
-r"""Search of EXACT for events and peaks: coarse cells that the motion sets, fine steps where needed.
+r"""Search of EXACT for events and peaks: in coarse cells adapted to the motion, and in fine steps if
+needed.
 
 The event functions of all laws are sampled with their slopes in cells whose length follows from a bound of
 their curvature,

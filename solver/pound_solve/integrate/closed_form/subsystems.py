@@ -1,8 +1,8 @@
 """Subsystems: parts of the reduced system that move independently of each other between events.
 
 Parts that no closed contact joins are solved separately, each with its own modes for each combination of
-stiffnesses.  Small ones share their arithmetic: a hundred numbers more in a product cost less than a
-product more.
+stiffnesses.  Small ones are joined, because a hundred more numbers in a matrix product cost less than one
+more product.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
-"""What the runs of AUTO are compared by: the largest and smallest value of every drift, the peak force of
-every contact, and the largest and smallest deformation and the plastic work of every spring and hinge that
-can yield.
+"""The peaks by which AUTO compares runs: the extremes of every drift, the peak force of every contact, and
+the extreme deformations and the plastic work of every spring and hinge that can yield.
 
-Drifts and forces are relative to the larger magnitude of their own, but at least to `MIN_SCALE` times the
-largest of their kind: a contact that is hardly touched does not set the step.  A deformation is relative to
-itself, but at least to that at first yield, and plastic work to itself, but at least to the work of a force
-of the strength over that deformation: so ductilities and damage indices have the same relative errors.
-Without drifts the deformations of all springs are compared as drifts are, and all displacements relative to
-the largest in their direction.  Where they have a tolerance, the accelerations of the nodes and the forces
-of the members that OUTPUT names are compared, too, relative to the largest of their kind.
+The change of a drift or force is relative to its peak, but at least to `MIN_SCALE` times the largest peak
+of its kind, so that a contact that is hardly touched does not determine the step.  The change of a
+deformation is relative to its peak, but at least to the yield deformation; that of plastic work to the work
+itself, but at least to the work of the yield force over the yield deformation.  Ductilities and damage
+indices thus have the same relative errors.  In a structure without drifts, the deformations of all springs
+are compared as drifts are, and all displacements relative to the largest in their direction.  If they have
+a tolerance, the accelerations of nodes and the forces of members that OUTPUT names are compared too,
+relative to the largest of their kind.
 """
 
 from __future__ import annotations
@@ -128,7 +128,8 @@ def hardest(peaks: Peaks) -> float:
     this is less; infinite without collisions.
 
     A long collision may reach its peak early, by a mode that is faster than the whole: steps have to follow
-    that.  A force that is largest at once jumps, by a dashpot, which a located event resolves.
+    that.  A force that is largest at the touch jumps there, because of a dashpot; a located event resolves
+    it.
     """
     collision = max(peaks.collisions, key=lambda c: c.peak, default=None)
     if collision is None or not collision.t_end > collision.t_start:  # it is still closed

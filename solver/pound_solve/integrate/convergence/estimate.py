@@ -1,24 +1,23 @@
-r"""The error that is left in the last of some runs with shorter and shorter steps.
+r"""Estimate of the error in the last of several runs with ever shorter steps.
 
 Between two runs, of which the second takes r times the steps of the first, a peak whose error falls with
 the power p of the step differs by :math:`\Delta`, and
 
 .. math:: e = \frac{\Delta}{r^p - 1}
 
-is left in the second.  A method of second order has p = 2 in the end; before that, runs may agree by
-chance, or the error may fall as slowly as the step or not at all.  So p is observed: it is that power
-for which the differences :math:`\Delta_1` and :math:`\Delta_2` between the last three runs fall as they
-do,
+is left in the second.  A method of second order tends to p = 2; before that, runs may agree by chance, or
+the error may fall only in proportion to the step, or not at all.  So p is observed, as the power that
+explains the differences :math:`\Delta_1` and :math:`\Delta_2` between the last three runs,
 
 .. math:: \frac{\Delta_2}{\Delta_1} = \frac{1 - r_2^{-p}}{r_1^p - 1} .
 
-It is trusted from `SLOWEST` to `ORDER`, and only once it is seen twice: the lower of the powers that the
-last three runs show, and the three before the last.  Three runs show a power that the fourth may not
-confirm: the first of them had too few steps for any order.  Differences that fall faster than the method
-explains, with a power above `FASTEST`, agree by chance: they show no order, and the slowest is assumed, as
-it is where there are fewer than four runs.  The last run is compared with each of the `COMPARED_RUNS`
-before it, for some may be near it by chance; one run before it may always be.  `SAFETY` is from the
-distribution of true errors over the estimates (manual, theory of AUTO).
+It is trusted from `SLOWEST` to `ORDER`, and only if it is observed twice: the lower of the power of the
+last three runs and that of the three before the last is used.  A fourth run may not confirm the power of
+three, because the first of them had too few steps for any order.  Differences that fall with a power above
+`FASTEST`, faster than the method explains, agree by chance: they show no order, and the slowest is assumed,
+as with fewer than four runs.  The last run is compared with each of the `COMPARED_RUNS` runs before it,
+since a single one may be near it by chance.  `SAFETY` follows from the distribution of true errors over the
+estimates (manual, theory of AUTO).
 """
 
 from __future__ import annotations
@@ -99,8 +98,8 @@ def error_left(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> f
 
 
 def likely_error(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> float:
-    """Return what `error_left` were if the last observed order were confirmed, or where none is observed
-    yet, errors fell with the power `ORDER`: what the next step is chosen by.
+    """Return the value of `error_left` if the last observed order were confirmed or, without one, if errors
+    fell with the power `ORDER`: the next step is chosen by it.
     """
     order = last_order(steps, peaks, scales) if len(steps) > 2 else np.full(scales.shape, ORDER)
     apart, ratios = differences(steps[-3:], peaks[-3:], scales)

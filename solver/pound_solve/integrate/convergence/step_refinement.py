@@ -1,4 +1,4 @@
-"""Runs of NEWMARK with shorter and shorter steps, until the peaks converge."""
+"""Runs of NEWMARK with ever shorter steps, until the peaks converge."""
 
 from __future__ import annotations
 

@@ -1,13 +1,14 @@
-"""Runs of LAGUERRE with smaller and smaller tolerances, until the peaks converge.
+"""Runs of LAGUERRE with ever smaller tolerances, until the peaks converge.
 
-The tolerance of LAGUERRE bounds the error of a step, not that of the run.  So the run is repeated with a
-smaller one.  The difference between the peaks of two runs is nearly the error of the first, which is some
-ten times that of the second; it is taken for that of the second.  Two runs may agree by chance: differences
-to the runs before them count, too, as if errors fell with the root of the tolerance only.  Steps that end
-with the intervals of the record may be the same in both runs, and then no difference tells nothing: an
-estimate is at least the tolerance of the first run, and runs of as many steps are compared only where no
-tolerance is smaller.  Two runs may also take the same wrong way where a hinge nearly turns back: the first
-tolerance is therefore small even where much error is allowed, and an estimate is at least a share of that.
+The tolerance of LAGUERRE bounds the error of a step, not that of the run.  The run is therefore repeated
+with a smaller one.  The difference between the peaks of two runs is nearly the error of the first run,
+about ten times that of the second; it is used as the estimate for the second.  Two runs may agree by
+chance, so differences from earlier runs count too, as if errors fell only with the root of the tolerance.
+Steps that end at the intervals of the record may be the same in both runs; a difference of zero then proves
+nothing. An estimate is therefore at least the tolerance of the first run, and runs with the same number of
+steps are compared only if no smaller tolerance is left.  Two runs may also make the same error where a
+hinge nearly reverses: the first tolerance is small even if a large error is allowed, and an estimate is at
+least a share of that.
 """
 
 from __future__ import annotations

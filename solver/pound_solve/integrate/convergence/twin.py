@@ -1,14 +1,14 @@
 """The twin of a run by a method without steps, whose excitation differs in the eleventh digit.
 
-EXACT and TAYLOR make rounding errors only.  Most motions leave them as small as they are.  Where contacts
-strike again and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
+EXACT and TAYLOR make only rounding errors, and most motions do not magnify them.  If contacts strike again
+and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
 left, and the balance of energies and every other check are still good.  A run of the same method whose
 excitation is larger by a share of `EXCITATION_CHANGE`, ten times the rounding of a run or more, tells: how
 far its peaks are from those of the run is what rounding may do to them.  It keeps no histories and no
 envelopes.
 
-It does not see what both runs decide alike, as which of two springs of equal strength yields: `uniqueness`
-looks for that.
+A twin does not show decisions that both runs make alike, such as which of two springs of equal strength
+yields: `uniqueness` finds these.
 """
 
 from __future__ import annotations

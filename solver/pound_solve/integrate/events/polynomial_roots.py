@@ -5,9 +5,9 @@ On a cell of width w a polynomial of degree n is written in Bernstein's form,
 .. math:: p(x + w\sigma) = \sum_j b_j \binom{n}{j} \sigma^j (1-\sigma)^{n-j}, \qquad 0 \le \sigma \le 1 .
 
 It lies between the least and the largest :math:`b_j`, and its derivative has no more zeros there than the
-differences of the :math:`b_j` have changes of sign.  So a cell either cannot hold what is looked for, or it
-holds one root or summit, which Newton's method finds in its bracket, or it is halved.  Nothing is missed
-between samples: there are none.
+differences of the :math:`b_j` have changes of sign.  A cell therefore either cannot contain a root or
+summit, or contains exactly one, which Newton's method finds within its bracket, or is halved.  No root is
+missed between samples, because there are no samples.
 
 References
 ----------

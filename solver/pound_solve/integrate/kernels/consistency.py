@@ -152,8 +152,8 @@ def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array
 def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
     """Correct velocities of massless unknowns that no dashpot holds, at the end of a step of length `h`.
 
-    They follow from the rates of the forces, which stay in balance.  The method takes about twice their
-    mean over the step less those at its start, which would swing about the true ones for ever.
+    They follow from the rates of the forces, which remain in balance.  The method itself takes about twice
+    their mean over the step less those at its start, which would oscillate about the true ones undamped.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
-"""What the methods share that run as compiled kernels: a run allocates its arrays, lets a kernel advance,
-and takes in what it keeps: samples, transitions, peaks.
+"""The base of the methods that run as compiled kernels: a run allocates its arrays, lets a kernel advance,
+and fetches the samples, transitions and peaks that the kernel has stored.
 """
 
 from __future__ import annotations

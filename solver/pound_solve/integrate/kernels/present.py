@@ -1,4 +1,4 @@
-"""The present of a run of kernels, as what happens in no time sees and changes it."""
+"""The present state of a kernel run, as impacts and releases (which take no time) see and change it."""
 
 from __future__ import annotations
 

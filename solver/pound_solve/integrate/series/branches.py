@@ -31,7 +31,7 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
     note_rests(sim, rules, law, event.event_index)
     leave_branch(laws, rules, law, event.event_index, d, v)
     take_over(laws, rules, series, law)
-    # the rate of what has no mass jumps, and with it the force of its dashpot
+    # the rate of an unknown without mass jumps, and the force of its dashpot with it
     force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
     if before != laws.branch[law]:
         log_transition(sim, law, before, t, force)
@@ -100,9 +100,10 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     """Make the velocities of unknowns without mass and the forces of closed rigid contacts consistent with
     the present branches.
 
-    These rates jump where a stiffness or a dashpot among them changes, and a law whose rate changes its
-    sign so must leave its branch, too.  Of several the first in number does, then all are looked at again:
-    such a rule of least index ends where the laws harden (Murty's, for linear complementarity problems).
+    These rates jump where a stiffness or a dashpot among them changes, and a law whose rate thereby changes
+    its sign must leave its branch, too.  Of several such laws the first in number leaves, and all are
+    examined again.  This least-index rule (Murty's, for linear complementarity problems) terminates if the
+    laws harden.
 
     Returns
     -------

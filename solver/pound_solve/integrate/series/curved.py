@@ -9,10 +9,10 @@ power :math:`w = x^n` follows from those of x,
 
 .. math:: w_k = \frac{1}{k x_0} \sum_{j=1}^{k} (n j - k + j)\, x_j\, w_{k-j},
 
-(Euler's recurrence), and with it the force of one term from the motion up to the next: no equation has to
-be solved.  The series converges up to the instant of touch, before or behind: steps shorten towards it in
-proportion to the time that is left, down to an overlap `NO_OVERLAP` whose force changes nothing.  Where the
-force would pull, and must not, there is none.
+(Euler's recurrence), which gives each term of the force from the motion up to the next term: no equation
+has to be solved.  The series converges as far as the nearest instant of touch, past or future: steps
+towards it shorten in proportion to the time left, down to an overlap `NO_OVERLAP` whose force is
+negligible.  The force is zero where it would be tensile, unless the law allows tension.
 
 References
 ----------

@@ -1,4 +1,4 @@
-r"""Kernels of TAYLOR: the motion of a step as a power series, and how far it is right.
+r"""Kernels of TAYLOR: the motion of a step as a power series, and how far that is accurate.
 
 With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from the equations of motion,
 
@@ -6,9 +6,9 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
     (k+1)(k+2)\,M c_{k+2} = h^2\Bigl(p_k - K c_k - \sum_i b_i f_{ik}\Bigr) - h (k+1)\,C c_{k+1},
 
 :math:`f_{ik} = k_i d_{ik} + (k+1) c_i d_{i,k+1}/h` those of the laws' forces on their present branches.
-Terms are taken until two in a row are below a share `TRUNCATION` of the motion in the norm of energy,
-:math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be, or is tried
-again if that is far from its end.
+Terms are added until two in a row are below a share `TRUNCATION` of the motion in the energy norm,
+:math:`k^2 c_k^T M c_k / h^2`.  If the last ones allowed are not, the step ends at the place where they
+would be; if that place is far from the end, the step is tried again, shorter.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Kernel: the largest and the smallest values of rows on the motion over the steps that were kept.
 
 Within a step such a row is a polynomial, whose extremes are isolated with proof
-(`events.polynomial_roots`).  First its value at the start and the sizes of all its terms tell whether it
-may exceed what is known: seldom it may.
+(`events.polynomial_roots`).  Its value at the start and the sizes of its terms show beforehand whether it
+can exceed the extremes known so far; it seldom can.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Forces that are a series of their own, of closed rigid contacts, curved ones, smooth laws
-and dampers: kernels."""
+"""Kernels for forces that are separate series: of closed rigid contacts, curved contacts, smooth laws and
+dampers."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 r"""Friction in a power series: kernels.
 
-A face that slides has the force :math:`\pm\mu_d N`, a series as that of the contact's force N; one that
-sticks is a linear spring.  Its limit :math:`\mu_s N` and the rate of that are series too, so that slip and
-stick (see `laws.contact.friction`) begin at first rises of polynomials, as all other branches.
+A sliding face has the force :math:`\pm\mu_d N`, a series like the contact force N; a sticking face is a
+linear spring.  Its limit :math:`\mu_s N` and the rate of that limit are series too, so that slip and stick
+(see `laws.contact.friction`) begin where polynomials first rise above zero, as all other branches do.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """LAGUERRE: event-driven integration by implicit series, for structures with modes far above the motion.
 
-Axial modes, small masses at joints and damping in proportion to stiffness make modes that no motion shows
-but that the steps of TAYLOR must follow.  Here a step solves a few times with one matrix instead (see
-`single_pole`), is as long as the motion allows, and has an error that TOL bounds, step by step.  Between
-its ends the motion is a polynomial, and all else is as in TAYLOR: events, peaks, works.
+Axial stiffness, small masses at joints and stiffness-proportional damping produce modes that do not show in
+the motion but that the steps of TAYLOR must resolve.  A step of LAGUERRE instead solves a few times with
+one matrix (see `single_pole`), is as long as the motion allows, and has an error that TOL bounds.  Between
+its ends the motion is a polynomial; events, peaks and works are found as in TAYLOR.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Kernels of TAYLOR: the march from event to event, and what is kept of it."""
+"""Kernels of TAYLOR and LAGUERRE: steps from event to event, and from goal to goal."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def step_length(lengths: Lengths, t: float, goal: float) -> float:
     h: float = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
     if h == left:
         return h
-    # the motion goes as far as the clock does, which is rounded, but at 0: there any step is time enough
+    # the step is what the rounded clock advances by, except at time 0, where the clock resolves any step
     return t + h - t if goal + h > goal else 0.0
 
 

@@ -1,19 +1,19 @@
 r"""Unknowns without mass in a power series: kernels, and the arrays they work on.
 
-An unknown without mass that a dashpot resists (order one) moves at the rate that its forces leave to the
-dashpot; one that nothing resists but springs (order zero) is where they are in balance.  The coefficient k
-of the first follows from the coefficients k - 1 of all and k of those with mass, that of the second then
-from the coefficients k of all others:
+An unknown without mass that a dashpot resists is of order one: its rate follows from the force that is left
+for the dashpot.  One that springs alone resist is of order zero: its displacement follows from equilibrium.
+The coefficient k of the first kind follows from the coefficients k - 1 of all unknowns and k of those with
+mass; that of the second kind then follows from the coefficients k of all others:
 
 .. math::
     \frac kh\,C_{RR}\, c_{R,k} &= p_{R,k-1} - (K c_{k-1} + f_{k-1})_R - \frac kh\,C_{RH}\, c_{H,k} \\
     K_{ZZ}\, c_{Z,k} &= p_{Z,k} - K_{ZH}\, c_{H,k} - K_{ZR}\, c_{R,k}
 
-H, R and Z being the unknowns of order two, one and zero; dashpots of laws are part of C, tangents of laws
-on order zero part of :math:`K_{ZZ}`; what tangents leave of smooth laws (see `smooth`) is part of f, and
-known.  Which order an unknown has depends on the branches of the laws, so both matrices are factorised
-again when one of these changes, and with tangents that do in every step.  :math:`c_{Z,0}` is solved for in
-every step: no error adds up.
+H, R and Z are the unknowns of order two, one and zero.  C includes the dashpots of laws, and
+:math:`K_{ZZ}` the tangents of laws on unknowns of order zero; f includes the part of smooth laws beyond
+their tangents (see `smooth`), which is known.  The order of an unknown depends on the branches of the laws,
+so both matrices are factorised again when a branch changes, and in every step if tangents change.
+:math:`c_{Z,0}` is solved for in every step, so that errors do not accumulate.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-r"""Kernels of TAYLOR: intervals in modes, where it is certain that nothing happens.
+r"""Kernels of TAYLOR: intervals that are advanced in modes because they certainly contain no event.
 
-Where no contact is closed and all laws are on branches as stiff as at the start, the motion over an
-interval between two goals is known in closed form (`modal_tables`).  An interval is taken so where no event
-lies in it; else it is taken by series from unknown to unknown.
+While no contact is closed and all laws are on branches as stiff as at the start, the motion over an
+interval between two goals is known in closed form (`modal_tables`).  An interval without an event is
+advanced by this form; any other is advanced by series.
 
 A followed quantity is :math:`y = \mathrm{Re}\sum_j \rho_j c_j e^{\lambda_j t}` and a straight line.  From
 the chord between two places a time :math:`\tau` apart it departs by

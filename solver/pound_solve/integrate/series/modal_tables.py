@@ -1,4 +1,4 @@
-r"""Tables of intervals in modes: what `modal` multiplies with, for one length h of interval.
+r"""Tables for intervals in modes: the matrices that `modal` multiplies with, for one interval length h.
 
 On the branches on which a run starts, the parts of the structure that only contacts join have complex modes
 of their own, :math:`\dot q_i = \lambda_i q_i + F_i s(t)`.  Under inputs that are straight lines over the
@@ -7,7 +7,7 @@ interval, :math:`s = \sigma_0 + \sigma_1 t/h`, each is a free motion and a strai
 .. math:: q_i = c_i\,e^{\lambda_i t} - \frac{F_i}{\lambda_i}\Bigl(\sigma_0 + \frac{\sigma_1}{\lambda_i h}
           + \sigma_1\frac th\Bigr),
 
-so that all at a place of the interval is a product of a table with :math:`x = (\mathrm{Re}\,c,
+so that every quantity at a place of the interval is a product of a table with :math:`x = (\mathrm{Re}\,c,
 \mathrm{Im}\,c, \sigma_0, \sigma_1)`, and the works are quadratic forms of x.
 """
 

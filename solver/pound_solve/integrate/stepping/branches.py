@@ -1,4 +1,4 @@
-"""What happens at an event: laws leave their branches, the factor is updated, and the state is made
+"""Changes of branch at an event: laws leave their branches, the factor is updated, and the state is made
 consistent.
 """
 
@@ -59,10 +59,10 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
 
 
 def leaves_with(sim: Simulation, i: int) -> bool:
-    """Whether a law that is marked leaves its branch whatever the others do that have left at this instant.
+    """Whether a marked law leaves its branch regardless of the laws that have left at this instant.
 
-    A law that turns follows its acceleration, which changes where another one holds the same mass; the
-    unknowns of those that have left are in `step.marked`.
+    A law reverses according to its acceleration, which another law on the same mass changes; `step.marked`
+    holds the unknowns of the laws that have left.
     """
     laws = sim.laws
     if laws.events[i, laws.saved[i] - 1, 0] != 0.0:

@@ -1,4 +1,4 @@
-r"""GENERALISED_ALPHA: the high frequencies are damped as much as asked, the low ones as little as can be.
+r"""GENERALISED_ALPHA: damps the high frequencies as requested and the low ones as little as possible.
 
 With the spectral radius :math:`\rho` at infinite frequency, 0 to 1:
 :math:`\alpha_m = \frac{2\rho-1}{\rho+1}`, :math:`\alpha_f = \frac{\rho}{\rho+1}`,

@@ -1,4 +1,4 @@
-"""The loop of the step-by-step methods: from goal to goal, in equal steps that events cut or not.
+"""The loop of the step-by-step methods: from goal to goal in equal steps, which end at events or pass them.
 
 Everything here works on named arrays in the order of elimination (see `kernels.state`, `numerics.ldl`), and
 `jit` compiles it.
@@ -197,8 +197,8 @@ def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
     now, load = sim.step.now, sim.step.scratch[0]
     evaluate_inputs(piece.coefs, run.time - piece.begin, now.inputs, now.input_rates)
     form_load(sim.linear, now.inputs, load)
-    # accelerations of the alpha methods lag behind: after steps much shorter, as through a spike of
-    # the load, that of its past would act for too long
+    # the acceleration of an alpha method lags behind: after much shorter steps, as through a spike of the
+    # load, the lag would act for too long
     jumps = scheme.alpha_f + scheme.alpha_m != 0.0 and h > 2.0 * run.factor_length > 0.0
     for i in range(len(load)):
         if abs(load[i] - now.load[i]) > EVENT_TOLERANCE * (abs(load[i]) + abs(now.load[i])):

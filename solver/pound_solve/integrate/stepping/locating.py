@@ -1,6 +1,4 @@
-"""Search for the first event that a trial step passes: the step is tried again, shorter, until it ends
-there.
-"""
+"""Location of the first event that a trial step passes: shorter steps are tried until one ends at it."""
 
 from __future__ import annotations
 

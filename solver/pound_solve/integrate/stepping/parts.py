@@ -1,5 +1,5 @@
-"""Steps in parts that end on events: a part in which an event is passed is taken again, shorter, until it
-ends there; then the law changes its branch, the state is made consistent, and the rest of the step follows.
+"""Steps in parts that end at events: a part that passes an event is shortened until it ends there; then the
+law changes its branch, the state is made consistent, and the rest of the step follows.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def solve_part(
     laws, run = sim.laws, sim.run
     for halvings in range(MAX_HALVINGS + 1):
         if at == PART:
-            # trials from here on move the tangents of curved laws away from the factor at hand
+            # from here on, trials change the tangents of curved laws, but not the factor
             if laws.curved.any():
                 run.updates = MAX_UPDATES + 1
             why = factorise_part(sim, scheme, part, halvings)
@@ -83,7 +83,7 @@ def end_part_at_event(
     """Shorten a part to the first event in it, see `locate_event`."""
     laws, run = sim.laws, sim.run
     curved = laws.curved.any()
-    if curved:  # shorter trials move the tangents away from the factor at hand
+    if curved:  # shorter trials change the tangents, which the present factor does not know
         run.updates = MAX_UPDATES + 1
     why, event = locate_event(sim, rules, scheme, piece, part, h, event)
     if why == DONE and event.time > 1e-9 * h:

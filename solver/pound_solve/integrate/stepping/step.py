@@ -280,7 +280,7 @@ def add_external_work(sim: Simulation, h: float) -> None:
         work += mean_load_power(now, trial)
     p, members = laws.members.parameters, laws.members
     for c in range(len(p)):
-        if p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
+        if p[c, KIND] == STRING:  # work of the axial force on the shortening that a string leaves out
             s0, s1 = members.now.quantities, members.trial.quantities
             square = s0[c, ACROSS] * s0[c, ACROSS] + s1[c, ACROSS] * s1[c, ACROSS]
             works.input += 0.25 * square / p[c, LENGTH] * (s1[c, AXIAL] - s0[c, AXIAL])

@@ -109,7 +109,7 @@ class Stepper(KernelEngine):
         self.state.fell, self.state.updates = -1, MAX_UPDATES + 1
 
     def figures(self) -> dict[str, Any]:
-        """What the report tells of the run."""
+        """Figures of the run for the report."""
         return {
             "method": self.name,
             "time step": f"{self.dt:.6g}",
