@@ -203,9 +203,9 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
     "elements": (
         (11, "left column", "COL1", "SPRING", 1, 100, 3.5),
         (12, "", "COL1", "SPRING", 1, 0, math.nan),
-        (101, "", "SLAB1", "FRAME", 100, 101, 1.0),
-        (102, "", "SLAB1", "FRAME", 101, 102, 1.0),
-        (901, "pounding 1", "POUND", "CONTACT", 120, 300, 0.1),
+        (101, "", "SLAB1", "FRAME", 2, 3, 3.5),
+        (102, "", "SLAB1", "FRAME", 100, 302, 3.5),
+        (901, "", "POUND", "CONTACT", 3, 302, 0.1),
     ),
     "loads": ((100, 0.0, -800.0, 0.0), (101, 0.0, -80.0, 12.5)),
     "masses": ((100, 81.577, 81.577, 0.0), (101, 8.15773, 8.15773, 0.0), (300, 163.155, 163.155, 1.25)),
@@ -216,7 +216,7 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         (3, 0.0, 7.0, "YR", "", 0),
         (4, 0.0, 0.0, "XYR", "", 0),
         (100, 20.0, 3.5, "YR", "", 0),
-        (302, 20.1, 7.0, "Y", "X", 301),
+        (302, 20.1, 7.0, "Y", "X", 100),
     ),
     "options": (
         ("analysis", "STATIC, MODAL 4, HISTORY", "", "dead loads, then 4 modes, then time history"),

@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.report.plot.geometry import SHARE, DrawnStructure
+from pound_solve.report.plot.geometry import SHARE, DrawnStructure, largest, magnified, stand_apart
 from pound_solve.results import Results
 
 MOST_POINTS: Final = 4000  #: of a curve in time; of more, the extremes of short intervals are kept
@@ -90,21 +90,23 @@ def _structure(results: Results) -> Iterator[Picture]:
     """Picture of the structure, undeformed and at the instant of its largest displacement."""
     if not results.holds("nodes"):
         return
-    s, note = DrawnStructure(results), ""
-    traces = [_lines("as it stands", s.lines(False), s.place, "#b0b0b0")]
+    s, note = DrawnStructure(results, stand_apart), ""
     place = s.place
+    traces: list[Trace] = []
     if results.holds("node/u"):
         u = results.history("node/u")[:, :, :2]
         numbers = [int(n) for n in results.attributes("node/u")["nodes"]]
-        size = np.abs(u).max(axis=(1, 2))
-        at = int(np.argmax(size))
-        factor = SHARE * s.size / size[at] if size[at] > 0.0 else 1.0
+        at, size = largest(u)
+        factor = SHARE * DrawnStructure(results).size / size if size > 0.0 else 1.0
+        s = DrawnStructure(results, magnified(factor))
         place = {n: s.place[n] + factor * u[at, k] for k, n in enumerate(numbers) if n in s.place}
         note = (
             f"The displacements are those at {results.time[at]:.6g} {s.units.time}, "
-            f"when the largest is {size[at]:.5g} {s.units.length}; drawn {factor:.3g} times as large."
+            f"when the largest is {size:.5g} {s.units.length}. "
+            f"Displacements and gaps are drawn {factor:.3g} times as large."
         )
         traces.append(_lines("displaced", s.lines(False), place, "#0b4f8a"))
+    traces.insert(0, _lines("as it stands", s.lines(False), s.place, "#b0b0b0"))
     marked = {"mode": "lines+markers", "marker": {"symbol": "square-open", "size": 9, "color": "#b3301e"}}
     traces.append(_lines("contacts", s.lines(True), place, "#b3301e") | marked)
     traces.append(

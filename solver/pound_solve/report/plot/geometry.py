@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -11,10 +11,13 @@ import numpy as np
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
+from pound_solve.report.plot.neighbours import Contact, moves, reach
 from pound_solve.results import Results
 from pound_solve.structure.elements.base import axes as own_axes
 
 SHARE = 0.08  #: largest drawn displacement as a share of the structure's size
+APART = 0.03  #: distance of neighbours in pictures without displacements, likewise
+PLATE = 0.012  #: half the length of the plate at the end of a contact's reach, likewise
 WALL = 0.035  #: half the length of a wall, and about its distance, as a share of that size
 HATCHES = 6
 SLENDER = 0.15  #: least half of a picture's side, as a share of that size
@@ -28,28 +31,56 @@ class DrawnStructure:
     Parameters
     ----------
     results : Results
+    distance : callable or None
+        ``distance(gap, size)``: least distance that a contact with that gap is drawn with, in a structure
+        of that size [L]; buildings are moved apart for it (see `neighbours`).  None: no building is moved.
 
     Attributes
     ----------
-    place : dict of int to ndarray, shape (2,)
+    true : dict of int to ndarray, shape (2,)
         Nodes [L].
+    place : dict of int to ndarray, shape (2,)
+        Nodes as they are drawn.
+    contacts : list of Contact
+    distances : dict of str to float
+        Distance that each contact is drawn with, beyond its reach [L]; empty without `distance`.
     low, high : ndarray, shape (2,)
         Corners of the box around all nodes [L].
     size : float
         The longer side of that box, 1 for a single node [L].
     """
 
-    def __init__(self, results: Results) -> None:
+    def __init__(self, results: Results, distance: Callable[[float, float], float] | None = None) -> None:
         self.nodes, self.elements = results.table("nodes"), results.table("elements")
         self.units = results.units
-        self.place = {int(n["node"]): np.array([n["x"], n["y"]], float) for n in self.nodes}
+        self.true = {int(n["node"]): np.array([n["x"], n["y"]], float) for n in self.nodes}
         self.fixed = {int(n["node"]): str(n["fixed"]) for n in self.nodes}
         self.mass: dict[int, float] = {}
         if "masses" in results.tables:
             self.mass = {int(m["node"]): max(m["mx"], m["my"]) for m in results.table("masses")}
-        self.angles: dict[str, float] = {}
-        if "contact_laws" in results.tables:
-            self.angles = dict(results.table("contact_laws")[["contact", "angle"]].tolist())
+        self.place = self.true
+        self.contacts = list(self._contacts(results))
+        self._measure()
+        self.distances: dict[str, float] = {}
+        if distance is not None:
+            self.distances = {c.name: distance(c.gap, self.size) for c in self.contacts}
+            of = self.buildings()
+            moved = moves(self.contacts, self.true, of, self.distances)
+            if any(moved.values()):
+                self.place = {n: xy + np.array([moved[of[n]], 0.0]) for n, xy in self.true.items()}
+                self._measure()
+
+    def _contacts(self, results: Results) -> Iterator[Contact]:
+        """Contacts of the results."""
+        laws = results.table("contact_laws") if "contact_laws" in results.tables else ()
+        facts = {str(law["contact"]): law for law in laws}
+        for e in self.elements[self.elements["kind"] == "CONTACT"]:
+            name = contact_name(e)
+            along = np.array(own_axes(float(facts[name]["angle"]))[0])
+            yield Contact(name, int(e["i"]), int(e["j"]), along, float(facts[name]["gap"]))
+
+    def _measure(self) -> None:
+        """Set the corners and the size of the box around all nodes."""
         xy = np.array(list(self.place.values()))
         self.low, self.high = xy.min(axis=0), xy.max(axis=0)
         self.size = float(max(self.high - self.low)) or 1.0
@@ -75,12 +106,28 @@ class DrawnStructure:
         look.setdefault("linestyle", "-")
         return axes.plot(*self.path(shift=shift), **look)[0]
 
+    def front(self, wall: Contact) -> Array:
+        """Point of a wall that node I meets."""
+        return np.asarray(self.place[wall.i] + self.distances.get(wall.name, WALL * self.size) * wall.along)
+
     def draw_contacts(self, axes: Any, shift: Mapping[int, Array] = STILL) -> None:
-        """Draw the contacts between two nodes, displaced."""
-        look: dict[str, Any] = {"color": style.RED, "linewidth": 1.5, "linestyle": "-", "marker": "|"}
-        look |= {"markersize": 8, "zorder": 5}  # above the masses
-        if self.lines(contacts=True):
-            axes.plot(*self.path(contacts=True, shift=shift), **look)
+        """Draw the contacts, displaced: the reach of node I with a plate at its end, a thin line over the
+        gap, and a plate at node J, or a wall.
+        """
+        look: dict[str, Any] = {"color": style.RED, "linestyle": "-", "zorder": 5}  # above the masses
+        for c in self.contacts:
+            start = self.place[c.i] + shift.get(c.i, NOWHERE)
+            if not c.j:
+                axes.plot(*zip(start, self.front(c)), **look, linewidth=0.8)
+                draw_wall(axes, self.front(c), c.along, WALL * self.size)
+                continue
+            tip = start + reach(c, self.place, self.distances.get(c.name, 0.0))
+            end = self.place[c.j] + shift.get(c.j, NOWHERE)
+            plate = PLATE * self.size * np.array([-c.along[1], c.along[0]])
+            for line, width in (((start, tip), 1.5), ((tip, end), 0.8)):
+                axes.plot(*zip(*line), **look, linewidth=width)
+            for point in (tip, end):
+                axes.plot(*zip(point - plate, point + plate), **look, linewidth=1.5)
 
     def draw_supports(self, axes: Any) -> None:
         """Draw a triangle at each node fixed along X and Y, or along one of them at the lowest level."""
@@ -120,6 +167,20 @@ class DrawnStructure:
         style.grid(axes, f"X [{self.units.length}]", f"Y [{self.units.length}]")
         for axis, span in (("x", x1 - x0), ("y", y1 - y0)):
             axes.locator_params(axis=axis, nbins=max(2, min(8, round(8 * span / max(x1 - x0, y1 - y0)))))
+        if self.place is not self.true:
+            self._name_places(axes, 0.08 * (x1 - x0))
+
+    def _name_places(self, axes: Any, least: float) -> None:
+        """Put the true places of supports on the X axis, which no one scale fits; the ones nearer than
+        `least` to the one before are left out.
+        """
+        ticks: list[tuple[float, float]] = []
+        for x, true in sorted(
+            {(float(self.place[n][0]), float(self.true[n][0])) for n in self.place if self.fixed[n]}
+        ):
+            if not ticks or x - ticks[-1][0] > least:
+                ticks.append((x, true))
+        axes.set_xticks([x for x, _ in ticks], [f"{true:g}" for _, true in ticks])
 
     def shape(self) -> tuple[float, float]:
         """Width and height of a picture of it, in inches."""
@@ -134,7 +195,8 @@ class DrawnStructure:
         at = {n: k for k, n in enumerate(numbers)}
         pairs = [*self.lines(contacts=False)]
         pairs += [(int(n["node"]), int(n["master"])) for n in self.nodes if n["master"]]
-        joined = components(len(numbers), groups=[np.array([at[i], at[j]]) for i, j in pairs])
+        groups = [np.array([at[i], at[j]]) for i, j in pairs]
+        joined = components(len(numbers), groups=groups)
         return dict(zip(numbers, joined.tolist()))
 
     def feet(self, lowest: int, base: float) -> list[int]:
@@ -147,6 +209,16 @@ class DrawnStructure:
 def contact_name(element: Any) -> str:
     """Name of a contact in tables and histories."""
     return str(element["name"] or element["element"])
+
+
+def stand_apart(gap: float, size: float) -> float:
+    """Distance of neighbours in a picture without displacements."""
+    return APART * size
+
+
+def magnified(factor: float) -> Callable[[float, float], float]:
+    """Distance of neighbours in a picture that magnifies displacements by a factor: so are the gaps."""
+    return lambda gap, size: max(factor * gap, 0.0)
 
 
 def largest(shifts: Array) -> tuple[int, float]:
@@ -167,17 +239,15 @@ def shifts(numbers: Iterable[int], moved: Array) -> dict[int, Array]:
     return dict(zip(numbers, moved))
 
 
-def draw_wall(axes: Any, node: Array, angle: float, half: float) -> Array:
-    """Draw the wall that a node meets in a direction [deg], `half` as long on each side, hatched behind;
-    return its highest point.
+def draw_wall(axes: Any, front: Array, across: Array, half: float) -> None:
+    """Draw a wall at the point `front`, met in the direction `across`: `half` as long on each side, hatched
+    behind.
     """
-    across, along = np.array(own_axes(angle))
-    ends = node + half * across + half * np.array([along, -along])
+    along = np.array([-across[1], across[0]])
+    ends = front + half * np.array([along, -along])
     look = {"color": style.RED, "linestyle": "-"}
-    axes.plot(*zip(node, node + half * across), **look, linewidth=2.0)
     axes.plot(*ends.T, **look, linewidth=1.4)
     for share in np.linspace(0.0, 1.0, HATCHES):
-        front = ends[0] + share * (ends[1] - ends[0])
-        back = front + 0.4 * half * (across + along)
-        axes.plot(*zip(front, back), **look, linewidth=0.7)
-    return max(ends, key=lambda p: p[1])
+        foot = ends[0] + share * (ends[1] - ends[0])
+        back = foot + 0.4 * half * (across + along)
+        axes.plot(*zip(foot, back), **look, linewidth=0.7)

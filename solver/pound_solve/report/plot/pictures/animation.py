@@ -20,6 +20,7 @@ from pound_solve.report.plot.geometry import (
     displacements,
     draw_wall,
     largest,
+    magnified,
 )
 from pound_solve.report.plot.schema import MOVING, Choice, Picture
 from pound_solve.results import Results
@@ -63,11 +64,12 @@ class Film:
 
 def film(results: Results, choice: Choice) -> Film:
     """Make the frames of the animation at equal intervals, interpolated between the stored instants."""
-    s = DrawnStructure(results)
+    size_of = DrawnStructure(results).size
     numbers, u = displacements(results, choice.span(results))
     t = results.time[choice.span(results)]
     size = largest(u)[1]
-    factor = SHARE * s.size / size if size > 0.0 else 1.0
+    factor = SHARE * size_of / size if size > 0.0 else 1.0
+    s = DrawnStructure(results, magnified(factor))
     time = np.linspace(t[0], t[-1], min(FRAMES, max(2, len(t))))
     flat = u.reshape(len(t), -1)
     moved = np.column_stack([np.interp(time, t, column) for column in flat.T])
@@ -108,9 +110,9 @@ class Stage:
         s.draw_supports(self.axes)
         self.members = s.draw(self.axes, color=style.BLUE, linewidth=1.4)
         self.ends = [(int(e["i"]), int(e["j"])) for e in s.elements if e["kind"] == "CONTACT"]
-        for e in s.elements:
-            if e["kind"] == "CONTACT" and not e["j"]:
-                draw_wall(self.axes, s.place[int(e["i"])], s.angles[contact_name(e)], WALL * s.size)
+        for c in s.contacts:
+            if not c.j:
+                draw_wall(self.axes, s.front(c), c.along, WALL * s.size)
         look = {"color": style.RED, "linestyle": ""}
         self.open = self.axes.plot([], [], marker="|", markersize=8, **look)[0]
         self.closed = self.axes.plot([], [], marker="o", markersize=10, **look)[0]
@@ -136,7 +138,7 @@ def caption(scene: Film, k: int) -> str:
     names = [name for name, closed in zip(scene.contacts, scene.closed[k]) if closed]
     when = (
         f"{scene.time[k]:.2f} {scene.structure.units.time}, "
-        f"displacements drawn {scene.factor:.3g} times as large"
+        f"displacements and gaps drawn {scene.factor:.3g} times as large"
     )
     return f"{when}; closed: {', '.join(names)}" if names else when
 

@@ -11,22 +11,23 @@ from pound_solve.results import Results
 
 def deformed(results: Results, choice: Choice) -> Any:
     """Draw the displacements at an instant, by default that of the largest one."""
-    s = geometry.DrawnStructure(results)
+    size_of = geometry.DrawnStructure(results).size
     numbers, u = geometry.displacements(results)
     at, size = geometry.largest(u)
-    factor = geometry.SHARE * s.size / size if size > 0.0 else 1.0
+    factor = geometry.SHARE * size_of / size if size > 0.0 else 1.0
     if choice.time is not None:
         at = choice.instant(results)
+    s = geometry.DrawnStructure(results, geometry.magnified(factor))
     when = f"{results.time[at]:.4g} {s.units.time}"
     what = f"at {when}" if choice.time is not None else f"when they are largest, at {when}"
-    figure = style.figure(*s.shape(), title=f"Displacements {what}, drawn {factor:.3g} times as large")
+    figure = style.figure(*s.shape(), title=f"Displacements {what}")
     axes = figure.add_subplot()
     moved = geometry.shifts(numbers, factor * u[at])
     s.frame(axes, 0.06 + geometry.SHARE)
     s.draw(axes, color="0.8", linewidth=0.8)
     s.draw(axes, moved, color=style.BLUE, linewidth=1.3)
     s.draw_contacts(axes, moved)
-    axes.set_title("grey: as it stands; red: contacts")
+    axes.set_title(f"displacements and gaps {factor:.3g} times as large; grey: at rest; red: contacts")
     return figure
 
 

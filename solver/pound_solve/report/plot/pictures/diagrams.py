@@ -20,7 +20,7 @@ UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 def diagrams(results: Results, choice: Choice) -> Any:
     """Draw the three beside or below each other, at an instant or as envelopes."""
-    s = geometry.DrawnStructure(results)
+    s = geometry.DrawnStructure(results, lambda gap, size: 2.0 * SHARE * size)
     chosen = list(lines(results, s.place, choice))
     shown = [q for q in QUANTITIES if any(q in line.low for line in chosen)]
     if not shown:

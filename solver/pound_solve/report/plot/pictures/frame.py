@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from pound_solve.report.plot import geometry, labels, style
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
@@ -11,7 +13,7 @@ from pound_solve.results import Results
 
 def frame(results: Results, choice: Choice) -> Any:
     """Draw the structure as it stands."""
-    s = geometry.DrawnStructure(results)
+    s = geometry.DrawnStructure(results, geometry.stand_apart)
     figure = style.figure(*s.shape(), title=results.title)
     axes = figure.add_subplot()
     panel(axes, s, 500.0)
@@ -28,13 +30,10 @@ def panel(axes: Any, s: geometry.DrawnStructure, width: float) -> None:
     s.draw_supports(axes)
     s.draw_masses(axes, width)
     s.draw_contacts(axes)
-    for e in s.elements[s.elements["kind"] == "CONTACT"]:
-        name, i = geometry.contact_name(e), s.place[int(e["i"])]
-        if e["j"]:
-            above = (i + s.place[int(e["j"])]) / 2
-        else:
-            above = geometry.draw_wall(axes, i, s.angles[name], geometry.WALL * s.size)
-        labels.label(axes, above, name, far=True, color=style.RED, fontsize=7)
+    for c in s.contacts:
+        i = s.place[c.i]
+        above = (i + s.place[c.j]) / 2 if c.j else i + geometry.WALL * s.size * np.array([c.along[0], 1.0])
+        labels.label(axes, above, c.name, far=True, color=style.RED, fontsize=7)
 
 
 SPEC = Picture(

@@ -15,7 +15,8 @@ MOST = 8  #: modes
 
 def modes(results: Results, choice: Choice) -> Any:
     """Draw the first mode shapes with their periods."""
-    s, shapes = geometry.DrawnStructure(results), results.table("mode_shapes")
+    s = geometry.DrawnStructure(results, lambda gap, size: 2.0 * geometry.SHARE * size)
+    shapes = results.table("mode_shapes")
     periods = {int(m["mode"]): float(m["period"]) for m in results.table("modes")}
     numbers = list(dict.fromkeys(int(n) for n in shapes["mode"]))[:MOST]
     width, height = s.shape()
@@ -30,6 +31,7 @@ def modes(results: Results, choice: Choice) -> Any:
         s.frame(axes, 0.06 + geometry.SHARE)
         s.draw(axes, color="0.8", linewidth=0.8)
         s.draw(axes, moved, color=style.BLUE, linewidth=1.2)
+        s.draw_supports(axes)
         axes.set_title(f"mode {number}, period {periods[number]:.4g} {s.units.time}")
         axes.locator_params(nbins=4)
     return figure
