@@ -1,1 +1,1 @@
-"""Analyses that a deck may ask for, one a file."""
+"""Analyses that a deck may request, one per file."""

@@ -1,8 +1,8 @@
 """Close-ups: the motion at the method's own instants while a contact is pressed, and at every peak of its
-force, so that a stored history shows a collision as it was, however far apart its samples are.
+force, so that a stored history resolves collisions however coarse its samples are.
 
-Where the room does not suffice, every second instant goes, from all collisions alike, and again as often as
-needed; of the peaks of a contact's force the largest of each collision stay.
+If the memory limit is reached, every second instant of all collisions is dropped, repeatedly if needed. The
+largest force peak of each collision is always kept.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pound_solve.integrate.protocol import Course, Motion
 from pound_solve.numerics.crests import NODES, crests, on_nodes
 from pound_solve.numerics.types import Array, Flags, Index
 
-FOR_PEAKS: Final = 0.25  #: share of the room that is kept for peaks of forces
+FOR_PEAKS: Final = 0.25  #: share of the memory reserved for force peaks
 MEGABYTE: Final = 10**6  #: of `OUTPUT CLOSEUPS`
-BLOCK: Final = 1024  #: instants that are handed out at a time, at most
+BLOCK: Final = 1024  #: largest number of instants per block
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class Peaks:
     ----------
     motion : Motion
     contact, collision : ndarray of int, shape (n_peaks,)
-        Number of the contact, and how often it was pressed anew before.
+        Number of the contact, and of the collision in this contact.
     height : ndarray, shape (n_peaks,)
         The force [F].
     at_step : ndarray of bool, shape (n_peaks,)
@@ -61,21 +61,21 @@ class Peaks:
 
 
 class Closeups:
-    """The motion at instants of collisions, within a limited room.
+    """The motion at instants of collisions, within a memory limit.
 
     Parameters
     ----------
     contacts : ndarray of int
         Rows of the contacts in `Motion.law_forces`.
     room : int
-        Instants that are kept, at most.
+        Largest number of instants kept.
 
     Attributes
     ----------
     every : int
-        One in so many instants of collisions was kept.
+        One in `every` instants of collisions is kept.
     full : float
-        Time from which on peaks found no room, either; infinite where all collisions have theirs [T].
+        Time after which peaks were dropped too; infinite if every collision has its peak [T].
     """
 
     def __init__(self, contacts: Index, room: int) -> None:
@@ -92,7 +92,7 @@ class Closeups:
         return Closeups(self.contacts, self.room)
 
     def widen(self, other: Closeups) -> None:
-        """Include what another one has kept."""
+        """Include the contents of another one."""
         self._instants += other._instants
         self.every, self.full = max(self.every, other.every), min(self.full, other.full)
         for peaks in other._peaks:
@@ -140,8 +140,8 @@ class Closeups:
             self.every *= 2
 
     def _peaks_of(self, course: Course, forces: Array, collisions: Index) -> Peaks:
-        """The motion at the peaks of the contact forces: at an instant or, where the motion between is
-        known, also between two.
+        """The motion at the peaks of the contact forces: at an instant or, if the course knows the motion
+        between instants, between two.
         """
         wide = np.pad(forces, ((0, 0), (1, 1)), constant_values=-np.inf)
         row, top = np.nonzero((forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:]))
@@ -178,7 +178,7 @@ class Closeups:
         kept = list(self._instants)
         if self._peaks:
             peaks = joined_peaks(self._peaks)
-            # peaks at instants that are all there are no second time
+            # drops peaks at instants when all instants are kept
             kept.append(
                 peaks.at(~peaks.at_step if self.every == 1 else np.ones(len(peaks.at_step), bool)).motion
             )

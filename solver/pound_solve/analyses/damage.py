@@ -6,8 +6,8 @@ With the deformation :math:`d_y` and the force :math:`F_y` at first yield of a s
 
 .. math:: D = \frac{d_m}{d_u} + \beta\,\frac{E_h}{F_y d_u}
 
-Each side is evaluated on its own, with the whole of the energy; the larger index counts.  The index of the
-structure is the mean of all, weighted by the energies: :math:`\sum E_i D_i / \sum E_i`.
+Each side is evaluated separately with the whole energy; the larger index counts. The index of the structure
+is the mean of all, weighted by the energies: :math:`\sum E_i D_i / \sum E_i`.
 
 References
 ----------
@@ -29,7 +29,7 @@ Sides = tuple[float, float]  #: positive and negative side
 
 NONE: Sides = (0.0, 0.0)  #: a spring that does not yield
 
-FAR = 10.0  #: how far a force that is taken off is followed, in deformations and elastic deformations
+FAR = 10.0  #: how far unloading is followed, in deformations and elastic deformations
 
 
 class Damage(NamedTuple):
@@ -47,12 +47,12 @@ class Damage(NamedTuple):
 
 
 def holds(strength: float) -> bool:
-    """Whether a side has a strength: 0 and NaN stand for none."""
+    """Whether a side has a strength; 0 and NaN mean none."""
     return abs(strength) > 0.0
 
 
 def ductility(largest: Sides, yields: Sides | None) -> float:
-    """Largest deformation over that at first yield, of the side where it is larger; NaN without yield.
+    """Ductility: largest deformation over that at first yield, for the governing side; NaN without yield.
 
     Parameters
     ----------
@@ -63,8 +63,7 @@ def ductility(largest: Sides, yields: Sides | None) -> float:
 
 
 def plastic(largest: Sides, yields: Sides | None) -> float:
-    """Largest deformation beyond first yield, of the side where it is larger, [L] or [rad]; NaN without
-    yield.
+    """Largest deformation beyond first yield, for the governing side, [L] or [rad]; NaN without yield.
 
     Parameters
     ----------
@@ -89,8 +88,8 @@ def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> 
 
     Notes
     -----
-    Of an elastic, perfectly plastic spring it is the sum of all plastic deformations, if these return to
-    where they began or both strengths are equal.
+    For an elastic, perfectly plastic spring it is the sum of all plastic deformations, if they return to
+    their origin or both strengths are equal.
     """
     sides = [(abs(f), abs(y)) for f, y in zip(strengths or NONE, yields or NONE) if holds(f) and holds(y)]
     if not sides:
@@ -100,9 +99,9 @@ def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> 
 
 
 def residual(law: Law, state: State, d: float) -> float:
-    """Deformation that is left when the force at `d` is taken off slowly, [L] or [rad].
+    """Deformation that remains after slow unloading from `d`, [L] or [rad].
 
-    NaN where the force does not come to zero.
+    NaN if the force does not reach zero.
     """
     force = law.force(state, d)[0]
     if force == 0.0:
@@ -144,6 +143,6 @@ def park_ang(
 
 
 def overall(indices: Sequence[float], losses: Sequence[float]) -> float:
-    """Index of the whole: the mean weighted by dissipated energies; NaN where nothing was dissipated."""
+    """Index of the structure: the mean weighted by dissipated energies; NaN without dissipation."""
     total = sum(losses)
     return sum(d * e for d, e in zip(indices, losses)) / total if total else math.nan

@@ -21,7 +21,7 @@ from pound_solve.structure.elements.base import Output
 from pound_solve.structure.equations import LinearSums
 from pound_solve.structure.reduction import ReducedSystem
 
-ENTRIES = 2**15  #: of rows that are searched for extremes at once, about
+ENTRIES = 2**15  #: approximate number of row entries searched for extremes at once
 
 
 class Envelope:
@@ -32,7 +32,7 @@ class Envelope:
         self.t_high, self.t_low = np.zeros(n), np.zeros(n)
 
     def take(self, values: Array, t: Array, which: Index | None = None) -> None:
-        """Count in values of all quantities, or of those with some numbers, shape (n, n_times)."""
+        """Include values of all quantities, or of the quantities `which`, shape (n, n_times)."""
         which = np.arange(len(values)) if which is None else which
         for some in some_rows(values):
             part, number = values[some], which[some]
@@ -51,20 +51,20 @@ class Envelope:
         return shared
 
     def best(self, which: Index, sign: Array) -> Array:
-        """Known extremes of some quantities, the largest or smallest value by the sign of each, times that
-        sign, shape (n,).
+        """Known extremes of some quantities times `sign`: the largest value for a positive sign, the
+        smallest for a negative one, shape (n,).
         """
         return np.where(sign > 0.0, self.high[which], -self.low[which])
 
     def take_tops(self, which: Index, sign: Array, top: Array, t: Array) -> None:
-        """Include extremes of some quantities, given times the sign of each, and their times."""
+        """Include extremes of some quantities, multiplied by `sign`, and their times."""
         for side, best, time in ((1.0, self.high, self.t_high), (-1.0, self.low, self.t_low)):
             order = np.flatnonzero((sign == side) & (top > side * best[which]))
             order = order[np.argsort(top[order], kind="stable")]  # the largest of each comes last
             best[which[order]], time[which[order]] = side * top[order], t[order]
 
     def widen(self, other: Envelope) -> None:
-        """Include the extremes of another one of the same quantities."""
+        """Include the extremes of another envelope of the same quantities."""
         higher, lower = other.high > self.high, other.low < self.low
         self.high[higher], self.t_high[higher] = other.high[higher], other.t_high[higher]
         self.low[lower], self.t_low[lower] = other.low[lower], other.t_low[lower]
@@ -88,15 +88,15 @@ class Envelopes:
     nodes : sequence of int
     outputs : sequence of Output
     sums : mapping of str to LinearSums
-        By the name of what they are.
+        Keyed by the name of the quantity.
     followed : ndarray of bool, shape (n,)
-        Unknowns that close-ups need beside those of nodes, members and sums.
+        Unknowns that close-ups need in addition to those of nodes, members and sums.
     room : int
-        Instants that the close-ups keep, at most.
+        Largest number of instants that the close-ups keep.
     times : ndarray, shape (n_times,)
         Of the samples [T].
     bytes_of_extremes : float
-        At most; 0 keeps none.
+        Memory limit; 0 keeps no extremes.
 
     Attributes
     ----------
@@ -110,11 +110,11 @@ class Envelopes:
     total : dict of Envelope
         Of the sums, by their names.
     shown : ndarray of bool, shape (n,)
-        Unknowns that it looks at.
+        Unknowns that the envelopes depend on.
     acting : ndarray of int, shape (n_acting,)
-        Laws whose forces it looks at.
+        Laws whose forces the envelopes depend on.
     seen, apart : int, float
-        Number of instants between the samples that were counted in, longest time from one to the next [T].
+        Number of instants between the samples, and the longest interval between two instants [T].
     searched : bool
         Whether extremes between these instants were found.
     """
@@ -141,7 +141,7 @@ class Envelopes:
         self.shown = self.quantities.shown | used_columns(system.law_rows[self.acting])
         if contacts.any():
             self.shown |= followed
-        # corotational members look at all, and so does the force of a closed rigid contact
+        # corotational members and closed rigid contacts depend on all unknowns
         self.shown |= bool(system.corotational) or any(laws[i].law.rigid for i in self.acting)
         self._clear()
 
@@ -161,8 +161,8 @@ class Envelopes:
         return other
 
     def peaks(self) -> tuple[Array, list[str]]:
-        """Largest and smallest accelerations of the nodes, rotations apart, and forces of the members, and
-        the kind of each: those of a kind have one unit.
+        """Largest and smallest translational accelerations of nodes and forces of members, and the kind of
+        each; all of one kind share a unit.
         """
         motion = self.node["a"]
         whole = np.arange(len(motion.high)) % 3 < 2
@@ -172,8 +172,8 @@ class Envelopes:
 
     def imbalance(self, buildings: Sequence[Building]) -> float:
         """Largest difference between the two ways to compute the forces of a building on the ground, over
-        the largest of these forces, of its inertia and of what drives it; a moment is also compared with
-        the force times the reach of the building.
+        the largest of these forces, its inertia and its driving forces; a moment is also compared with the
+        force times the reach of the building.
         """
         off, base = (np.array([x for x, _ in self.sums[name].largest()]) for name in ("imbalance", "base"))
         off, *others = off.reshape(3, -1, 3)
@@ -185,7 +185,7 @@ class Envelopes:
         return worst
 
     def widen(self, other: Envelopes) -> None:
-        """Include the extremes of another one of the same quantities."""
+        """Include the extremes of another envelope of the same quantities."""
         self._all.widen(other._all)
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
         self.searched |= other.searched
@@ -193,7 +193,7 @@ class Envelopes:
         self.extremes.widen(other.extremes)
 
     def between(self, course: Course) -> None:
-        """Count in the motion between samples (see `integrate.protocol.Recorder`), with its extremes."""
+        """Include the motion between samples (see `integrate.protocol.Recorder`), with its extremes."""
         quantities, t = self.quantities, course.motion.t
         self.seen += len(t)
         self.apart = max(self.apart, float(course.lengths.max(initial=0.0)))
@@ -216,12 +216,12 @@ class Envelopes:
         likely = self._doubts(course, values)
         rest = np.ones(len(likely.row), bool)
         rest[first := likely.first()] = False
-        for doubts in (likely.some(first), likely.some(rest)):  # these seldom exceed what the first hold
+        for doubts in (likely.some(first), likely.some(rest)):  # the rest seldom exceed the first
             self._search(course, doubts)
 
     def _doubts(self, course: Course, values: Array) -> Doubts:
-        """Which quantities may exceed their known extremes, and in which cells: by their values at the
-        starts of the cells or, where the neighbouring cells give no bound, within the cell.
+        """Which quantities may exceed their known extremes, and in which cells. The test uses values at the
+        starts of cells or, if adjacent cells give no bound, values within the cell.
         """
         quantities, lone = self.quantities, ~among_equals(course.motion.t, course.lengths)
         low, high = self._all.low[quantities.place], self._all.high[quantities.place]
@@ -236,8 +236,8 @@ class Envelopes:
         return Doubts(*map(np.concatenate, zip(*parts)))
 
     def _search(self, course: Course, doubts: Doubts) -> None:
-        """Search the cells in which quantities may still exceed their known extremes, and include what is
-        found.
+        """Search the cells in which quantities may still exceed their known extremes, and include the
+        results.
         """
         place = self.quantities.place
         doubts = doubts.some(doubts.most > self._all.best(place[doubts.row], doubts.sign))
@@ -257,17 +257,15 @@ class Envelopes:
         self._count(place[close], sign[close], top, t)
 
     def _count(self, which: Index, sign: Array, top: Array, t: Array) -> None:
-        """Include extremes of some quantities, given times the sign of each, and their times; NaN for
-        none.
-        """
+        """Include extremes of some quantities, multiplied by `sign`, and their times; NaN for none."""
         new = ~np.isnan(t)
         for extremes in (self._all, self.extremes):
             extremes.take_tops(which[new], sign[new], top[new], t[new])
 
     def take(self, motion: Motion, s: Sequence[Array]) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
-        the members' forces, shape (n_outputs, nt), and the sums, (n_sums, nt) each, from the motion and the
-        inputs, shape (n_inputs, nt) each.
+        """Include some samples; return the motion of the nodes, shape (3 n_nodes, nt) each, the members'
+        forces, shape (n_outputs, nt), and the sums, (n_sums, nt) each, from the motion and the inputs,
+        shape (n_inputs, nt) each.
         """
         whole = self._whole(motion, s)
         self._all.take(whole, motion.t)
@@ -275,7 +273,7 @@ class Envelopes:
         return self.told(whole)
 
     def values(self, motion: Motion) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Motion of the nodes, forces of the members and sums, as `take`, of instants between samples."""
+        """Motion of nodes, forces of members and sums, as from `take`, at instants between samples."""
         return self.told(self._whole(motion, self.quantities.inputs(motion.t)))
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:

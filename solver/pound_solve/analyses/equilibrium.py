@@ -28,14 +28,14 @@ class SupportReactions:
     ----------
     structure : Structure
     axial : ndarray, shape (n_geometric,)
-        Axial forces that its geometric stiffness is made of.
+        Axial forces in its geometric stiffness.
     nodes : collection of int, or None
-        Nodes of the building whose base shear is meant; None: of all.
+        Nodes of the building whose base shear is computed; None: all nodes.
 
     Attributes
     ----------
     rigid : ndarray, shape (3, n)
-        Motions of the whole along x and y, and its turn about the origin, over all columns.
+        Rigid translations along x and y and rotation about the origin, over all columns.
     """
 
     def __init__(self, structure: Structure, axial: Array, nodes: Collection[int] | None = None) -> None:
@@ -43,7 +43,7 @@ class SupportReactions:
         self.nodes = frozenset(model.nodes if nodes is None else nodes)
         bare = assemble(replace(model, damping=()), fixed_dofs(structure), structure.self_weight)
         self.structure, self.n = bare.stressed(axial), bare.n_free
-        self.laws = structure.laws  # with what damping has made of them
+        self.laws = structure.laws  # with changes by damping
         self.geometric = self.structure.stiffness - bare.stiffness
         self.rigid = rigid_motions(bare)
         self.linear, self.nonlinear = self._resistance()
@@ -69,8 +69,8 @@ class SupportReactions:
         return {f: float(x) for f, x in zip(s.dofs.moved, whole[self.n :])}
 
     def shear(self, u: Array, states: Sequence[State], d: int, nodes: Sequence[int] | None) -> float:
-        """Force on the ground along direction `d` [F]: at the supports `nodes`,
-        or at all supports of the building and below all its elements that end at the ground.
+        """Force on the ground along direction `d` [F]: at the supports `nodes`, or at all supports of the
+        building and all its elements that end at the ground.
         """
         reactions = self.reactions(u, states)
         if nodes is not None:
@@ -96,7 +96,7 @@ class SupportReactions:
 
     def imbalance(self, rows: Sequence[tuple[Any, ...]], u: Array, states: Sequence[State]) -> float:
         """Sum of the rows of `balance`, less the rounding of its terms, as a share of the largest row; a
-        moment counts beside the largest force at the far end of the structure too.
+        moment is also compared with the largest force at the far end of the structure.
         """
         values = np.abs(np.array([row[1:] for row in rows]))
         force = values[:-1, :2].max()
@@ -107,8 +107,8 @@ class SupportReactions:
         return float(max(off[:2].max() / (force or 1.0), off[2] / (moment or 1.0)))
 
     def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
-        """Force and moment of the elements that resist a rigid motion of the structure, shape (3,) each: of
-        those of the building that end at the ground, and of those between nodes.
+        """Force and moment of the elements that resist a rigid motion of the structure, shape (3,) each:
+        elements of the building that end at the ground, and elements between nodes.
         """
         held = np.array([rows @ full + force @ laws for rows, laws in zip(self.linear, self.nonlinear)])
         return held[0], held[1]
@@ -141,6 +141,6 @@ class SupportReactions:
 
 
 def _above_rounding(a: Array, b: Array) -> Array:
-    """a @ b, with zeros where nothing but rounding is left of its terms."""
+    """a @ b, with entries that are only rounding set to zero."""
     product = a @ b
     return np.where(np.abs(product) > SUM_ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)

@@ -1,8 +1,8 @@
 """Extremes: the smallest and the largest value of every quantity within intervals of time, so that a stored
-history tells what happened between its samples, however far apart they are.
+history covers the motion between its samples, however coarse they are.
 
-They are those at the method's own instants; those of the whole history are the peaks of its envelopes.
-Where the intervals of the samples are too many for the room, 2, 4, 8, ... of them are joined.
+Values are taken at the method's own instants; the envelopes hold the peaks of the whole history.  If there
+are too many sample intervals for the memory limit, 2, 4, 8, ... of them are merged.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ BYTES = 16  #: of a quantity in an interval
 
 
 def intervals(times: Array, count: int, room: float) -> Array:
-    """Bounds of the intervals, shape (n + 1,), or of none, shape (0,).
+    """Bounds of the intervals, shape (n + 1,), or (0,) if there are none.
 
     Parameters
     ----------
@@ -35,19 +35,19 @@ def intervals(times: Array, count: int, room: float) -> Array:
 
 
 class Extremes:
-    """Smallest and largest values of some quantities within intervals that meet.
+    """Smallest and largest values of some quantities within contiguous intervals.
 
     Parameters
     ----------
     bounds : ndarray, shape (n_intervals + 1,) or (0,)
-        Instants at which they meet, rising [T].
+        Ends of the intervals, rising [T].
     count : int
         Quantities.
 
     Attributes
     ----------
     low, high : ndarray, shape (count, n_intervals)
-        Infinite where nothing was seen.
+        Infinite without values.
     """
 
     def __init__(self, bounds: Array, count: int) -> None:
@@ -60,13 +60,13 @@ class Extremes:
         return Extremes(self.bounds, len(self.low))
 
     def widen(self, other: Extremes) -> None:
-        """Include the extremes of another one."""
+        """Include the extremes of another instance."""
         np.minimum(self.low, other.low, out=self.low)
         np.maximum(self.high, other.high, out=self.high)
 
     def take(self, values: Array, t: Array, which: Index | None = None) -> None:
-        """Count in values of all quantities, or of those with some numbers, shape (n, n_times), at times
-        that do not fall.  An instant at which two intervals meet belongs to both.
+        """Include values of all quantities, or of the quantities `which`, shape (n, n_times), at
+        non-decreasing times.  An instant shared by two intervals belongs to both.
         """
         if not self.low.size or not values.size:
             return
@@ -84,7 +84,7 @@ class Extremes:
             best[rows, place[first]] = more(best[rows, place[first]], more.reduceat(values, first, axis=1))
 
     def take_tops(self, which: Index, sign: Array, top: Array, t: Array) -> None:
-        """Include extremes between instants of some quantities, given times the sign of each."""
+        """Include extremes between instants of some quantities, multiplied by `sign`."""
         if not self.low.size:
             return
         place = np.clip(np.searchsorted(self.bounds, t, side="right") - 1, 0, self.low.shape[1] - 1)

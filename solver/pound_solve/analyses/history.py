@@ -1,7 +1,7 @@
-"""HISTORY: the motion under the ground motions, from the static state.
+"""HISTORY: the response to ground motions, starting from the static state.
 
 The analysis prepares the start of the reduced system, hands it to the method in one part or two (up to the
-state to be saved, and on), and gathers what the method and the recorder found.
+state to be saved, and on), and collects the results of the method and the recorder.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ RESIDUAL = "largest energy residual over the largest energy"  #: name of the che
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
 CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
-BEYOND = 0.05  #: that much a crest between two steps may be, at ten steps a period
+BEYOND = 0.05  #: allowed height of a crest between two steps, at ten steps per period
 DISPLACEMENT_ROUNDING = 1e-13  #: share of the size of a structure below which a displacement is rounding
-BEARING = 0.25  #: height over that of the highest storey below which a drift is one of a bearing
-ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
+BEARING = 0.25  #: height over that of the highest storey below which a drift belongs to a bearing
+ROWS = 1000  #: approximate rows of stored histories, if OUTPUT gives no interval
 
 SPEC = Spec(
     "analysis",
@@ -82,7 +82,9 @@ SPEC = Spec(
 
 
 class Loading(NamedTuple):
-    """What moves a structure, and the state that a history with RESTART goes on from (else empty)."""
+    """The excitation of a structure, and the state from which a history with RESTART continues (else
+    empty).
+    """
 
     motions: Sequence[Motion]
     forces: Sequence[Force]
@@ -93,7 +95,7 @@ class HistoryOutput(Protocol):
     """Receiver of the samples of a history while it runs."""
 
     def start(self, items: RecordedItems) -> None:
-        """Prepare for what is recorded."""
+        """Prepare for the recorded items."""
 
     def append(self, block: SampleBlock) -> None:
         """Take some samples."""
@@ -108,9 +110,7 @@ class HistoryOutput(Protocol):
         """Receive the state from which a later run can continue."""
 
     def progress(self, t: float, end: float, doing: str) -> None:
-        """Receive the time reached, the time to reach, and what keeps the run waiting there, if
-        anything.
-        """
+        """Receive the time reached, the end time, and the reason for a pause in progress, if any."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class HistoryResult:
     every : float
         Interval of the stored histories [T].
     seconds, cpu_seconds : float
-        Time that the method took [s].
+        Run time of the method [s].
     """
 
     recorder: HistoryRecorder
@@ -161,14 +161,14 @@ class HistoryResult:
 
     @property
     def figures(self) -> dict[str, object]:
-        """Figures of the method, and how many instants of collisions stand for one in their close-ups."""
+        """Figures of the method, and the thinning factor of the close-ups."""
         every = self.recorder.envelopes.closeups.every
         thinned = {"close-ups": f"peaks, and one instant of {every}"} if every > 1 else {}
         return {**self.returned.figures, **thinned}
 
     def _rounding(self) -> float:
-        """Energy below which there is no motion but rounding [F L]: the largest force of a spring or
-        contact times a share `DISPLACEMENT_ROUNDING` of the structure's size.
+        """Energy below which motion is rounding [F L]: the largest force of a spring or contact times a
+        share `DISPLACEMENT_ROUNDING` of the structure's size.
         """
         nodes = self.system.structure.model.nodes.values()
         size = float(np.ptp([(n.x, n.y) for n in nodes], axis=0).max())
@@ -181,9 +181,9 @@ class HistoryResult:
         return 1e-9 if self.returned.exact else 1e-2
 
     def _energy(self) -> Check:
-        """Compare the energy put in with that stored and lost."""
+        """Compare the energy input with the stored and lost energy."""
         energy = self.recorder.energy
-        # not over the input at the end, which a free body may have given back
+        # not relative to the final input, which a free body may have returned
         if energy.largest <= self._rounding():
             told = "nothing moves: there is no energy to compare"
             return Check(Subject.ENERGY, RESIDUAL, 0.0, Bound.MOST, self._allowed, remark=told)
@@ -194,7 +194,7 @@ class HistoryResult:
         return at_most(Subject.ENERGY, RESIDUAL, ratio, self._allowed, "energy is lost or made")
 
     def _closeups(self) -> Iterator[Check]:
-        """Tell where the close-ups of collisions found no room for their peaks."""
+        """Report close-ups that had no memory left for their peaks."""
         full, end = self.recorder.envelopes.closeups.full, self.recorder.reached
         if full < math.inf:
             unit = self.system.structure.model.units.time
@@ -208,8 +208,8 @@ class HistoryResult:
             yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, cure)
 
     def _hinges(self) -> Iterator[Check]:
-        """Compare the peaks of hinges, which the method tracks between the steps too, with the envelopes of
-        their members, which are made of the motion of the nodes.
+        """Compare the peaks of hinges, which the method tracks between steps too, with the envelopes of
+        their members, which derive from the motion of the nodes.
         """
         largest = self.recorder.envelopes.output.largest()
         members = {(o.element, o.quantity): peak for o, (peak, _) in zip(self.items.outputs, largest)}
@@ -226,7 +226,7 @@ class HistoryResult:
             )
 
     def drift_ratios(self) -> list[tuple[str, float]]:
-        """Name of every drift, and the largest absolute one over its height; NaN where it has none."""
+        """Name and largest absolute ratio of every drift; NaN if it has no height."""
         return [
             (name, max(abs(e.high), abs(e.low)) / height)
             for name, e, height in zip(
@@ -237,8 +237,8 @@ class HistoryResult:
         ]
 
     def storey_drift_ratios(self) -> list[tuple[str, float]]:
-        """`drift_ratios` as far as they are known and their heights are those of storeys: a bearing is far
-        lower than a storey, and moves further than it is high.
+        """The known `drift_ratios` of storeys.  Bearings are left out: they are far lower than a storey and
+        may move by more than their height.
         """
         heights = list(drift_heights(self.system.structure.model))
         storeys = [float(h) for b in self.items.buildings for h in np.diff(b.levels)]
@@ -257,7 +257,7 @@ class HistoryResult:
 
 
 def drift_heights(model: Model) -> Iterator[float]:
-    """Storey height of every drift [L]; NaN where none follows from the deck."""
+    """Storey height of every drift [L]; NaN if the deck does not determine it."""
     for c in model.drifts:
         i, j = model.nodes[c["I"]], model.nodes[c["J"]]
         across = abs(j.y - i.y) if c["DIRECTION"] == "X" else abs(j.x - i.x)
@@ -288,7 +288,7 @@ def output_interval(model: Model, loading: Loading, end: float) -> float:
 
 
 def output_times(every: float, end: float) -> Array:
-    """Instants of the stored histories from 0 to `end`, which is always the last [T]."""
+    """Instants of the stored histories from 0 to `end`, which is always included [T]."""
     count = int(np.floor(end / every * (1 + 1e-12)))
     times = every * np.arange(count + 1)
     return np.append(times, end) if end - times[-1] > 1e-9 * end else np.append(times[:-1], end)
@@ -314,7 +314,7 @@ def run(
     loading : Loading
     output : HistoryOutput
     like : RecordedItems, optional
-        What an earlier history of the same model recorded, whose motion may have been another.
+        Recorded items of an earlier history of the same model, possibly under another motion.
 
     Raises
     ------
@@ -331,7 +331,7 @@ def run(
     with suppress(KeyboardInterrupt), undisturbed() as answer_now:
 
         def tell(t: float, doing: str) -> None:
-            answer_now()  # a signal ends the motion here, where what is recorded is whole
+            answer_now()  # a signal ends the motion here, where the record is complete
             output.progress(t, end, doing)
 
         recorder = HistoryRecorder(items, output.append, tell, start.times, first_energy)
@@ -363,9 +363,7 @@ def _prepared(
     times: Array,
     like: RecordedItems | None,
 ) -> tuple[Start, RecordedItems, Array | None]:
-    """Start of a history, what is recorded of it, and the energies at its start where it is taken up
-    later.
-    """
+    """Start of a history, its recorded items, and the energies at its original start if it resumes."""
     end = float(times[-1])
     u0, v = initial(structure)
     u = state.u + u0
@@ -392,8 +390,8 @@ def _integrate(
     save: Callable[[Mapping[str, Array]], None],
     parts: list[Outcome],
 ) -> None:
-    """Integrate in parts up to the time to be saved and on to the end; outcomes go into `parts`, so that
-    those before a `Stop` are kept.
+    """Integrate in parts up to the save time and on to the end; outcomes go into `parts`, so that those
+    before a `Stop` survive.
     """
     system, times = recorder.items.system, start.times
     end = float(times[-1])
@@ -420,5 +418,5 @@ def _state(recorder: HistoryRecorder, part: Outcome) -> restart.Saved:
 
 
 def _until(times: Array, end: float) -> Array:
-    """The times up to `end`, which is the last of them."""
+    """The times up to `end`, inclusive."""
     return np.append(times[times < end * (1 - 1e-12)], end)

@@ -1,4 +1,4 @@
-"""The state that a history starts from: the static one, and what INITIAL adds to it."""
+"""The initial state of a history: the static state plus INITIAL."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def begin(
     u_static: Array,
     times: Array,
 ) -> Start:
-    """State at t = 0: the static one plus INITIAL, with the laws driven from the one to the other."""
+    """State at t = 0: the static state plus INITIAL, with the laws driven from one to the other."""
     keep = system.columns
     u0, v0 = u[keep], v[keep]
     _lead_massless(system, u0, u0 - u_static[keep])
@@ -58,8 +58,8 @@ def begin(
 
 
 def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
-    """State of a law that is driven from the deformation `d0` to `d1`, where it has a rate."""
-    if law.rigid:  # it stays closed where it is not pulled open, and takes its force from the motion
+    """State of a law that is driven from deformation `d0` to `d1`, where it has the rate given."""
+    if law.rigid:  # it stays closed unless pulled open, and its force follows from the motion
         closed = law.branch(state).held and d1 - law.p[2] >= -GAP_ROUNDING * max(abs(d0), law.p[2])
         return law.transition(law.start(), 0, d1) if closed else law.start()
     return consistent(law, drive(law, state, d0, d1) if d0 != d1 else state, d1, rate)

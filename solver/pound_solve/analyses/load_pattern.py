@@ -1,4 +1,4 @@
-"""The forces of a pushover per load factor: of its PATTERN, on the nodes that are pushed."""
+"""The forces of a pushover per unit load factor."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ SOUGHT = 12  #: slowest modes of a large structure among which the pattern is ch
 
 
 class LoadPattern:
-    """The forces per load factor.
+    """The forces of a PATTERN on the pushed nodes, per unit load factor.
 
     Parameters
     ----------
     structure : Structure
     card : Card
     building : collection of int, or None
-        Nodes of the building that is pushed; None: of all.
+        Nodes of the pushed building; None: all nodes.
 
     Attributes
     ----------
     forces : ndarray, shape (n_free,)
-        Present forces; zeros where the pattern has none, and before the first mode is known.
+        Present forces; zeros outside the pattern, and before the first mode is known.
     mass : float
-        Mass that is pushed [F T^2/L].
+        Mass of the pushed nodes [F T^2/L].
     """
 
     def __init__(self, structure: Structure, card: Card, building: Collection[int] | None) -> None:
@@ -40,7 +40,7 @@ class LoadPattern:
         model, dofs = structure.model, structure.dofs
         kind, nodes = card["PATTERN"], card["NODES"]
         self.by_mode, self._stiff = kind == "MODE", 1
-        self.along = np.array([float(at == d) for _, at in dofs.free])  # the whole moves by one
+        self.along = np.array([float(at == d) for _, at in dofs.free])  # unit motion of the whole
         pushed = np.zeros(n)
         for node in building if nodes is None else nodes:
             pushed[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
@@ -61,19 +61,17 @@ class LoadPattern:
             self.forces = self._of(np.array(height))
 
     def _share(self, shape: Array) -> Array:
-        """Forces in proportion to mass times a shape, on the DOFs that are pushed."""
+        """Forces in proportion to mass times a shape, on the pushed DOFs."""
         return np.asarray(self.pushed * (self.structure_mass @ (self.along * shape)))
 
     def _of(self, shape: Array) -> Array:
-        """Forces in proportion to mass times a shape, with the sum one."""
+        """Forces in proportion to mass times a shape, with unit sum."""
         p = self._share(shape)
         total = float(p.sum())
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
 
     def follow(self, path: EquilibriumPath) -> Array:
-        """Forces at the present point of a path; with a mode as PATTERN, those of its present tangent
-        stiffness.
-        """
+        """Forces at the present point of a path; a modal PATTERN follows the present tangent stiffness."""
         if self.by_mode:
             try:
                 tied = path.ties.among
@@ -81,7 +79,7 @@ class LoadPattern:
             except np.linalg.LinAlgError:
                 return self.forces  # a part without mass has become a mechanism
             stiff = path.ties.whole(vibration.shapes[:, vibration.omega > 0.0])
-            if stiff.shape[1] >= self._stiff:  # else a motion has lost its resistance
+            if stiff.shape[1] >= self._stiff:  # otherwise a motion has lost its resistance
                 self._stiff = stiff.shape[1]
                 effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2
                 self.forces = self._of(stiff[:, int(np.argmax(effective))])

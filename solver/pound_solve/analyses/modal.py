@@ -1,4 +1,4 @@
-r"""MODAL: natural modes with participation, effective mass and damping ratio.
+r"""MODAL: natural modes with participation factors, effective masses and damping ratios.
 
 For a ground direction with influence vector r:
 
@@ -102,9 +102,9 @@ class ModalResult:
     ----------
     modes : list of Mode
     shares : list of Share
-        Of each mode those of the buildings that have a `TELLING` one.
+        For each mode, the shares of at least `TELLING`.
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
-        With a largest component of 1; None where they are not asked for.
+        With a largest component of 1; None if not requested.
     loaded : bool
         Whether the stiffness is the tangent one of the static state.
     """
@@ -116,7 +116,7 @@ class ModalResult:
 
 
 def run(structure: Structure, state: static.StaticState, card: Card) -> ModalResult:
-    """Natural modes, as a card of `SPEC` asks for them."""
+    """Natural modes as requested by a card of `SPEC`."""
     loaded = card["AFTER"] == "STATIC"
     if loaded:
         structure = static.after(structure, state)
@@ -132,7 +132,7 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
     ----------
     structure : Structure
     wanted : int or None
-        Number of modes at most; None: 12.
+        Largest number of modes; None: 12.
     """
     n, sought = structure.n_free, 12 if wanted is None else wanted
     vibration = structure.vibration(sought)
@@ -161,7 +161,7 @@ def kinetic_shares(structure: Structure, count: int) -> list[Share]:
 
     .. math:: \frac{\phi_b^T (M\phi)_b}{\phi^T M\phi}
 
-    over the unknowns b of a building; masses couple none with another, so that the shares add up to one.
+    over the unknowns b of a building; masses do not couple buildings, so the shares add up to one.
     """
     shapes, n = structure.vibration(count).shapes[:, :count], structure.n_free
     energy = shapes * (structure.mass[:n, :n] @ shapes)

@@ -1,9 +1,9 @@
-r"""Equilibrium paths of STATIC and PUSHOVER, from event to event.
+r"""Equilibrium paths of STATIC and PUSHOVER, traced from event to event.
 
 .. math:: K u + \sum_i b_i f_i(d_i) = p_0 + \lambda p, \qquad d_i = b_i^T u + (1-\lambda)\,o_i
 
-grows with the load factor :math:`\lambda`, or with one displacement :math:`c^T u` while :math:`\lambda`
-follows, which passes a limit load.  :math:`o_i` are deformations that are applied along with the load.
+The path is controlled by the load factor :math:`\lambda`, or by one displacement :math:`c^T u`, which can
+pass a limit load.  :math:`o_i` are deformations applied along with the load.
 
 With linear branches the path is a chain of straight segments.  Along each of them
 
@@ -11,15 +11,15 @@ With linear branches the path is a chain of straight segments.  Along each of th
           = \dot\lambda\Bigl(p + \sum_i k_i b_i o_i\Bigr), \qquad
           \dot\lambda = \pm 1 \quad\text{or}\quad c^T\dot u = \pm 1
 
-and the point is moved exactly to the first event of a law.  Of several events at one point that of the
-first law is processed first, and the rates are computed anew, which terminates if the stiffness is positive
+and the point is moved exactly to the first event of a law.  If several events coincide, the event of the
+first law is processed first and the rates are recomputed; this terminates if the stiffness is positive
 definite (Murty 1974: the least-index pivots of a linear complementarity problem).  A force that a law
-releases suddenly (it fractures) is redistributed to the others at constant control.  With a curved law the
-segments are curved: Newton's method finds their points, and the events are bracketed.
+releases suddenly (it fractures) is redistributed to the others at constant control.  Curved laws make the
+segments curved: Newton's method finds their points, and the events are bracketed.
 
-A closed rigid contact ties its nodes (see `ties`); its event is its force that falls to zero.  Where a
-mechanism is loaded, a contact that touches and towards which it moves closes first: a body that lies on the
-ground is held by it.
+A closed rigid contact ties its nodes (see `ties`); its event occurs when its force falls to zero.  If a
+loaded mechanism moves towards a touching contact, that contact closes first: the ground supports a body
+that lies on it.
 
 References
 ----------
@@ -46,13 +46,13 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
 RATE_ROUNDING = 1e-12  #: share of its terms below which a rate is rounding
-#: share of the fastest rate, both times the root of their stiffness, that is rounding
+#: share of the fastest rate that is rounding, scaled by roots of stiffness
 SOLUTION_ROUNDING = 1e-14
 FORCE_JUMP = 1e-12  #: share of its terms above which a force has changed at once
 EVENT_REACHED = 1e-13  #: share of its terms below which an event is reached
-JUST_CLOSED = 1e-6  #: share of the stiffness it will have below which a curved contact has only just closed
-INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
-#: of Newton's method to one point; it comes back to a contact of overlap^n by 1 - 1/n a time
+JUST_CLOSED = 1e-6  #: share of its final stiffness below which a curved contact has only just closed
+INCREMENTS = 20  #: least number of increments to the first mark with curved laws
+#: Newton iterations for one point; the error in a contact with force overlap^n shrinks by 1 - 1/n at each
 ITERATIONS = 80
 MAX_CHANGES = 10_000
 MAX_RETURNS = 5  #: of all laws to the same branches at one point
@@ -80,7 +80,7 @@ class Rates(NamedTuple):
     ----------
     displacement, factor : ndarray, float
     argument, noise : ndarray
-        Of what the events of each law depend on, and its rounding error.
+        Rates of the event arguments of each law, and their rounding errors.
     """
 
     displacement: Array
@@ -106,9 +106,9 @@ class EquilibriumPath:
     u : ndarray, shape (n_free,)
         Displacements of the start [L] or [rad].
     states : sequence of State
-        The laws' states there.
+        States of the laws at the start.
     applied : ndarray, shape (n_free,)
-        Loads that act there [F].
+        Loads at the start [F].
     load : ndarray, shape (n_free,)
         Loads per load factor; may be replaced between steps.
     control : ndarray, shape (n_free,), or None
@@ -141,7 +141,7 @@ class EquilibriumPath:
         self.k, self.rows = structure.stiffness[:n, :n], structure.law_rows[:, :n]
         self.u, self.states, self.applied, self.load = u.copy(), list(states), applied.copy(), load
         self.control, self.sign = control, sign
-        # b b^T of every law, entry by entry: a row touches few unknowns
+        # b b^T of every law, entry by entry: a row involves few unknowns
         pairs = [
             (law, i, j, x * y)
             for law, row in enumerate(by_rows(self.rows))
@@ -158,7 +158,7 @@ class EquilibriumPath:
         self._released = np.zeros(n)  # forces that laws have released, not yet redistributed
         self._largest_load = float(np.abs(applied).max(initial=0.0))
         self._longest_increment = self._next_increment = np.inf
-        self._rates_key = np.zeros(0)  # what the last rates were found with
+        self._rates_key = np.zeros(0)  # stiffnesses of the last rates
         self._rates: Rates | None = None
         self.ties = self._closed()
 
@@ -178,8 +178,8 @@ class EquilibriumPath:
         return both[:, 0], both[:, 1]
 
     def _stiffnesses(self, d: Array) -> Array:
-        """Stiffness by which the method moves every law on from deformations `d`, shape (n_laws,): the
-        tangent or, where a curved contact has only just closed, the secant.
+        """Stiffness of every law for the next iteration from deformations `d`, shape (n_laws,): the tangent
+        or, if a curved contact has only just closed, the secant.
         """
         if not self.curved:
             return np.array([b.stiffness for b in self.branches], float)
@@ -220,7 +220,7 @@ class EquilibriumPath:
             raise InstabilityError(f"{err}; at load factor {self.factor:.6g}", err.code) from None
 
     def transition(self, event: PathEvent) -> Change:
-        """Put a law onto its next branch.
+        """Move a law to its next branch.
 
         Raises
         ------
@@ -281,7 +281,7 @@ class EquilibriumPath:
         return hit if isinstance(hit, PathEvent) and distance < 1.0 else None
 
     def _first_ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
-        """Rates of displacements and load factor, distance to the first mark or event, and which it is."""
+        """Rates of displacements and load factor, the first mark or event, and the distance to it."""
         try:
             du, factor_rate, rate, noise = self.rates(self.u, self.factor)
         except InstabilityError as err:
@@ -304,7 +304,7 @@ class EquilibriumPath:
         return du, factor_rate, distance, hit
 
     def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float]]:
-        """Events that lie ahead at these rates of what they depend on, and their distances."""
+        """Events ahead at these rates of their arguments, and their distances."""
         now, size = self._arguments(self.u, self.factor)
         for i, (branch, x, v, least, terms) in enumerate(
             zip(self.branches, now.tolist(), rate.tolist(), noise.tolist(), size.tolist())
@@ -319,12 +319,10 @@ class EquilibriumPath:
                     yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
 
     def _blocking(self, motion: Array) -> PathEvent | None:
-        """Event of the first open contact that touches and that a motion of a mechanism closes; None for
-        none.
-        """
+        """Event of the first touching open contact that the motion of a mechanism closes, if any."""
         rate, noise = self.rows @ motion, RATE_ROUNDING * (np.abs(self.rows) @ np.abs(motion))
         rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
-        # the motion leaves those that press where they are, but for rounding
+        # the motion does not move pressed contacts, except by rounding
         rate[self._stiffnesses(self.deformations(self.u, self.factor)) > 0.0] = 0.0
         return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
 
@@ -349,11 +347,11 @@ class EquilibriumPath:
         return Ties(held, dense(self.rows[held]))
 
     def rates(self, u: Array, factor: float) -> Rates:
-        """Rates of displacements, load factor and what events depend on (see `_arguments`), and the
-        rounding errors of the last.
+        """Rates of displacements, load factor and event arguments (see `_arguments`), with the rounding
+        errors of the last.
 
-        Where all is linear in pieces they are the same until a stiffness, the load or the control changes:
-        laws at rest that leave their branch one after the other for another as stiff change none.
+        With piecewise linear laws the rates stay the same until a stiffness, the load or the control
+        changes; a transition between equally stiff branches changes none of these.
         """
         stiffness = self._stiffnesses(self.deformations(u, factor))
         control = np.zeros(len(u)) if self.control is None else self.control
@@ -392,7 +390,7 @@ class EquilibriumPath:
         self._largest_load = max(self._largest_load, float(np.abs(self.applied).max(initial=0.0)))
 
     def _increment(self, marks: Sequence[Mark]) -> PathEvent | int | None:
-        """Move one increment along a curved segment, or to its end; None where there was no event."""
+        """Move one increment along a curved segment, or to its end; None if there was no event."""
         du, factor_rate, distance, hit = self._first_ahead(marks)
         if distance == 0.0:
             return hit
@@ -402,7 +400,7 @@ class EquilibriumPath:
         while (end_point := self._equilibrium(span, du, factor_rate, marks)) is None:
             span = self._next_increment = 0.5 * span
             if span < 1e-9 * self._longest_increment:
-                # with the load as control there is none; with a displacement there may be one
+                # load control has none; displacement control may have one
                 code = "A501" if self.control is None else "A507"
                 raise InstabilityError("no equilibrium was found further on: the strength is used up", code)
         self._next_increment = min(2.0 * self._next_increment, self._longest_increment)
@@ -504,7 +502,7 @@ class EquilibriumPath:
         return self.ties.whole(x), factor_rate
 
     def _unit_load(self, stiffness: Array) -> Array:
-        """Force per load factor, that of the deformations applied with it included, shape (n_free,)."""
+        """Force per load factor, including that of the applied deformations, shape (n_free,)."""
         return np.asarray(self.load + self.rows.T @ (stiffness * self.lead))
 
 

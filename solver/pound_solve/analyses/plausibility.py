@@ -1,6 +1,6 @@
-"""Values that no engineer would believe, or that end what the model means: one function for each.
+"""Checks for implausible results and for results beyond the model's validity, one function each.
 
-They are no errors of the computation, which may be exact: units, strengths and the model are in doubt.
+Such results are not computational errors; the units, strengths or the model are in doubt.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from pound_solve.structure.structure import Structure
 
 RESPONSE: Final = Subject.RESPONSE
 
-LARGEST_DRIFT: Final = 0.1  #: drift over height; frames have lost their vertical loads before
-LARGEST_RESIDUAL: Final = 0.005  #: drift over height at the end, which the eye sees in a storey
+LARGEST_DRIFT: Final = 0.1  #: drift over height; frames lose their vertical capacity earlier
+LARGEST_RESIDUAL: Final = 0.005  #: final drift over height that is visible in a storey
 LARGEST_DUCTILITY: Final = 50.0  #: of hinges; members of concrete or steel break before
-LEAST_CLOSURE: Final = 0.01  #: of a gap; a thousandth tells of other units
+LEAST_CLOSURE: Final = 0.01  #: of a gap; a thousandth suggests wrong units
 #: force of a contact over the weight of the lighter building; 1 m/s against a stiff wall makes 5
 #: for a large floor, 30 for a garage
 MOST_FORCE: Final = 100.0
@@ -42,7 +42,7 @@ def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> It
 
 
 def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Components at the end of their damage index or beyond their ultimate deformation."""
+    """Components with an exhausted damage index or beyond their ultimate deformation."""
     shares = [r.damage.by_deformation for r in history.springs if r.damage is not None]
     shares = [share for share in shares if share >= 1.0]
     if shares:
@@ -61,7 +61,7 @@ def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
 
 
 def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Hinges turned further than ordinary members bear, where the deck does not say how far they go."""
+    """Hinges rotated beyond the capacity of ordinary members, if the deck gives no limit."""
     far = [r for r in history.springs if r.beyond_ordinary]
     if far:
         worst = max(far, key=lambda r: r.rotation)
@@ -76,10 +76,10 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
 
 
 def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Hinges beyond any usual ductility of members, where the deck gives no ultimate deformation.
+    """Hinges beyond any usual ductility of members, if the deck gives no ultimate deformation.
 
-    A stiffness KH of their own may be that of a hinge that is rigid until it yields, and a spring may slide
-    or rock: their ductility has no such limit.
+    A hinge with an explicit KH may be rigid until it yields, and a spring may slide or rock: their
+    ductility has no such limit.
     """
     model = structure.model
     far = [
@@ -98,7 +98,7 @@ def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) 
 
 
 def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Rules that went beyond the ductility DULT up to which they are known."""
+    """Rules that exceeded DULT, the ductility up to which they are calibrated."""
     for i, spring in enumerate(structure.laws):
         card = structure.model.props[structure.model.elements[spring.element].prop]
         if spring.yields is None or card.values.get("DULT") is None:
@@ -131,7 +131,7 @@ def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
 
 
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Contacts pressed together by more than an elastic contact means."""
+    """Contacts whose overlap is too large for an elastic contact."""
     model = structure.model
     if not history.items.contacts:
         return
@@ -154,7 +154,7 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
 
 
 def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Contacts of standing buildings whose force is many times the weight of the lighter one."""
+    """Contacts between buildings whose force is many times the weight of the lighter one."""
     model = structure.model
     standing = [b for b in history.items.buildings if stands(model, b.nodes)]
     weights = {n: b.mass * model.gravity for b in standing for n in b.nodes}

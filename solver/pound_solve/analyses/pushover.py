@@ -1,26 +1,25 @@
-r"""PUSHOVER: forces of a pattern that grow on the static state until a displacement or a factor is reached.
+r"""PUSHOVER: a load pattern that grows from the static state until it reaches a displacement or a factor.
 
 The pattern has forces along one direction,
 
 .. math:: p_i = m_i \psi_i \Big/ \sum_j m_j \psi_j, \qquad \psi = 1,\quad \psi = h \quad\text{or}\quad
           \psi = \phi
 
-(UNIFORM, TRIANGULAR with the height above the lowest support, MODE with the mode whose effective mass
-along the direction is largest), so that the load factor is the base shear that they cause; or it has the
-FORCES of the card, or it is the LOADS once more.  The path is followed from event to event
-(see `path_following`), by the displacement of the control node, which passes the largest base shear, or by
-the load factor, which ends there.
+(UNIFORM, TRIANGULAR with the height above the lowest support, MODE with the mode whose effective mass along
+the direction is largest), so that the load factor is the base shear that they cause; or it consists of the
+FORCES of the card, or repeats the LOADS. The path is traced from event to event (see `path_following`).
+Displacement control can pass the largest base shear; load control ends there.
 
 With ADAPTIVE=YES the pattern is that of the present mode: after every change of a law and at every station
 :math:`dp = d\lambda\, p(\phi)` with :math:`\phi` of the tangent stiffness; the forces that act already stay
 (force-based adaptive pushover with incremental updating, Antoniou and Pinho 2004, in its form with one mode
-and no spectrum).  Once the tangent stiffness has a direction without resistance there is no such mode, and
+and no spectrum).  If the tangent stiffness loses its resistance in some direction, no such mode exists and
 the last pattern is kept.
 
 With BUILDING one building of several is pushed: the pattern has forces on its nodes only, and the base
-shear is that of its supports and of its elements that end at the ground.  Its neighbours carry what
-contacts hand to them, or stand no more (NEIGHBOURS=NO): then its own static state is the start, and the
-path is that of a deck with this building alone.
+shear is that of its supports and of its elements that end at the ground.  Its neighbours resist through
+contacts, or are removed (NEIGHBOURS=NO): the path then starts from the building's own static state, as for
+a deck with this building alone.
 
 References
 ----------
@@ -71,7 +70,7 @@ class PushoverResult:
     ----------
     card : Card
     structure : Structure
-        What was pushed: all that the deck has, or one building.
+        The pushed structure: the whole deck, or one building.
     curve : list of CapacityPoint
         At the start, at the stations, and where laws changed.
     ladder : list of (CapacityPoint, Change)
@@ -79,11 +78,11 @@ class PushoverResult:
     first, last : ndarray, shape (n_free,)
         Pattern at the start and at the end [F] or [-].
     end : str
-        Why it ended.
+        Reason for the end.
     failed : InstabilityError or None
-        Set where it ended before the end requested.
+        Set if it ended early.
     unbalanced : float
-        Largest force out of balance at the end, as a share of the largest that acts.
+        Largest unbalanced force at the end, as a share of the largest acting force.
     """
 
     card: Card
@@ -111,7 +110,7 @@ class PushoverResult:
 
 
 def mistakes(structure: Structure) -> list[Diagnostic]:
-    """What is wrong with the PUSHOVER card of a deck: one message, or none."""
+    """Error in the PUSHOVER card of a deck: one message, or none."""
     for card in structure.model.analyses:
         if card.spec.name == "PUSHOVER" and (wrong := _wrong(structure, card)):
             message, item, hint = wrong
@@ -138,7 +137,7 @@ def distant(structure: Structure) -> list[Diagnostic]:
 
 
 def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
-    """Message, item of the card and hint."""
+    """Message, faulty item of the card, and hint."""
     if wrong := _wrong_building(structure, card) or _wrong_control(structure, card) or _wrong_items(card):
         return wrong
     pattern = LoadPattern(structure, card, _own(structure, card))
@@ -149,7 +148,7 @@ def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
 
 
 def _wrong_building(structure: Structure, card: Card) -> tuple[str, str, str] | None:
-    """What is wrong with the building that is pushed, and with the nodes that must be its own."""
+    """Error in the pushed building, or in the nodes that must belong to it."""
     name = card["BUILDING"]
     if not name and card["NEIGHBOURS"] == "YES":
         return None
@@ -167,7 +166,7 @@ def _wrong_building(structure: Structure, card: Card) -> tuple[str, str, str] | 
 
 
 def _wrong_control(structure: Structure, card: Card) -> tuple[str, str, str] | None:
-    """What is wrong with the end of the pushover or with its control node."""
+    """Error in the end of the pushover or in its control node."""
     by_displacement = card["CONTROL"] == "DISPLACEMENT"
     if card["TARGET"] is None and (card["FACTOR"] is None or by_displacement):
         needs = "TARGET" if by_displacement else "TARGET or FACTOR"
@@ -181,7 +180,7 @@ def _wrong_control(structure: Structure, card: Card) -> tuple[str, str, str] | N
 
 
 def _wrong_items(card: Card) -> tuple[str, str, str] | None:
-    """What is wrong with the items that belong to one pattern only."""
+    """Error in the items that belong to one pattern only."""
     pattern, nodes, forces = card["PATTERN"], card["NODES"], card["FORCES"] or ()
     if pattern == "FORCES" and (not forces or len(nodes or ()) != len(forces)):
         hint = "PATTERN=FORCES takes one force for each node: NODES=3,5 FORCES=10,20"
@@ -238,7 +237,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
         return CapacityPoint(float(control @ path.u), shear, path.factor, path.changes)
 
     ends, result = _ends(card, control, start), PushoverResult(card, structure, first=path.load)
-    # the stations divide the way to the first of the ends
+    # the stations divide the path to the first end
     (row, share, value), _ = ends[0]
     begin = float(row @ state.u)
     result.add(here())
@@ -254,8 +253,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
                 point = replace(point, changes=path.changes)
                 result.ladder.append((point, change))
         except InstabilityError as err:
-            # under load control that is the result: no more can be carried; under displacement control the
-            # path continues somewhere
+            # under load control that is the capacity; under displacement control the path must continue
             result.end, result.failed = str(err), None if by_load and err.code == "A501" else err
             result.add(here())
             result.ladder = _once(result.ladder)
@@ -274,7 +272,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
 
 
 def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> float:
-    """Sign of the increments of the displacement, or of the load factor, with which the end is reached."""
+    """Sign of the increments of displacement or load factor that lead to the end."""
     target, factor = card["TARGET"], card["FACTOR"]
     if card["CONTROL"] != "FORCE":
         return math.copysign(1.0, target - start)
@@ -297,7 +295,7 @@ def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
 
 
 def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoint, Change]]:
-    """The ladder of changes without repetitions at one point."""
+    """The ladder of changes without duplicates at one point."""
     distinct: dict[tuple[float, float, Change], tuple[CapacityPoint, Change]] = {}
     for point, change in ladder:
         distinct.setdefault((point.displacement, point.factor, change), (point, change))
@@ -305,12 +303,12 @@ def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoin
 
 
 def _clean(displacement: float, curve: list[CapacityPoint]) -> float:
-    """The displacement, or zero where it is rounding beside the largest one."""
+    """The displacement, or zero if it is rounding compared with the largest one."""
     return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
 
 
 def _own(structure: Structure, card: Card) -> tuple[int, ...] | None:
-    """Nodes of the building that is pushed; None: all."""
+    """Nodes of the pushed building; None: all."""
     return building(structure, card["BUILDING"]).nodes if card["BUILDING"] else None
 
 

@@ -1,8 +1,7 @@
-"""What envelopes look at: motion of nodes, forces of members and sums of forces, as rows on the motion and
-the inputs.
+"""Quantities of envelopes as rows on motion and inputs: motion of nodes, forces of members, sums of forces.
 
-Most rows hold few unknowns: one sparse matrix gives all of them, and where extremes are searched each has a
-product of its own.
+Most rows involve few unknowns: one sparse matrix evaluates all of them, and the search for extremes
+evaluates rows individually.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ MOTION = "uva"  #: names of displacements, velocities and accelerations
 
 
 class Quantities:
-    """Quantities, all but those that never move as rows.
+    """Quantities as rows, except those that never move.
 
     Parameters
     ----------
@@ -81,7 +80,7 @@ class Quantities:
         moves: Index | None = None, size: int = 0,
     ) -> None:  # fmt: skip
         """Add a part given by matrices on u, v, a and forces of laws (by number), on the inputs and their
-        rates, and constants; where only some of its `size` quantities move, `moves` holds their numbers.
+        rates, and constants; if only some of its `size` quantities move, `moves` lists their numbers.
         """
         n, m, first = self.system.size, self.system.inputs.shape[1], len(self.place)
         moves, size = (np.arange(len(constant)), len(constant)) if moves is None else (moves, size)
@@ -107,7 +106,7 @@ class Quantities:
         system = self.system
         dofs, place = system.structure.dofs, system.structure.model.nodes
         of_u, on_inputs, at_rest = system.over(dofs.matrix([(n, d) for n in nodes for d in range(3)]))
-        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
+        # motion of the nodes with the ground: x, y, and a rotation about the origin
         x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
         ridden = np.zeros((len(nodes), 3, 3))
         ridden[:, 0, 0] = ridden[:, 1, 1] = ridden[:, 2, 2] = 1.0
@@ -118,7 +117,7 @@ class Quantities:
         for order, q in enumerate(MOTION):
             inputs = {order: on_inputs[at]}
             if q == "a":
-                inputs[0] = ground[at]  # they are total
+                inputs[0] = ground[at]  # total accelerations
             constant = at_rest[at] if q == "u" else np.zeros(len(at))
             self._add(q, {order: of_u[at]}, inputs, constant, at, len(moving))
 
@@ -176,7 +175,7 @@ class Quantities:
         return peaks
 
     def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
-        """Values of rows, each within a cell of its own, at shares of that cell, shape (n, n_shares)."""
+        """Values of rows, each within its respective cell at shares of that cell, shape (n, n_shares)."""
         cells, at = np.unique(cell, return_inverse=True)
         t = (course.motion.t[cells, None] + shares * course.lengths[cells, None]).ravel()
         s = self.inputs(t)
@@ -212,7 +211,7 @@ class Quantities:
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns the rows hold, shape (n,)."""
+        """Which unknowns the rows involve, shape (n,)."""
         shown = np.zeros(self.system.size, bool)
         for used in self._used[:3]:
             shown[used] = True

@@ -1,4 +1,4 @@
-"""The recorder of a history: takes the samples of a method, hands them out in blocks, keeps envelopes."""
+"""The recorder of a history: takes samples from a method, passes them on in blocks and keeps envelopes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from pound_solve.structure.storeys import (
     storey_sums,
 )
 
-#: of a reduced system: how its inputs act, and the loads beside them
+#: of a reduced system: attributes for the effect of inputs and loads
 _ACTING: Final = (
     "constant",
     "inputs",
@@ -42,8 +42,8 @@ BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers o
 def recorded_sums(
     system: ReducedSystem, supports: Sequence[int], tracked: Sequence[Building]
 ) -> dict[str, LinearSums]:
-    """Forces of the supports (X, Y, moment of each) and of the buildings on the ground (the same of each),
-    what is out of balance in these; drifts, shears and moments of the storeys, accelerations of the floors.
+    """Sums of a history: forces of each support and of each building on the ground (X, Y, moment), their
+    imbalance; drifts, shears and moments of the storeys, accelerations of the floors.
     """
     equations = Equations(system)
     return {
@@ -58,7 +58,7 @@ def recorded_sums(
 
 @dataclass(frozen=True)
 class RecordedItems:
-    """What a history records, by OUTPUT of the deck.
+    """Items that a history records, selected by OUTPUT.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class RecordedItems:
     springs, contacts : tuple of int
         Places among the laws of the structure.
     supports : tuple of int
-        Numbers of the nodes that are held.
+        Numbers of the supported nodes.
     buildings : tuple of Building
     sums : mapping of str to LinearSums
         See `recorded_sums`.
@@ -89,7 +89,7 @@ class RecordedItems:
 
     @classmethod
     def of(cls, system: ReducedSystem, drifts: MonitoredOutputs) -> Self:
-        """Choose what the deck asks for."""
+        """Select the items that the deck requests."""
         structure = system.structure
         nodes, elements = (structure.model.output[item] for item in ("NODES", "MEMBERS"))
         recorded = tuple(structure.model.nodes) if nodes is None else tuple(dict.fromkeys(nodes))
@@ -116,19 +116,19 @@ class RecordedItems:
         )
 
     def again(self, system: ReducedSystem) -> RecordedItems:
-        """The same items for another history, which they hold for."""
+        """The same items for another history, for which `holds_for` is true."""
         return replace(self, system=system)
 
     @property
     def room(self) -> int:
-        """Instants of close-ups that the deck has room for."""
+        """Number of close-up instants that fit into the deck's memory limit."""
         widths = 9 * len(self.nodes), len(self.outputs), *(len(x.constant) for x in self.sums.values())
         others = 1 + len(self.springs) + 2 * len(self.contacts) + len(self.drifts.names)
         return int(self._budget("CLOSEUPS") / (8 * (sum(widths) + others)))
 
     @property
     def bytes_of_extremes(self) -> float:
-        """Bytes of extremes that the deck has room for."""
+        """Memory limit of the extremes [bytes]."""
         return self._budget("EXTREMES")
 
     def _budget(self, item: str) -> float:
@@ -143,7 +143,7 @@ class RecordedItems:
 
     @property
     def widest(self) -> int:
-        """Largest number of values that one kind of quantity has at an instant."""
+        """Largest number of values of one kind of quantity at an instant."""
         structure = self.system.structure
         return max(structure.dofs.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
 
@@ -186,14 +186,14 @@ class SampleBlock:
 
 
 def inputs_before(system: ReducedSystem, t: Array) -> list[Array]:
-    """Inputs and their first two derivatives, shape (n_inputs, n_times) each, as the accelerations of
-    samples have them: just before an instant at which they jump.
+    """Inputs and their first two derivatives, shape (n_inputs, n_times) each, consistent with the
+    accelerations of samples: just before a jump.
     """
     return [system.excitation.values(t, order, before=True).T for order in range(3)]
 
 
 class EnergyBalance:
-    """Energies of a history against those at its start, and how far they are out of balance.
+    """Energies of a history relative to its start, and their imbalance.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ class EnergyBalance:
     first, last : ndarray, shape (6,)
         At the start, and at the last sample.
     residual : float
-        Input less what it became, at the last sample.
+        Input less stored and lost energy, at the last sample.
     largest, largest_residual : float
         Largest absolute energy and residual of all samples.
     samples : int
@@ -220,7 +220,7 @@ class EnergyBalance:
         self.samples = 0
 
     def take(self, energy: Array) -> Array:
-        """Count in energies, shape (n_times, 6); return the residuals, shape (n_times,)."""
+        """Include energies, shape (n_times, 6); return the residuals, shape (n_times,)."""
         if self._fresh:
             self.first, self._fresh = energy[0], False
         change = energy - self.first
@@ -239,7 +239,7 @@ class EnergyBalance:
 
 
 class HistoryRecorder:
-    """Takes the samples of a method, hands them out in blocks and keeps envelopes.
+    """Receives the samples of a method, passes them on in blocks and keeps envelopes.
 
     It is an `integrate.protocol.EnvelopeRecorder`.
 
@@ -249,17 +249,17 @@ class HistoryRecorder:
     append : callable
         Takes a `SampleBlock`.
     progress : callable
-        Told the time of every sample, or what keeps the run waiting there.
+        Receives the time of every sample, or the reason for a pause.
     times : ndarray, shape (n_times,)
         Of the samples [T].
     first_energy : ndarray, shape (6,), or None
-        Energies at the start of the history, if this run takes it up later; None: of the first sample.
+        Energies at the start of the history, if this run resumes it; None: those of the first sample.
 
     Attributes
     ----------
     energy : EnergyBalance
     losses : list of float
-        Energy lost by slip and release in every law, dashpots apart [F L].
+        Energy lost by slip and release in every law, without dashpots [F L].
     deformations : list of float
         Of every law at the last sample [L], [rad].
     reached : float
@@ -304,7 +304,7 @@ class HistoryRecorder:
         """Take some samples whose progress has been reported before (see
         `integrate.protocol.EnvelopeRecorder`).
         """
-        new = t > self.reached  # but not the start of a part, where another ended
+        new = t > self.reached  # excludes the start of a part, where another ended
         if not new.any():
             return
         block = (t, u, v, a, *laws, works)
@@ -317,8 +317,8 @@ class HistoryRecorder:
             self.flush()
 
     def _beyond(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> Stop:
-        """Take the samples before the first that is not finite or beyond `LARGEST`; return the `Stop` that
-        says where that is.
+        """Take the samples before the first that is not finite or beyond `LARGEST`; return the `Stop` for
+        that sample.
         """
         system = self.items.system
         names = [system.name(i) for i in range(len(u))]
@@ -353,11 +353,11 @@ class HistoryRecorder:
 
     @property
     def started(self) -> bool:
-        """Whether there was a sample: a method may refuse the reduced system at once."""
+        """Whether there was a sample; a method may refuse the reduced system immediately."""
         return self.reached >= 0.0
 
     def flush(self) -> None:
-        """Hand out the samples that are held."""
+        """Pass on the buffered samples."""
         if not self._blocks:
             return
         system = self.items.system
@@ -377,8 +377,8 @@ class HistoryRecorder:
         self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, sums, whole))
 
     def closeups(self) -> Iterator[SampleBlock]:
-        """The close-ups of collisions, in the order of time; they have no energies, and forces of the
-        contacts only.
+        """The close-ups of collisions, in the order of time; without energies, and with forces of contacts
+        only.
         """
         system = self.items.system
         for motion in self.envelopes.closeups.blocks():

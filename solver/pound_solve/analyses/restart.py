@@ -1,8 +1,7 @@
-"""Where a history can be taken up again, and how its parts are put together.
+"""Saving and resuming a history, and joining its parts.
 
-A history with a SAVE time is integrated in two parts, the second from the state at the end of the first and
-from nothing else.  So a run that is taken up from the saved state gives the same numbers, to the last bit,
-as the whole run.
+A history with a SAVE time is integrated in two parts; the second depends only on the state at the end of
+the first.  A resumed run therefore reproduces the whole run bit for bit.
 """
 
 from __future__ import annotations
@@ -67,7 +66,7 @@ class Saved:
 
 
 def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
-    """Return the state that `Saved.arrays` laid out, of the same structure."""
+    """Restore the state written by `Saved.arrays` for the same structure."""
     states = tuple(
         (int(at), entry[0], entry[1], tuple(memory[: len(s.law.start()[3])]))
         for s, at, entry, memory in zip(
@@ -86,7 +85,7 @@ def resume(saved: Saved, system: ReducedSystem, times: Array) -> Start:
 
 
 def join(parts: Sequence[Outcome]) -> Outcome:
-    """One outcome of parts that followed each other."""
+    """Join the outcomes of consecutive parts."""
     whole = parts[-1]
     for before in reversed(parts[:-1]):
         figures = {
@@ -99,7 +98,7 @@ def join(parts: Sequence[Outcome]) -> Outcome:
 
 
 def _both(a: Peaks, b: Peaks) -> Peaks:
-    """Peaks of two consecutive parts; a collision that was going on between them counts as one."""
+    """Peaks of two consecutive parts; a collision that spans both counts as one."""
     running = {c.law: c for c in a.collisions if not np.isfinite(c.t_end)}
     later = []
     for c in b.collisions:

@@ -15,11 +15,11 @@ from pound_solve.laws.automaton import STRENGTHLESS, BranchKind
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
-#: plastic rotation from which on concrete members begin to lose strength [rad]: FEMA 356 (2000),
-#: Prestandard and commentary for the seismic rehabilitation of buildings, Tables 6-7 and 6-8, give 0.015 to
-#: 0.025 to beams and 0.012 to 0.02 to columns with ties that confine them
+#: plastic rotation at which concrete members begin to lose strength [rad]: FEMA 356 (2000), Prestandard and
+#: commentary for the seismic rehabilitation of buildings, Tables 6-7 and 6-8, give 0.015 to 0.025 to beams
+#: and 0.012 to 0.02 to columns with ties that confine them
 ORDINARY_ROTATION: Final = 0.02
-ENDS: Final = ("DUCTU", "DULT", "DU")  #: items that say up to where a component holds, or is known
+ENDS: Final = ("DUCTU", "DULT", "DU")  #: items that limit a component's validity or capacity
 
 
 class PlasticDeformation(NamedTuple):
@@ -30,7 +30,7 @@ class PlasticDeformation(NamedTuple):
     last : float
         At the end.
     residual : float
-        Left when the force is taken off; NaN for a run that stopped.
+        After unloading; NaN for a run that stopped.
     path : float
         Plastic work over the yield force.
     path_ratio : float
@@ -63,11 +63,11 @@ class SpringResponse:
     damage : Damage or None
         None where the deck gives no ultimate ductility.
     failed : bool
-        Its rule has taken all strength from it, as at an ultimate deformation.
+        The rule has reduced its strength to zero, as at an ultimate deformation.
     rotation : float
-        Largest plastic rotation of a hinge [rad]; NaN for all that is none.
+        Largest plastic rotation of a hinge [rad]; NaN for other components.
     ends : bool
-        The deck says how far it goes: DUCTU, or an item of its rule (`ENDS`).
+        The deck gives a limit: DUCTU, or an item of its rule (`ENDS`).
     """
 
     spring: LawSpring
@@ -84,9 +84,7 @@ class SpringResponse:
 
     @property
     def beyond_ordinary(self) -> bool:
-        """Whether a hinge of which the deck does not say how far it goes has turned beyond
-        `ORDINARY_ROTATION`.
-        """
+        """Whether a hinge without a limit in the deck has rotated beyond `ORDINARY_ROTATION`."""
         return not self.ends and self.rotation > ORDINARY_ROTATION
 
     @property
@@ -98,7 +96,7 @@ class SpringResponse:
 def spring_responses(
     structure: Structure, recorder: HistoryRecorder, outcome: Outcome, ended: bool
 ) -> list[SpringResponse]:
-    """Response of all springs and hinges; `ended`: the history came to its end."""
+    """Response of all springs and hinges; `ended`: the history is complete."""
     return [_response(structure, recorder, outcome, ended, i) for i in recorder.items.springs]
 
 
@@ -107,7 +105,7 @@ def _response(
 ) -> SpringResponse:
     spring, peaks, loss = structure.laws[i], outcome.peaks, recorder.losses[i]
     d, f = peaks.deformation[i], peaks.force[i]
-    # with its largest force: the same instant, but where a force falls while it deforms further
+    # not at the largest force, which may occur earlier if the force falls as the deformation grows
     largest = spring.whole(d.high, f.high), spring.whole(d.low, f.low)
     plastic = None
     if spring.role.viscous:

@@ -1,9 +1,9 @@
-r"""STATIC: displacements under the loads, event to event (see `path`), and what axial forces do to them.
+r"""STATIC: displacements under the loads, traced from event to event (see `path_following`), with P-Delta.
 
-Loads grow from nothing to their whole; an initial overlap of a contact grows with them, so that the start
-is free of stress.  With geometry PDELTA the members' axial forces N give the stiffness :math:`K_G(N)`; they
-are those of the static state itself, found by repeating the analysis until they do not change, and they
-act from the beginning of the loading on.  The loads may be multiplied by the *buckling load factor* until
+Loads grow from zero to their full value.  An initial overlap of a contact grows with them, so that the path
+starts free of stress. With geometry PDELTA the members' axial forces N give the stiffness :math:`K_G(N)`; N
+are the forces of the static state itself, found by iteration, and act from the start of loading.  The loads
+may be multiplied by the *buckling load factor* until
 
 .. math:: \det\bigl(K_t + \lambda K_G(N)\bigr) = 0
 
@@ -42,11 +42,11 @@ class StaticState:
     events : int
         Branch changes on the way.
     axial : ndarray, shape (n_geometric,)
-        Axial forces that the geometric stiffness is made of, tension positive [F].
+        Axial forces in the geometric stiffness, tension positive [F].
     buckling : float
-        Buckling load factor; infinite if nothing is pressed, NaN where there is none.
+        Buckling load factor; infinite without compression, NaN if undefined.
     rounds : int
-        Number of times that the loads were applied until the axial forces were found.
+        Number of iterations for the axial forces.
     """
 
     u: Array
@@ -102,10 +102,10 @@ def solve(structure: Structure) -> StaticState:
 
 
 def loaded(structure: Structure) -> StaticState:
-    """Put the loads on a structure at rest."""
+    """Apply the loads to a structure at rest."""
     load = structure.loads[: structure.n_free]
     rest = at_rest(structure)
-    # what presses or stretches a law at rest, an overlap or a prestress, is led in with the load
+    # an overlap or prestress that deforms a law at rest grows with the load
     starts = [s.law.branch(x) for s, x in zip(structure.laws, rest.states)]
     lead = np.array([-b.force0 / b.stiffness if b.force0 else 0.0 for b in starts])
     if not load.any() and not lead.any():
@@ -119,14 +119,14 @@ def loaded(structure: Structure) -> StaticState:
 
 
 def resumed(structure: Structure, state: StaticState) -> EquilibriumPath:
-    """The path that stands in that state."""
+    """The path that starts at that state."""
     nothing = np.zeros(structure.n_free)
     return EquilibriumPath(structure, state.u, state.states, nothing, nothing)
 
 
 def after(structure: Structure, state: StaticState) -> Structure:
-    """The structure whose initial stiffness is the tangent one of that state, and in whose modes closed
-    rigid contacts stay closed (for MODAL AFTER=STATIC).
+    """The structure with the tangent stiffness of that state as initial stiffness; closed rigid contacts
+    stay closed in its modes (for MODAL AFTER=STATIC).
     """
     initial, path = structure.initial_stiffness, resumed(structure, state)
     k = initial - structure.framed(initial) + structure.framed(path.tangent())
@@ -134,8 +134,8 @@ def after(structure: Structure, state: StaticState) -> Structure:
 
 
 def buckling(k: Matrix, geometric: Matrix) -> float:
-    """Smallest positive factor that makes ``K + factor * geometric`` singular;
-    infinite if none does, NaN if K is not positive definite on the DOFs that it holds.
+    """Smallest positive factor that makes ``K + factor * geometric`` singular; infinite if none does, NaN
+    if K is not positive definite on its DOFs.
     """
     at = np.flatnonzero(used_rows(k))
     if not len(at):

@@ -28,7 +28,7 @@ class ElementForce(NamedTuple):
 
 @dataclass(frozen=True)
 class StaticResponse:
-    """A static state in the form that tables show.
+    """A static state in the form of the tables.
 
     Attributes
     ----------
@@ -38,13 +38,13 @@ class StaticResponse:
     forces : list of ElementForce
         By element.
     held : list of int
-        Numbers of the nodes that are supports.
+        Numbers of the supported nodes.
     reactions : ndarray, shape (n_held, 3)
         Forces of the supports on the structure [F], [F L].
     balance : list of tuple
         See `SupportReactions.balance`.
     imbalance : float
-        Sum of all forces over the largest.
+        Sum of all forces over the largest one.
     """
 
     state: StaticState
@@ -64,7 +64,7 @@ class StaticResponse:
 
 
 def without_rounding(values: Array, kinds: Sequence[str]) -> Array:
-    """Values, shape (n,), with zeros for those that are rounding of the largest of their kind."""
+    """Values, shape (n,), with zeros for values that are rounding of the largest of their kind."""
     cleaned = values.copy()
     for kind in set(kinds):
         alike = np.array([k == kind for k in kinds])

@@ -28,7 +28,7 @@ class InstabilityError(Exception):
 def solve_under_load(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     """Solve K u = load; DOFs without stiffness stay at zero if nothing loads them.
 
-    What is small beside the `usual` load counts as nothing.
+    Loads that are small compared with the `usual` load count as zero.
 
     Raises
     ------
@@ -132,5 +132,5 @@ def _scales(k: Matrix) -> Array:
 
 
 def name_of(structure: Structure, index: int) -> str:
-    """Unknown in words."""
+    """Name of an unknown in words."""
     return label(structure.dofs.free[index])

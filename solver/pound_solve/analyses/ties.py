@@ -1,11 +1,11 @@
-r"""Closed rigid contacts in statics: ties of the unknowns, and the forces that hold them.
+r"""Closed rigid contacts in statics: ties between unknowns, and the tie forces.
 
-With the rows B of the closed contacts, rates of displacement obey :math:`B\dot u = 0`.  Of each row one
-unknown follows the others, :math:`u = Z u`, and equilibrium along the motions that are left is
+With the rows B of the closed contacts, rates of displacement obey :math:`B\dot u = 0`.  In each row one
+unknown follows the others, :math:`u = Z u`, and equilibrium along the remaining motions is
 
 .. math:: Z^T K Z\,\dot u = Z^T p, \qquad B^T \dot r = p - K\dot u
 
-The forces r of contacts with dependent rows are shared evenly: of all solutions the one of least norm.
+The forces r of contacts with dependent rows are shared evenly: the solution has the least norm.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from pound_solve.structure.structure import Structure
 
 
 class AssemblyError(Exception):
-    """The model cannot be assembled; holds the Diagnostics."""
+    """The model cannot be assembled; carries the Diagnostics."""
 
     def __init__(self, diagnostics: list[Diagnostic]) -> None:
         super().__init__("; ".join(d.message for d in diagnostics))
@@ -28,7 +28,7 @@ class AssemblyError(Exception):
 
 
 def _refusal(model: Model, label: str, message: str, item: str, elements: list[Element]) -> Diagnostic:
-    """Diagnostic of the elements of one property set, reported once."""
+    """One Diagnostic for all elements of a property set that share a mistake."""
     first, *others = elements
     more = f" and {len(others)} more" if others else ""
     return Diagnostic(
@@ -46,7 +46,7 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
     ----------
     model : Model
     moved : collection of Dof
-        Fixed DOFs whose motion is prescribed (supports that move apart from each other).
+        Fixed DOFs whose motion is prescribed (supports that move independently).
     self_weight : bool
         Whether the weight of members loads the structure.
 
@@ -104,7 +104,9 @@ def _corotational(dofs: DofMap, parts: Sequence[Parts]) -> CorotationalMembers:
 
 
 def _loads(model: Model, dofs: DofMap, parts: Sequence[Parts]) -> tuple[Array, Array]:
-    """Static loads of elements and LOADS, and those among them that a history releases, shape (n,) each."""
+    """Static loads of elements and LOADS, and the part that a history releases at its start, shape (n,)
+    each.
+    """
     loads, released = np.zeros(dofs.size), np.zeros(dofs.size)
     for p in parts:
         for at, vector in p.loads:
@@ -125,7 +127,7 @@ class _Elements:
     Attributes
     ----------
     parts : dict of int to Parts
-        By the number of the element.
+        Keyed by element number.
     mass : list of MassBlock
         Of nodes and elements.
     nodal_mass : dict of Dof to float
@@ -158,7 +160,7 @@ class _Elements:
         self.problems += [_refusal(self.model, *why, elements) for why, elements in self._refused.items()]
 
     def ordered(self) -> list[Parts]:
-        """Parts of all elements in the order of the model, which is not that of their construction."""
+        """Parts of all elements in the order of the model; they are built in another order."""
         return [self.parts[e] for e in self.model.elements]
 
     def _kind(self, element: Element) -> str:
@@ -197,7 +199,7 @@ class _Elements:
 
 
 def _built(context: ElementContext) -> Parts:
-    """Parts of an element; ElementError too where its numbers leave the range of floating point."""
+    """Parts of an element; raises ElementError also if a number overflows."""
     beyond = "its values and its nodes are too far apart in magnitude to be computed with"
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
@@ -213,9 +215,10 @@ def _built(context: ElementContext) -> Parts:
 def stiffness_along(
     model: Model, parts: Mapping[int, Parts], node: int, normal: tuple[float, float]
 ) -> dict[int, float]:
-    """Axial stiffness [F/L] along a direction of the elements that meet a node, by their number.
+    """Axial stiffness [F/L] of the elements at a node along a direction, keyed by element number.
 
-    That of a rod, EA/L, times the squared cosine; an element without length is a rod along the direction.
+    A rod contributes EA/L times the squared cosine; a zero-length element counts as a rod along the
+    direction.
     """
     stiffness = {}
     for name, part in parts.items():

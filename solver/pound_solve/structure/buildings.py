@@ -1,14 +1,14 @@
 """Buildings: the connected parts of a structure, their floors and storeys.
 
-Elements and slaving connect nodes; contacts, and the friction in them, do not.  A part without mass is no
-building.  A building bears the name that a card of BUILDINGS gives it, or ``building 1``, ``building 2``,
-... in the order of their lowest numbers of nodes.
+Elements and slaving connect nodes; contacts, and the friction in them, do not. A part without mass is not a
+building.  A building takes its name from a card of BUILDINGS; unnamed ones are ``building 1``, ``building
+2``, ... in the order of their lowest node numbers.
 
-The base of a building is its lowest support, or its lowest node where it has none.  Nodes with mass above
+The base of a building is its lowest support, or its lowest node if it has no support. Nodes with mass above
 it make a level if their heights differ by no more than `SAME_LEVEL` of the height of the building.  Its
-floors are the levels that FLOORS names; without that, the highest one and all that have `LEAST` of the mass
-of the heaviest, which a joint within a column has not.  A storey reaches from the floor below, or the base,
-to its floor, and is cut at the middle of its height.
+floors are the levels that FLOORS names; by default, the highest level and every level with at least `LEAST`
+of the mass of the heaviest. This excludes joints within a column. A storey reaches from the floor below, or
+the base, to its floor, and is cut at the middle of its height.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Floor:
     ----------
     nodes : tuple of int
     shares : ndarray, shape (n_nodes,)
-        Of each node in the floor's mass along x; they sum to one.
+        Share of each node in the floor's mass along x; they sum to one.
     level : float
         Mean height of the nodes, weighted by their mass [L].
     mass : float
@@ -61,7 +61,7 @@ class Building:
     base : float
         Height of its base [L].
     axis : float
-        x about which moments count: the middle of the supports at the base [L].
+        x about which moments are taken: the middle of the supports at the base [L].
     feet : tuple of int
         The nodes at its base.
     floors : tuple of Floor
@@ -88,7 +88,7 @@ class Building:
 
 
 def parts(model: Model) -> list[tuple[int, ...]]:
-    """Nodes of the connected parts, by their lowest numbers."""
+    """Nodes of each connected part, ordered by the lowest node number."""
     numbers = sorted(model.nodes)
     place = {n: i for i, n in enumerate(numbers)}
     pairs = joints(model)
@@ -101,7 +101,7 @@ def parts(model: Model) -> list[tuple[int, ...]]:
 
 
 def stands(model: Model, nodes: Collection[int]) -> bool:
-    """Whether a connected part has a height and members in it, as a frame has, unlike a ball, a floor or a
+    """Whether a connected part has height and members, like a frame and unlike a ball, a floor or a
     horizontal bar.
     """
     inside = frozenset(nodes)
@@ -173,8 +173,8 @@ class Levels:
         self._levels = [_floor(nodes, heavy, height) for nodes in levels]
 
     def floors(self, named: Collection[int]) -> tuple[Floor, ...]:
-        """The levels that count as floors: those of the `named` nodes or, without such, those with enough
-        mass.
+        """The levels that count as floors: those of the `named` nodes, or those with enough mass if none is
+        named.
         """
         if named:
             at = [self.at(n) for n in named]
@@ -196,7 +196,7 @@ def building(structure: Structure, name: str) -> Building:
     Raises
     ------
     KeyError
-        There is none; its text tells what there is.
+        There is none; the text lists the buildings that exist.
     """
     named = {b.name: b for b in buildings(structure)}
     if name not in named:
@@ -206,9 +206,7 @@ def building(structure: Structure, name: str) -> Building:
 
 
 def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection[int]]) -> list[Index]:
-    """Columns of each of some groups of nodes, with the internal DOFs of elements between nodes of the
-    group.
-    """
+    """Columns of each group of nodes, including internal DOFs of elements within the group."""
     places: dict[int, list[tuple[int, int]]] = {}
     for column, (owner, d) in enumerate(columns):
         i, j = (owner, owner) if d < 3 else (model.elements[owner].i, model.elements[owner].j)
@@ -222,7 +220,7 @@ def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection
 
 
 def misnamed(structure: Structure) -> list[Diagnostic]:
-    """Cards of BUILDINGS that name no building, several, or one that has a name."""
+    """Cards of BUILDINGS that match no building, several, or one that is already named."""
     problems, names, of = list[Diagnostic](), set[str](), {}
     for i, nodes in enumerate(parts(structure.model)):
         of.update(dict.fromkeys(nodes, i))
@@ -247,7 +245,7 @@ def misnamed(structure: Structure) -> list[Diagnostic]:
 
 
 def _no_floors(structure: Structure, card: Card, nodes: Sequence[int]) -> Iterator[Diagnostic]:
-    """Nodes in FLOORS that are at no floor of the building."""
+    """Nodes in FLOORS that lie at no floor of the building."""
     stack = Levels(structure.model, nodes, own_mass(structure, 0))
     for n in card["FLOORS"] or ():
         if n not in nodes:
@@ -259,7 +257,7 @@ def _no_floors(structure: Structure, card: Card, nodes: Sequence[int]) -> Iterat
 
 
 def own_mass(structure: Structure, d: int) -> dict[int, float]:
-    """Mass of every node along direction `d`, without that of its slaves [F T^2/L]."""
+    """Mass of every node along direction `d`, excluding its slaves [F T^2/L]."""
     nodes, whole = structure.model.nodes, structure.nodal_mass
     mass = {n: whole.get((n, d), 0.0) for n in nodes}
     for n, x in nodes.items():

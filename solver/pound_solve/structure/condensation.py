@@ -1,6 +1,6 @@
 """Static condensation: massless DOFs on linear elements follow the others.
 
-Few unknowns are left, but with full matrices, which suits the methods in closed form.
+Few unknowns remain, but the matrices are full; this suits the closed-form methods.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Condensed:
     ----------
     system : ReducedSystem
     keep : ndarray, shape (n_left,)
-        Which unknowns are left.
+        Which unknowns remain.
     expand, follow, constant : ndarray, shapes (n, n_left), (n, n_inputs), (n,)
         All unknowns: ``expand u + follow s + constant``.
     loads : ndarray, shape (n, n_inputs + 1)
@@ -109,7 +109,7 @@ def condense(system: ReducedSystem) -> Condensed:
 
 
 def _decisions(dofs: Sequence[Dof], condensed: Flags, kept: Flags) -> list[Decision]:
-    """Lines of the report on the massless DOFs."""
+    """Decisions about the massless DOFs, for the report."""
     lines = []
     if condensed.any():
         subject = _massless(int(condensed.sum()))
@@ -126,7 +126,7 @@ def _massless(count: int) -> str:
 
 
 def _condensable(k: Array, c: Array, applied: Array, light: Flags) -> Flags:
-    """Which massless DOFs follow the others exactly; those that do not are removed until the rest do.
+    """Which massless DOFs follow the others exactly; the rest are removed one pass at a time.
 
     Parameters
     ----------

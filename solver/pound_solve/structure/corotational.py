@@ -1,6 +1,6 @@
-r"""Corotational geometry: what the displaced chord of a member adds to its linear stiffness.
+r"""Corotational geometry: the terms that a member's displaced chord adds to its linear stiffness.
 
-The chord of a member runs from the one end of its flexible length to the other.  Linear theory makes the
+The chord of a member runs from one end of its flexible length to the other.  Linear theory makes the
 deformations of the beam :math:`e = (\text{elongation}, \theta_I, \theta_J)`, the rotations relative to the
 chord, linear in the displacements, :math:`e = Bu`.  With the true length and rotation of the chord they are
 
@@ -8,10 +8,10 @@ chord, linear in the displacements, :math:`e = Bu`.  With the true length and ro
           \eta = \ell - L - x, \qquad \rho = \alpha - \psi
 
 (the corotational member, Crisfield 1991): the length :math:`\ell` and rotation :math:`\alpha` less their
-values in linear theory.  Rotations in the plane add, so hinges and joints stay linear; and z follows from
-four numbers alone, the displacements x along and y across that J has beyond I and the rotations of both
-nodes (which rotate the rigid end blocks).  With the linear beam :math:`k` the member's energy is its linear
-part and the *potential*
+values in linear theory.  Rotations in the plane add, so hinges and joints stay linear. z depends on four
+numbers only, the displacements x along and y across that J has beyond I and the rotations of both nodes
+(which rotate the rigid end blocks).  With the linear beam :math:`k` the member's energy is its linear part
+and the *potential*
 
 .. math:: V = (n + n_0)\,\eta + (t + t_0)\,\rho + \tfrac12 z^T k_z z, \qquad
           \begin{pmatrix} n \\ t \end{pmatrix} = D^T k B u, \qquad k_z = D^T k D
@@ -214,7 +214,7 @@ class CorotationalMembers:
         return len(self.members)
 
     def on(self, columns: list[int] | slice) -> CorotationalMembers:
-        """The same members over some of the columns only, the others being at rest."""
+        """The same members over a subset of columns; the others stay at rest."""
         return CorotationalMembers(self.members, self.rows[:, columns])
 
     def quantities(self, u: Array) -> Array:

@@ -1,9 +1,9 @@
-"""The two diaphragms of a contact: given on its card, or found behind its nodes.
+"""The two diaphragms of a contact, given on its card or found behind its nodes.
 
-From a contact's node the search goes straight away from the contact, along members that are stiff in that
-direction, to the far end: the masses of the nodes add up, the stiffnesses act in series.  A node with no
-such member behind it is a rigid diaphragm.  So is one whose chain is fixed at its far end: a wave is not
-reflected there as at a free end, which the theory does not cover.
+The search starts at a contact's node and follows stiff members straight away from the contact to the far
+end.  The nodal masses add up; the stiffnesses act in series.  A node without such a member is a rigid
+diaphragm.  So is a chain that is fixed at its far end, because the theory covers reflection at a free end
+only.
 """
 
 from __future__ import annotations

@@ -27,13 +27,13 @@ Terms = tuple[tuple[int, float], ...]  #: columns and factors, whose sum is a DO
 
 
 def label(dof: Dof) -> str:
-    """DOF in words."""
+    """Name of a DOF in words."""
     owner, d = dof
     return f"node {owner} {NAMES[d]}" if d < 3 else f"element {owner} {INTERNAL[d - 3]}"
 
 
 def labels(dofs: Sequence[Dof], most: int = 6) -> str:
-    """The first few of several DOFs in words, and how many more there are."""
+    """Names of the first few of several DOFs, and the number of the rest."""
     text = ", ".join(label(f).removeprefix("node ") for f in dofs[:most])
     return text + (f", and {len(dofs) - most} more" if len(dofs) > most else "")
 
@@ -132,7 +132,7 @@ def number(
         for d in range(3):
             if DIRECTIONS[d] not in n.slaved:
                 terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
-    # rotations first: the arm of a slaved node rotates with its master, whose rotation may itself be slaved
+    # rotations first: a slaved node's arm rotates with its master, whose rotation may itself be slaved
     for d in (2, 0, 1):
         for n in nodes.values():
             if DIRECTIONS[d] in n.slaved:

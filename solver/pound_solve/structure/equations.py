@@ -1,6 +1,7 @@
-r"""The equations of motion of a structure whose supports are released, for the forces of the supports.
+r"""Equations of motion of a structure with released supports, which give the support forces.
 
-Its columns are the unknowns, then every fixed direction of every node, moved or not.  In the rows of these
+The columns are the unknowns, then every fixed direction of every node, moved or not.  The rows of the fixed
+directions,
 
 .. math:: R = K u + \sum_i b_i f_i + C \dot u + M \ddot u_a - P
 
@@ -8,8 +9,8 @@ are the forces of the supports on the structure: the forces of all elements that
 springs' and dampers' :math:`f_i` with their dashpots among them, damping in proportion to their stiffness,
 the inertia of the support's own mass at its total acceleration :math:`\ddot u_a`, less the loads on it.
 
-Mass-proportional and modal damping have no place between two nodes.  They are forces between each mass and
-the ground that pass by the supports, so that they are no part of R.
+Mass-proportional and modal damping do not act between two nodes.  They act between each mass and the ground
+and bypass the supports, so R excludes them.
 """
 
 from __future__ import annotations
@@ -39,22 +40,22 @@ def fixed_dofs(structure: Structure) -> list[Dof]:
 
 
 def released(structure: Structure) -> Structure:
-    """The structure, with its geometric stiffness, on supports that may move; its damping is the part that
-    acts between nodes.
+    """The structure with its geometric stiffness on supports that may move; its damping is only the part
+    that acts between nodes.
     """
     model = replace(structure.model, damping=())
     bare = assemble(model, fixed_dofs(structure), structure.self_weight)
     damping = bare.damping
     for share in structure.proportional:
         damping = damping + between_nodes(bare, share)
-    whole = replace(bare, damping=damping, laws=structure.laws)  # the laws have what damping made of them
+    whole = replace(bare, damping=damping, laws=structure.laws)  # the laws include changes by damping
     return whole.stressed(structure.carried)
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Factors of the rows of the equations of motion in some sums, by the kind of their terms; shape
-    (n_sums, n_columns) each.
+    """Weights of the rows of the equations of motion in sums, one matrix for each kind of term, shape
+    (n_sums, n_columns).
 
     Attributes
     ----------
@@ -65,13 +66,13 @@ class Weights:
     contacts : Matrix
         Forces of the contacts and of the friction in them.
     inertia : Matrix
-        Mass times acceleration relative to the ground, where that moves as one.
+        Mass times acceleration relative to the ground, if it moves uniformly.
     ridden : Matrix
-        Mass times the acceleration of the ground, which makes the acceleration a total one.
+        Mass times the ground acceleration, which adds up to total acceleration.
     ground : Matrix
         Mass-proportional and modal damping.
     loads : Matrix
-        Loads, which count as they stand on the right side: less their sum.
+        Loads, with the sign of the right-hand side: their sum is subtracted.
     """
 
     elements: Matrix
@@ -84,8 +85,8 @@ class Weights:
 
 
 def rigid_motions(structure: Structure) -> Array:
-    """Motions of the whole along x and y, and its turn about the origin, over all columns of a released
-    structure, shape (3, n_columns); what is inside an element follows its nodes without strain.
+    """Rigid translations along x and y and rotation about the origin, over all columns of a released
+    structure, shape (3, n_columns); internal DOFs follow without strain.
     """
     columns, k = structure.dofs.free + structure.dofs.moved, structure.initial_stiffness
     rigid = np.array([_rigid(structure, f) for f in columns]).reshape(-1, 3).T
@@ -98,7 +99,7 @@ def rigid_motions(structure: Structure) -> Array:
 
 
 def _rigid(structure: Structure, dof: Dof) -> tuple[float, float, float]:
-    """Motion of a node's DOF when the whole moves along x, along y, and turns about the origin."""
+    """Motion of a node's DOF in the rigid translations along x and y and the rotation about the origin."""
     owner, d = dof
     if d > 2:
         return 0.0, 0.0, 0.0
@@ -141,8 +142,8 @@ class Equations:
         self._contact = np.array([kind == "CONTACT" for kind in kinds], bool)
 
     def rigid_about(self, x: float, y: float, columns: Index) -> Array:
-        """Unit displacements along x and y, and a turn by one about a point that tips towards +x, over some
-        columns, shape (3, len(columns)).
+        """Unit displacements along x and y, and a unit rotation about a point that tips towards +x, over
+        some columns, shape (3, len(columns)).
         """
         along, up, turn = self.rigid[:, columns]
         return np.array([along, up, x * up - y * along - turn])
@@ -213,7 +214,7 @@ class LinearSums:
     Attributes
     ----------
     shown : ndarray of bool, shape (n,)
-        Unknowns that they depend on, those of the laws and members apart.
+        Unknowns that they depend on directly, not through laws and members.
     acting : ndarray of bool, shape (n_laws,)
     """
 
@@ -229,8 +230,8 @@ class LinearSums:
         self.members: Index = np.flatnonzero(members)
 
     def turned(self, u: Array, s: Array) -> Array:
-        """Contribution of corotational members, at displacements of the unknowns and inputs, shape (n,
-        n_times) each; shape (n_sums, n_times).
+        """Contribution of corotational members, shape (n_sums, n_times), at displacements of the unknowns
+        and at inputs, shape (n, n_times) each.
         """
         seen = self.system.quantities(u.T, s.T)[:, self.members]
         turned = self.system.structure.corotational.turning(seen, self.members)
@@ -239,8 +240,8 @@ class LinearSums:
 
 
 def reactions(equations: Equations, supports: Sequence[int]) -> LinearSums:
-    """Forces of supports on the structure in X and Y, and their moments: three sums for each, which are
-    nothing in directions that are free.
+    """Forces of supports on the structure in X and Y, and their moments: three sums per support, zero in
+    free directions.
     """
     dofs = equations.structure.dofs
     held = frozenset(dofs.moved)
@@ -250,7 +251,7 @@ def reactions(equations: Equations, supports: Sequence[int]) -> LinearSums:
 
 
 def _product(rows: Matrix, matrix: Matrix) -> Matrix:
-    """``rows @ matrix``, without what is nothing but rounding of its terms."""
+    """``rows @ matrix``, with entries that are only rounding set to zero."""
     i, j, x = entries(rows @ matrix)
     kept = np.abs(x) > ROUNDING * values_at(abs(rows) @ abs(matrix), i, j)
     return gathered((rows.shape[0], matrix.shape[1]), i[kept], j[kept], x[kept])

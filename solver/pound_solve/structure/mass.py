@@ -1,4 +1,4 @@
-"""The mass of the nodes: weights, and what members bring to their ends."""
+"""Nodal mass from weights and from the members that end at a node."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class MassBlock(NamedTuple):
 
 
 def weights(model: Model) -> list[MassBlock]:
-    """Mass of the cards of WEIGHTS."""
+    """Mass from the cards of WEIGHTS."""
     mass = []
     for card in model.weights:
         wy = card["WX"] if card["WY"] is None else card["WY"]
@@ -32,7 +32,7 @@ def weights(model: Model) -> list[MassBlock]:
 
 
 def nodal_mass(model: Model, blocks: Iterable[MassBlock]) -> dict[Dof, float]:
-    """Diagonal mass by node and direction; a master has the mass of its slaves in addition."""
+    """Diagonal mass by node and direction; a master includes the mass of its slaves."""
     mass: dict[Dof, float] = {}
     for _, at, matrix in blocks:
         for a, dof in enumerate(at):
@@ -50,8 +50,8 @@ def nodal_mass(model: Model, blocks: Iterable[MassBlock]) -> dict[Dof, float]:
 def mass_along(
     model: Model, nodal_mass: Mapping[Dof, float], node: int, normal: tuple[float, float]
 ) -> float:
-    """Mass of a node felt along an oblique direction, 1/m = sum n_d^2 / m_d over directions that can move;
-    infinite where none can [F T^2/L].
+    """Effective mass of a node along an oblique direction, 1/m = sum n_d^2 / m_d over directions that can
+    move; infinite where none can [F T^2/L].
     """
     inverse = 0.0
     for d, component in enumerate(normal):

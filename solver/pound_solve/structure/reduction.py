@@ -1,4 +1,4 @@
-r"""The reduced system: the equations of motion of a history, without the DOFs that it does not need.
+r"""The reduced system: the equations of motion of a history, without idle DOFs.
 
 DOFs that nothing can set in motion are dropped; the others follow
 
@@ -8,8 +8,8 @@ DOFs that nothing can set in motion are dropped; the others follow
 with the laws' forces :math:`f_i`, the inputs :math:`s(t)` (ground accelerations, or displacement,
 velocity and acceleration of moved supports; histories of forces) and constant loads :math:`p_0`.
 
-With one motion for the whole base the displacements are relative to the ground;
-with motions of SUPPORTS they are total.
+Displacements are relative to the ground if the whole base moves uniformly, and total with motions of
+SUPPORTS.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from pound_solve.structure.structure import Structure
 
 @dataclass(frozen=True)
 class Decision:
-    """One line of the report's table `scene`: what was left out or chosen, and why."""
+    """One line of the report's table `scene`: an omission or choice, with its reason."""
 
     subject: str
     decision: str
@@ -49,7 +49,7 @@ class ReducedSystem:
     Attributes
     ----------
     dofs : tuple of Dof
-        The n unknowns that are left.
+        The n unknowns that remain.
     mass, damping, stiffness : Matrix, shape (n, n)
     inputs : ndarray, shape (n, n_inputs)
         F.
@@ -72,7 +72,7 @@ class ReducedSystem:
         Acceleration of the ground along x and y and about the origin, from s;
         zero rows in the total form.
     force_inputs : ndarray, shape (n_free, n_inputs)
-        Part of F on all unknown DOFs that is FORCES.
+        Part of F from FORCES, on all unknown DOFs.
     decisions : list of Decision
     """
 
@@ -152,7 +152,7 @@ class ReducedSystem:
 
     @property
     def columns(self) -> list[int]:
-        """Columns of the structure's matrices that the unknowns stand at."""
+        """Columns of the unknowns in the structure's matrices."""
         column = {f: i for i, f in enumerate(self.structure.dofs.free)}
         return [column[f] for f in self.dofs]
 
@@ -162,17 +162,17 @@ class ReducedSystem:
         return len(self.dofs)
 
     def name(self, index: int) -> str:
-        """Unknown in words."""
+        """Name of an unknown in words."""
         return label(self.dofs[index])
 
     def loose(self, index: int, softens: bool = False) -> str:
-        """Why no state of an unknown without mass is in balance, in words, with the cure.
+        """Explains in words why a massless unknown has no equilibrium, and the remedy.
 
         Parameters
         ----------
         index : int
         softens : bool
-            Its stiffness is negative; otherwise it has none.
+            Its stiffness is negative; otherwise it is zero.
         """
         owner, d = self.dofs[index]
         if not softens:
@@ -202,7 +202,7 @@ def build(
     start_rate: Array,
     forces: Sequence[Force] = (),
 ) -> ReducedSystem:
-    """Reduce a structure to what its history needs.
+    """Reduce a structure to the unknowns that its history needs.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def build(
     ------
     ReductionError
         Mass on arms of slaved nodes leaves some motion without inertia; or a force that jumps on a massless
-        DOF would deform a hysteretic spring in no time.
+        DOF would deform a hysteretic spring instantaneously.
     """
     n, dofs = structure.n_free, structure.dofs.free
     inputs = _inputs(structure, motions, forces, t_end)
@@ -254,7 +254,7 @@ def build(
 
 
 def _decisions(dropped: Sequence[Dof], n: int) -> list[Decision]:
-    """Lines of the report on the DOFs that are dropped."""
+    """Decisions about the dropped DOFs, for the report."""
     if not dropped:
         return []
     why = "nothing sets them in motion: " + labels(dropped)
@@ -262,7 +262,7 @@ def _decisions(dropped: Sequence[Dof], n: int) -> list[Decision]:
 
 
 class Inputs(NamedTuple):
-    """The excitation and where it acts; one column for each input.
+    """The excitation and its distribution; one column for each input.
 
     Attributes
     ----------
@@ -274,7 +274,7 @@ class Inputs(NamedTuple):
     ground : ndarray, shape (3, n_inputs)
         Acceleration of the ground along x and y and about the origin.
     applied : ndarray, shape (n_free, n_inputs)
-        Part of `forces` that is FORCES.
+        Part of `forces` from FORCES.
     """
 
     excitation: Excitation
@@ -318,7 +318,7 @@ def _inputs(
 
 
 def _support_shares(structure: Structure, motion: Motion) -> list[float]:
-    """Displacement of every prescribed DOF for a motion of one, shape (n_moved,)."""
+    """Displacement of every prescribed DOF for a unit motion, shape (n_moved,)."""
     nodes, supports = structure.model.nodes, motion.supports or ()
     return [
         motion.share(d, nodes[node].x, nodes[node].y) if node in supports else 0.0
@@ -332,7 +332,7 @@ def _live(structure: Structure, inputs: Inputs, start: Array, start_rate: Array)
     """
     n = structure.n_free
     matrices = [a[:n, :n] for a in (structure.stiffness, structure.damping, structure.mass)]
-    real = np.any([used_rows(a) for a in matrices], axis=0)  # the others take part in nothing
+    real = np.any([used_rows(a) for a in matrices], axis=0)  # the others do not take part
     driven = (start != 0) | (start_rate != 0) | (structure.held[:n] != 0)
     driven |= np.any(inputs.forces[:, inputs.excitation.active] != 0, axis=1)
     groups = [touched for touched, _ in structure.corotational.on(slice(n)).touched()]

@@ -1,4 +1,4 @@
-"""Conditions under which the motion of a structure can be computed."""
+"""Checks that the motion of a structure can be computed."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def check_inertia(m: Matrix, dofs: Sequence[Dof]) -> None:
         return
     value, vector = softest(scaled(part, 1.0 / np.sqrt(diagonal(part))))
     if value < 1e-13 * len(with_mass):
-        # where the motion contains a rotation, that is the one at the other end of the arms
+        # a rotation in the motion is the one at the other end of the arms
         share = np.abs(vector) * [2.0 if dofs[int(i)][1] == 2 else 1.0 for i in with_mass]
         worst = label(dofs[int(with_mass[int(np.argmax(share))])])
         raise ReductionError(
@@ -51,7 +51,7 @@ def check_inertia(m: Matrix, dofs: Sequence[Dof]) -> None:
 
 
 def check_jumps(structure: Structure, jumping: Array, live: Flags) -> None:
-    """Raise ReductionError where a sudden force deforms a hysteretic spring in no time.
+    """Raise ReductionError if a sudden force would deform a hysteretic spring instantaneously.
 
     On DOFs with neither mass nor dashpot the path of that deformation would be undefined.
 

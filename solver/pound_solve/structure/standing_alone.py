@@ -1,4 +1,4 @@
-"""One building of several, cut out of the structure."""
+"""Extraction of one building from a structure."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pound_solve.structure.structure import Structure
 
 
 def standing_alone(structure: Structure, nodes: Collection[int]) -> Structure:
-    """The building that some nodes make up, without all that is not its own: other buildings, and contacts
-    with them.  It has no damping.
+    """The building formed by some nodes as a structure, without other buildings, contacts with them, and
+    damping.
     """
     inside, model = frozenset(nodes), structure.model
     elements = {

@@ -1,7 +1,7 @@
 r"""Forces between a building and the ground and between its storeys, drifts and accelerations of floors.
 
 All are sums over rows of the equations of motion (`equations`), weighted by a rigid motion r: a unit
-displacement along x or y, or a turn by one that tips the building towards +x.  With the forces of the
+displacement along x or y, or a unit rotation that tips the building towards +x.  With the forces of the
 elements :math:`e`, of the contacts :math:`c`, the inertia :math:`M\ddot u_a`, the mass-proportional and
 modal damping :math:`g` and the loads P
 
@@ -9,16 +9,16 @@ modal damping :math:`g` and the loads P
             = -r^T (M\ddot u_a + c - P) - r_f^T g
 
 over the unknowns (f) and the fixed directions (s) of a building: what its supports, and the elements that
-end at the ground, transmit to it, or the inertia and the loads of the whole building.  Both are equal where
-the equations of motion hold.  Forces of contacts with other buildings or walls and damping between masses
-and the ground are loads on the building here, and no part of V.
+end at the ground, transmit to it, or the inertia and the loads of the whole building. Both are equal if the
+equations of motion are satisfied.  Forces of contacts with other buildings or walls and damping between
+masses and the ground count as loads on the building here, not as part of V.
 
 The shear of a storey is :math:`r_a^T e` over all rows above the middle of its height: elements wholly above
-cancel in it, so that it is the force of all elements that cross the storey, or stand between what is above
-and the ground.  Moments count about the foot of the storey at the axis of the building; the axial forces of
-members that stand inclined after a displacement (P-Delta) are in them, because the moments of the linear
-forces alone are those of the displaced structure; what these add to the end moments of bent members
-(PDELTA_MEMBER, LARGE) is not.
+cancel, which leaves the force of all elements that cross the storey or connect the part above to the
+ground.  Moments are taken about the foot of the storey at the axis of the building.  They include the axial
+forces of members inclined by displacement (P-Delta), because the linear forces alone already give the
+moments of the displaced structure.  They exclude the additional end moments of bent members (PDELTA_MEMBER,
+LARGE).
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ def imbalance_sums(equations: Equations, buildings: Sequence[Building]) -> Linea
     residual of the equations of motion; the total inertia in it; the loads and the inertia in the ground's
     motion, which drive the building.
 
-    These tell the size of the terms where a building does not stand on the ground.  The inertia alone does
-    not: a body that nothing touches stays where it is while the ground moves.
+    They give the size of the terms for a building that is detached from the ground. Inertia alone does not:
+    a body that nothing touches stays in place while the ground moves.
     """
     inner = [(k, x * (k < equations.n)) for k, x in _rigid(equations, buildings)]
     none = [(k, 0.0 * x) for k, x in inner]
@@ -64,7 +64,9 @@ def imbalance_sums(equations: Equations, buildings: Sequence[Building]) -> Linea
 
 
 def storey_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
-    """Shear and overturning moment of every storey, two sums each: of what is above on what is below."""
+    """Shear and overturning moment of every storey, two sums each: the action of the part above on the part
+    below.
+    """
     model, elements, geometric = equations.structure.model, list[Block](), list[Block]()
     y = {n.id: n.y for n in model.nodes.values()}
     feet = [(b, *ends) for b in buildings for ends in zip(b.levels, b.levels[1:])]

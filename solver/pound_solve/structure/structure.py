@@ -39,7 +39,7 @@ class Structure:
     loads : ndarray, shape (n,)
         Static loads [F].
     released : ndarray, shape (n,)
-        Those among them that a history removes at its start.
+        Part of the loads that a history removes at its start.
     ground : ndarray, shape (3, n)
         ``M r`` for a unit acceleration of the ground along x and y and for a rotation about the origin,
         supports included [F T^2/L], [F T^2].
@@ -60,15 +60,15 @@ class Structure:
         Contributions of every element, by its number.
     damping_texts : list of (Card, str)
     proportional : tuple of Proportional
-        Part of the damping that acts between nodes, beside the dashpots of elements.
+        Damping between nodes other than the dashpots of elements.
     carried : ndarray, shape (n_geometric,)
-        Axial forces that the geometric stiffness is made of [F].
+        Axial forces in the geometric stiffness [F].
     mass_blocks : tuple of MassBlock
-        Matrices of which `mass` is the sum.
+        Matrices that add up to `mass`.
     remarks : list of Diagnostic
         Warnings of the assembly.
     basis : Matrix, shape (n_free, n_free), or None
-        Z where modes are sought among the motions u = Z u alone, see `tied`.
+        Z, if modes are restricted to the motions u = Z u; see `tied`.
     """
 
     model: Model
@@ -103,7 +103,7 @@ class Structure:
 
     @property
     def held(self) -> Array:
-        """Static loads that stay on during a history, shape (n,) [F]."""
+        """Static loads that remain during a history, shape (n,) [F]."""
         return self.loads - self.released
 
     @cached_property
@@ -128,9 +128,7 @@ class Structure:
         return np.array([self.dofs.value(g.dofs, g.axial, u) + g.constant for g in self.geometric])
 
     def stressed(self, axial: Array) -> Structure:
-        """The structure whose members carry these axial forces, shape (n_geometric,):
-        their geometric stiffness is part of it.
-        """
+        """The structure with the geometric stiffness of these axial forces, shape (n_geometric,)."""
         if not len(axial):
             return self
         rows: dict[tuple[int, str], Array] = {}

@@ -1,4 +1,4 @@
-"""Contacts whose gap no motion closes, that miss, or that close as their bodies move apart."""
+"""Contacts that cannot close, miss the other body, or close as the bodies move apart."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.structure import Structure
 
-SAME: Final = 1e-9  #: share of the distance of nodes that is none
-#: gap over the distance of the nodes, which the bodies between them make less than one; coordinates may
-#: stay as they are while a gap is varied
+SAME: Final = 1e-9  #: share of the distance of nodes that counts as zero
+#: gap over the distance of the nodes: less than one, since the bodies lie between them; a parameter study
+#: may vary the gap and keep the coordinates
 WIDEST: Final = 3.0
-LEAST_ANGLE: Final = 1e-6  #: degrees by which a contact may slope
+LEAST_ANGLE: Final = 1e-6  #: tolerance of the slope of a contact [degrees]
 LEVEL: Final = 0.1  #: share of a difference in height that counts as none
 ALONG: Final = 0.99  #: cosine of the angle between a member and a contact that lies along it
 
 
 def wide(structure: Structure) -> list[Diagnostic]:
-    """Contacts whose gap exceeds the height of the buildings beside it, or by far the distance of its
-    nodes: one for each property set.
+    """Contacts whose gap exceeds the height of the adjacent buildings, or far exceeds the distance of the
+    nodes; reported once per property set.
 
-    What falls may be further from the ground than it is high; no earthquake does that.
+    A falling body may start above the ground by more than its height, so only shaken structures are
+    checked.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
     if not shaken(model):
@@ -90,11 +91,11 @@ def misplaced(structure: Structure) -> list[Diagnostic]:
 
 
 def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
-    """Contacts of the same nodes, direction and gap: those of two bodies of one property set."""
+    """Contacts with the same nodes, direction and gap; between two bodies, also the same property set."""
     model, first, problems = structure.model, dict[tuple[object, ...], Element](), list[Diagnostic]()
     for spring in (s for s in structure.laws if s.role.collides):
         e, angle = model.elements[spring.element], round(spring.facts["angle"], 6) % 360.0
-        kind = "" if e.j is None else e.prop  # of two bodies, others may be side by side
+        kind = "" if e.j is None else e.prop  # contacts of different sets may act side by side
         other = first.setdefault((e.i, e.j, angle, spring.gap, kind), e)
         if other is not e:
             both = f"contacts {other.name or other.id} and {e.name or e.id}"
@@ -121,7 +122,7 @@ def idle(structure: Structure) -> list[Diagnostic]:
 
 
 def _columns(model: Model) -> dict[float, list[Node]]:
-    """Nodes by their x coordinate."""
+    """Nodes grouped by x coordinate."""
     columns = defaultdict[float, list[Node]](list)
     for n in model.nodes.values():
         columns[n.x].append(n)
@@ -129,8 +130,8 @@ def _columns(model: Model) -> dict[float, list[Node]]:
 
 
 def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -> tuple[int, int] | None:
-    """Node above or below one end of a contact at the height of its other end, as where a floor meets that
-    end, and the end in whose column it is; None if there is no such node.
+    """Node in the column of one end of a contact, at the height of the other end, and that first end; None
+    if there is no such node.
     """
     nodes = model.nodes
     for one, other in ((e.i, e.j), (e.j, e.i)) if e.j is not None else ():
@@ -145,9 +146,7 @@ def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -
 def _misaligned(
     model: Model, columns: Mapping[float, Sequence[Node]], spring: LawSpring, e: Element
 ) -> Iterator[Diagnostic]:
-    """A contact between floors of two heights, though there may be a node at the same height, and one that
-    acts across the line between its nodes.
-    """
+    """A contact between floors of different heights, or one that acts across the line between its nodes."""
     assert e.j is not None
     i, j = model.nodes[e.i], model.nodes[e.j]
     across, along = abs(i.x - j.x), abs(i.y - j.y)
@@ -176,9 +175,7 @@ def _misaligned(
 
 
 def _floors(model: Model) -> dict[int, int]:
-    """For every node the number of its rigid row along x: nodes joined by horizontal members, or slaved
-    along x.
-    """
+    """Floor number of each node; horizontal members and slaving along x tie nodes to one floor."""
     number = {n: i for i, n in enumerate(model.nodes)}
     pairs = [(n.id, n.slaved["X"]) for n in model.nodes.values() if "X" in n.slaved]
     for e in (e for members in kinds(model).values() for e in members):
@@ -206,7 +203,7 @@ def _within(e: Element) -> Diagnostic:
 
 
 def apart(model: Model, spring: LawSpring) -> float:
-    """Distance of the nodes of a contact along it [L]; negative where J is behind I, 0 to a wall."""
+    """Distance of a contact's nodes along its direction [L]; negative if J is behind I, 0 for a wall."""
     e, (c, s) = model.elements[spring.element], _way(spring)
     i, j = model.nodes[e.i], model.nodes[e.i if e.j is None else e.j]
     distance = (j.x - i.x) * c + (j.y - i.y) * s
@@ -214,7 +211,7 @@ def apart(model: Model, spring: LawSpring) -> float:
 
 
 def _backwards(model: Model, spring: LawSpring, e: Element, twin: bool) -> Iterator[Diagnostic]:
-    """A contact that closes as its nodes move apart, and has no twin that closes as they approach."""
+    """A contact that closes as its nodes move apart, without a counterpart that closes as they approach."""
     if apart(model, spring) < 0.0 <= spring.gap and not twin:
         message = (
             f"contact {e.name or e.id} closes as nodes {e.i} and {e.j} move apart: "

@@ -1,4 +1,4 @@
-"""Drifts that are those of no storey."""
+"""Drifts that do not belong to a storey."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pound_solve.structure.structure import Structure
 def doubtful_drifts(structure: Structure) -> list[Diagnostic]:
     """Drifts between nodes of two buildings, or from the upper node to the lower one.
 
-    Those with a HEIGHT of their own may be the distance of two buildings, and so may those of nodes at one
-    height.
+    A drift with an explicit HEIGHT, or between nodes at one height, may measure the distance of two
+    buildings.
     """
     nodes, problems = structure.model.nodes, list[Diagnostic]()
     of = {n: b.name for b in buildings(structure) for n in b.nodes}

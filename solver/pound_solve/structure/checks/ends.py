@@ -1,4 +1,4 @@
-"""Ends of members that nothing holds: column feet that hang free, nodes at one place that nothing joins."""
+"""Unsupported ends of members: free column feet, and coincident nodes that nothing joins."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pound_solve.numerics.graph import components
 from pound_solve.structure.buildings import SAME_LEVEL, parts
 from pound_solve.structure.structure import Structure
 
-SAME_PLACE = 1e-6  #: share of the size of a structure by which nodes at one place may lie apart
+SAME_PLACE = 1e-6  #: tolerance for coincident nodes, as a share of the structure's size
 
 
 def loose_ends(structure: Structure) -> list[Diagnostic]:
-    """Ends of members that hang free, or lie beside the node that they should end at: one for each line."""
+    """Ends of members that hang free or miss the node they should end at: one for each line of the deck."""
     ends = Ends(structure.model)
     problems: dict[Span, Diagnostic] = {}
     for n, d in (*_apart(ends), *_feet(ends)):
@@ -26,21 +26,21 @@ def loose_ends(structure: Structure) -> list[Diagnostic]:
 
 
 class Ends:
-    """Members, other elements, masses and loads at each node, and the nodes at one place.
+    """Members, other elements, masses and loads at each node, and groups of coincident nodes.
 
     Attributes
     ----------
     model : Model
     members : mapping of int to list of Element
-        Elements at every node that lead to another place, contacts apart.
+        Elements at every node that lead to another place, except contacts.
     used : set of int
-        Nodes at which there is a contact, an element without length or to the ground, or slaving.
+        Nodes with a contact, a zero-length element, an element to the ground, or slaving.
     loaded : set of int
         Nodes that have mass or load.
     groups : list of list of int
-        Nodes at one place, where there are several.
+        Groups of coincident nodes.
     joined : mapping of int to int
-        A name for all nodes that slaving and elements without length join, contacts among them.
+        One label for all nodes that slaving and zero-length elements, including contacts, join.
     """
 
     def __init__(self, model: Model) -> None:
@@ -66,12 +66,12 @@ class Ends:
         self.joined = dict(zip(model.nodes, tied.tolist()))
 
     def free(self, n: int) -> bool:
-        """Whether a node is the end of one member and nothing else."""
+        """Whether exactly one member and nothing else ends at a node."""
         alone = len(self.members[n]) == 1 and n not in self.used
         return alone and n not in self.loaded and not self.held(n)
 
     def held(self, n: int) -> bool:
-        """Whether the ground holds a node along x or y."""
+        """Whether a support fixes a node along x or y."""
         return bool({"X", "Y"} & set(self.model.nodes[n].fixed))
 
     def reach(self, n: int) -> tuple[float, float]:
@@ -86,7 +86,7 @@ class Ends:
 
 
 def places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
-    """Groups of nodes at one place, and for each node the number of its group."""
+    """Groups of coincident nodes, and the group number of each node."""
     x, y = np.array([(n.x, n.y) for n in model.nodes.values()]).T
     unit = SAME_PLACE * max(np.ptp(x), np.ptp(y)) or 1.0
     by_place: dict[tuple[float, float], list[int]] = defaultdict(list)
@@ -97,9 +97,9 @@ def places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
 
 
 def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
-    """Lower ends of members at the height of the supports of their building, or below.
+    """Free lower ends of members at or below the supports of their building.
 
-    What hangs from its supports is meant to.
+    A structure that hangs from its supports is intended.
     """
     model = ends.model
     grounded = {e.i for e in model.elements.values() if e.j is None}
@@ -112,7 +112,7 @@ def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
         columns = {e.prop for n in supports if model.nodes[n].y <= base + close for e in ends.members[n]}
         for n in part:
             alone = len(ends.members[n]) == 1 and n not in ends.used and "Y" not in model.nodes[n].fixed
-            # what is heavy and stands like no other foot may be a pendulum
+            # a heavy free end unlike any other foot may be a pendulum
             alone = alone and (n not in ends.loaded or ends.members[n][0].prop in columns)
             if alone and model.nodes[n].y <= base + close < ends.reach(n)[1]:
                 message = f"the foot of member {ends.members[n][0].id}, node {n}, hangs free"
@@ -121,10 +121,10 @@ def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
 
 
 def _apart(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
-    """Nodes at one place that nothing joins, where one needs the other.
+    """Coincident nodes that nothing joins although one needs the other.
 
-    That is a node without a member down to the ground, as of a beam without its column, beside one that
-    has it; and an end that has nothing else, beside any.  Frames that touch have columns on both sides.
+    A node without a column, such as a beam end, needs the node that has one; a free end needs any. Adjacent
+    frames have columns on both sides and are not reported.
     """
     for group in ends.groups:
         for n in group:

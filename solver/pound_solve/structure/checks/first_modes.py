@@ -1,4 +1,4 @@
-"""Checks by the first mode of a building: its damping, frequencies of DAMPING, stiffness of contacts."""
+"""Checks against a building's first mode: its damping, frequencies of DAMPING, stiffness of contacts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pound_solve.structure.checks.members import kinds, length, lies
 from pound_solve.structure.structure import Structure
 
 #: shares of critical damping of a first mode: by DAMPING, which materials and walls make 0.01 to 0.1, and
-#: by dashpots, where a snubber may hold what it joins to a building
+#: by dashpots, which may include a snubber that ties equipment to a building
 MOST_OWN, MOST_ADDED = 0.2, 10.0
 LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode
 LEAST_ADDED: Final = 1e-3  #: by dashpots that someone wrote down
@@ -24,11 +24,11 @@ LEAST_ADDED: Final = 1e-3  #: by dashpots that someone wrote down
 STIFFEST: Final = 300.0
 #: a collision in which sound of 3500 m/s does not pass a column [s]
 BRIEFEST: Final = 1e-4
-RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be those of a textbook
+RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be textbook inputs
 
 
 def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Buildings whose first mode has an implausible damping ratio, or none at all under an earthquake."""
+    """Buildings whose first mode is implausibly damped, or undamped under an earthquake."""
     model, problems = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
     for b, part in parts:
@@ -62,8 +62,8 @@ def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> l
 
 
 def frequencies_in_hertz(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Circular frequencies of DAMPING that are below the first mode of all buildings concerned: hertz are
-    likely.
+    """Circular frequencies of DAMPING below the first mode of all damped buildings, probably given in
+    hertz.
     """
     model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
@@ -86,7 +86,9 @@ def frequencies_in_hertz(structure: Structure, parts: Sequence[tuple[Building, P
 
 
 def _by_dashpots(structure: Structure) -> Matrix:
-    """Damping matrix of dashpots that end at two nodes; those of the soil radiate, and may add little."""
+    """Damping matrix of dashpots between two nodes; soil dashpots are excluded, since radiation may add
+    little.
+    """
     joining = (p for e, p in structure.parts.items() if structure.model.elements[e].j is not None)
     return structure.dofs.assembled((b.dofs, b.matrix) for p in joining for b in p.damping)
 

@@ -26,7 +26,7 @@ _warn = partial(Diagnostic, severity="warning")
 
 
 def framing_mistakes(structure: Structure) -> list[Diagnostic]:
-    """Buildings that lie on others, and members that are missing or slope by mistake."""
+    """Buildings that coincide with others, and members that are missing or slope by mistake."""
     model = structure.model
     if not shaken(model):
         return []
@@ -39,7 +39,7 @@ def framing_mistakes(structure: Structure) -> list[Diagnostic]:
 
 
 def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
-    """Frames all of whose nodes lie on those of another one."""
+    """Frames whose nodes all coincide with those of another frame."""
     _, at = places(model)
     first: dict[int, int] = {}
     frames = [p for p in parts(model) if stands(model, p) and len({model.nodes[n].x for n in p}) > 1]
@@ -64,7 +64,7 @@ class Lines:
     ----------
     model : Model
     beams, up, down : mapping of int to list of Element
-        At every node: those that lie, and all elements that lead upwards and downwards.
+        At every node: horizontal members, and all elements that lead upwards and downwards.
     joined : set of frozenset of int
         Pairs of nodes that elements join.
     grounded : set of int
@@ -92,7 +92,7 @@ class Lines:
                 self.down[high].append(e)
 
     def beamed(self, n: int) -> bool:
-        """Whether a beam ends at the place of a node, at this node or at another one in the same place."""
+        """Whether a beam ends at a node or at one that coincides with it."""
         return any(self.beams[m] for m in self.group[self.at[n]])
 
     def held(self, n: int) -> bool:
@@ -118,7 +118,7 @@ def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
     for line in upright.values():
         for below, n in pairwise(line):
             ends = (lines.down[below] or "Y" in nodes[below].fixed) and not lines.up[below]
-            ends = ends and nodes[below].y < nodes[n].y  # else a joint of no length
+            ends = ends and nodes[below].y < nodes[n].y  # excludes zero-length joints
             if ends and lines.end(n) and not lines.held(n):
                 message = (
                     f"nothing stands below node {n} of {b.name!r}, where a beam ends, but node {below} is "
@@ -160,13 +160,13 @@ def _by_x(model: Model, floor: Floor) -> list[int]:
 
 
 def _foot(lines: Lines, n: int, floor: Floor) -> int | None:
-    """Node of a floor on which the only column below a node stands; None otherwise."""
+    """Floor node at the foot of the single column below a node; None otherwise."""
     lower = {m for e in lines.down[n] for m in (e.i, e.j) if m != n}
     return lower.pop() if len(lower) == 1 and lower <= set(floor.nodes) else None
 
 
 def _sloping_beams(model: Model) -> Iterator[Diagnostic]:
-    """The one beam of a property set that slopes, where at least two others lie and none stands."""
+    """The single sloping beam of a property set with at least two horizontal beams and no column."""
     for members in kinds(model).values():
         flat = [e for e in members if lies(model, e)]
         others = [e for e in members if not lies(model, e)]
@@ -183,7 +183,7 @@ def _sloping_beams(model: Model) -> Iterator[Diagnostic]:
 
 
 def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
-    """Dashpots along X alone between nodes on a slope, as those of braces: one for each property set."""
+    """Dashpots along X alone between nodes on a slope, as in a brace; reported once per property set."""
     told = set[str]()
     for e in model.elements.values():
         card = model.props[e.prop]
@@ -199,7 +199,7 @@ def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
 
 
 def _short_columns(structure: Structure) -> Iterator[Diagnostic]:
-    """Columns between floors that are far shorter than others of their kind."""
+    """Columns between floors that are far shorter than the others of their property set."""
     model = structure.model
     floors = {n for b in buildings(structure) for floor in b.floors for n in floor.nodes}
     for label, members in kinds(model).items():

@@ -19,10 +19,10 @@ FLAT: Final = 1e-9  #: share of the initial stiffness that is no hardening
 
 
 def facing(structure: Structure) -> list[Diagnostic]:
-    """Hinges of equal strength that do not harden on both sides of a joint that nothing else holds.
+    """Hinges of equal strength without hardening on both sides of a joint that nothing else restrains.
 
-    Both have the same moment.  At their common strength only the sum of their rotations is determined, but
-    where dashpots across the hinges divide it.  A PUSHOVER has no rates and so no dashpots.
+    Both carry the same moment, so at their common strength only the sum of their rotations is determined.
+    Dashpots across the hinges divide the sum, except in a PUSHOVER, which has no rates.
     """
     n, problems = structure.n_free, list[Diagnostic]()
     held = used_rows(structure.stiffness) | used_rows(structure.mass)

@@ -1,4 +1,4 @@
-"""Masses that are missing, and masses that cannot move though the building around them does."""
+"""Missing masses, and masses that are fixed within a moving building."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
     """Structures and buildings without mass, though the deck requires modes or the motion under an
     earthquake.
 
-    A part without height, such as the spring of a bumper, may have none.
+    A part without height, such as a bumper's spring, may be massless.
     """
     model, cure = structure.model, "give the nodes of its floors WEIGHTS"
     asked = next((c for c in model.analyses if c.spec.name == "MODAL"), None)

@@ -1,4 +1,4 @@
-"""Properties that no material, soil or section has, by the units of the deck."""
+"""Material, soil and section properties that are impossible in the deck's units."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pound_solve.structure.structure import Structure
 
 #: least modulus of elasticity of members [Pa]: adobe has 0.2e9, rubber 1e6
 SOFTEST: Final = 1e8
-#: weights by volume of concrete and steel, as numbers of N/m that columns under 0.6 m^2 do not weigh
+#: weights by volume of concrete and steel, read as N/m: more than any column under 0.6 m^2 weighs
 VOLUMES, COLUMN = ((22e3, 26e3), (76e3, 79e3)), 0.6
 #: of soils: shear modulus [Pa] from peat to rock, weight by volume [N/m^3]; and the largest half width of a
 #: footing [m]

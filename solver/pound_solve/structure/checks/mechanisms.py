@@ -1,4 +1,4 @@
-"""Motions within a building that nothing resists, and periods that no building of its height has."""
+"""Mechanisms within a building, and periods implausible for its height."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def untimely(
 ) -> Iterator[tuple[str, Diagnostic]]:
     """Names of buildings whose first period is implausible for their height, with the warning.
 
-    One that is slower than a pendulum of its height, standing on its head, falls over by its own weight.
-    Those on springs may be rigid on purpose.
+    A building slower than an inverted pendulum of its height falls over under its own weight.  Buildings on
+    springs may be rigid on purpose.
     """
     model = structure.model
     framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
@@ -56,7 +56,7 @@ def untimely(
         if not t1 or high <= 0.0:
             continue
         slowest = 2.0 * math.pi * math.sqrt(high / model.gravity)
-        high = max(b.levels) - b.base  # of what swings: a mast may stand on it
+        high = max(b.levels) - b.base  # height of the mass that sways; a massless mast may rise above it
         speed = 4.0 * high / t1
         if t1 > slowest:
             limit, why = f"above {slowest:.3g}", "it would fall by its own weight"
@@ -78,8 +78,8 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
 
 
 def hasty(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Histories of fewer than `FEWEST` steps in the first period of every building, and rows further apart
-    than that period.
+    """Histories of fewer than `FEWEST` steps in the first period of every building, and output intervals
+    longer than that period.
     """
     model, problems = structure.model, list[Diagnostic]()
     longest, unit = max((part.period for _, part in parts), default=0.0), model.units.time
@@ -121,8 +121,8 @@ def _part(structure: Structure, columns: Index) -> Part | None:
 
 
 class Part:
-    """Stiffness of a building with open contacts, scaled to a diagonal of ones, without rotations that
-    nothing holds.
+    """Stiffness of a building with open contacts, scaled to a unit diagonal, without unrestrained
+    rotations.
     """
 
     def __init__(self, structure: Structure, columns: Index) -> None:
@@ -136,7 +136,7 @@ class Part:
     def slack(self) -> Array:
         """Motions that the stiffness does not resist, shape (n, n_slack), over all columns."""
         slack = self.held.slack.copy()
-        slack[abs(slack) < ROUNDING] = 0.0  # else what is left of rounding counts as a deformation
+        slack[abs(slack) < ROUNDING] = 0.0  # otherwise rounding counts as a deformation
         motions = np.zeros((self.structure.dofs.size, slack.shape[1]))
         motions[self.columns] = self.factors[:, None] * slack
         return motions
@@ -183,8 +183,8 @@ class Part:
 
 
 def _allowed(structure: Structure, slack: Array) -> Flags:
-    """Which of the `slack` motions are resisted by dashpots, closed contacts or other laws, or leave all
-    nodes in place.
+    """Whether each of the `slack` motions is resisted by dashpots, closed contacts or other laws, or moves
+    no node.
     """
     shifts = [i for i, (_, d) in enumerate(structure.dofs.free) if d < 2]
     still = np.abs(slack[shifts]).max(axis=0, initial=0.0) == 0.0

@@ -1,7 +1,7 @@
-"""Members whose values contradict each other: shapes of sections, lengths, strengths of hinges.
+"""Members with inconsistent values: shapes of sections, lengths, strengths of hinges.
 
-A rectangle of the same A and I is sqrt(12 I/A) deep.  Units that are mixed up, or items that change places,
-make it far deeper than its building is large, or so thin that nothing could be built of it.
+A rectangle with the same A and I is sqrt(12 I/A) deep.  Mixed units or exchanged items make it deeper than
+the whole building, or thinner than any real section.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
 MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
-#: depth over length; a core of 16 m in storeys of 3 m has no more, and one that is deeper than its building
-#: is wide and high does not stand in it
+#: depth over length; no more than a core of 16 m in storeys of 3 m has; a section must also fit into its
+#: building
 DEEPEST: Final = 5.0
 USUAL: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
-ALONG: Final = 0.999  #: cosine of the angle by which a member that lies may slope
+ALONG: Final = 0.999  #: cosine of the largest slope of a horizontal member
 THINNEST: Final = 1.0 / 300.0  #: depth over length of a member that bends
 SLENDER: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
-LONGEST: Final = 6.0  #: length over that of the middle one of its kind; a slip of a digit makes it ten
+LONGEST: Final = 6.0  #: length over the median of its property set; a slipped digit makes it ten
 #: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
 #: 0.0005 to 0.01, so that a factor of a thousand is beyond these limits
 LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
 MOST_ROTATION: Final = 0.2  #: at yield [rad]; joints of timber have 0.05
-FAR: Final = 2.0  #: depth over the size of a building; the stick of a whole building has less
+FAR: Final = 2.0  #: depth over the size of a building; a stick model of a whole building stays below
 WIDEST: Final = 8.0  #: width over depth of a section
-MOST_HARDENING: Final = 0.2  #: share of the stiffness of a section that is left as it yields
+MOST_HARDENING: Final = 0.2  #: share of a section's stiffness that remains after yield
 ROUNDING: Final = 1e-9  #: share of a length
 MOST_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
 
@@ -50,7 +50,7 @@ def length(model: Model, e: Element) -> float:
 
 
 def lies(model: Model, e: Element) -> bool:
-    """Whether an element with two nodes lies."""
+    """Whether an element with two nodes is horizontal."""
     assert e.j is not None
     i, j = model.nodes[e.i], model.nodes[e.j]
     return abs(i.x - j.x) > ALONG * math.hypot(i.x - j.x, i.y - j.y)
@@ -93,7 +93,7 @@ def kinds(model: Model) -> dict[str, list[Element]]:
 
 
 def _sizes(model: Model) -> dict[int, float]:
-    """The larger of height and width of the part that every node belongs to [L]."""
+    """For every node, the larger of height and width of its connected part [L]."""
     sizes: dict[int, float] = {}
     for nodes in parts(model):
         x, y = [model.nodes[n].x for n in nodes], [model.nodes[n].y for n in nodes]
@@ -122,8 +122,8 @@ def _area_in_smaller_units(
     """An area in mm^2 or cm^2 in a deck in m, larger than the `face` of the building [L^2], beside I in
     m^4.
 
-    A large area alone may be that of a member without axial deformation; only one that becomes usual by
-    that factor is reported.
+    A large area alone may model an axially rigid member, so it is reported only if the factor makes it
+    usual.
     """
     middle = median(length(model, e) for e in members)
     if model.units.length.lower() != "m" or card["A"] < face:
@@ -141,8 +141,8 @@ def _area_in_smaller_units(
 
 
 def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Diagnostic | None:
-    """A section that is hardly as thick as a wire, though its members bend; an area above the `face` of the
-    building [L^2] is that of a member without axial deformation.
+    """A section as thin as a wire in members that bend; an area above the `face` of the building [L^2]
+    models an axially rigid member.
     """
     if h >= THINNEST * length(model, e) or card["PIN"] == "BOTH" or card["A"] > face:
         return None
@@ -152,7 +152,7 @@ def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Di
 
 
 def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Diagnostic | None:
-    """A member far longer than others of its kind, and too slender."""
+    """A member that is too slender and far longer than the others of its property set."""
     e = max(members, key=lambda e: length(model, e))
     long, middle = length(model, e), median(length(model, m) for m in members)
     if long <= LONGEST * middle or h >= SLENDER * long:
@@ -164,8 +164,8 @@ def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Dia
 
 
 def doubled(structure: Structure) -> list[Diagnostic]:
-    """Members between the same two nodes, but those of a set whose members all stand beside others, as the
-    jackets of columns do.
+    """Members between the same two nodes, except sets all of whose members are parallel to others, such as
+    column jackets.
     """
     problems, sets = list[Diagnostic](), kinds(structure.model)
     at = defaultdict[frozenset[int | None], list[Element]](list)
@@ -188,8 +188,7 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
     """Hinges of members with an implausible yield strain of the section or ductility, and hinges and
     springs with a stiffness of their own that yield at an implausible rotation: one for each property set.
 
-    The latter may be rigid until they yield, so that neither a small strain nor a large ductility is
-    reported.
+    The latter may be rigid until they yield, so small strains and large ductilities are not reported.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
     of_hinges = [d for label, members in kinds(model).items() for d in _long_hinges(model, label, members)]
@@ -241,7 +240,7 @@ def _strain(
     moment = max((abs(m) for m in strengths if math.isfinite(m)), default=0.0)
     ei = card["E"] * card["I"]
     strain = moment * h / ei if ei else 0.0
-    plain = USUAL[0] < h / length(model, element) < 1.0  # else A or the length may be of its own
+    plain = USUAL[0] < h / length(model, element) < 1.0  # else A or the length is a modelling choice
     if strain and plain and not LEAST_STRAIN <= strain <= MOST_STRAIN:
         few = strain < LEAST_STRAIN
         message = (

@@ -1,6 +1,6 @@
-"""Rigid-body motions that nothing opposes while the ground shakes: supports are missing.
+"""Rigid-body motions that nothing resists while the ground shakes, usually for lack of supports.
 
-A deck with an initial motion or with forces may mean that.
+A deck with an initial motion or with forces may intend them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is 
 
 
 def adrift(structure: Structure) -> list[Diagnostic]:
-    """Directions in which nothing joins the structure, or one of its buildings, to the shaken ground."""
+    """Directions in which nothing connects the structure, or one of its buildings, to the shaken ground."""
     problems = []
     for way, card in shaken(structure.model).items():
         d = DIRECTIONS.index(way)
@@ -40,8 +40,8 @@ def adrift(structure: Structure) -> list[Diagnostic]:
 
 
 def shaken(model: Model) -> dict[str, Card]:
-    """Directions along which the ground moves all supports, and the card that says so; none where something
-    else moves the structure, too.
+    """Directions along which the ground moves all supports, with the card that prescribes it; empty if the
+    structure has other excitation too.
     """
     if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
         return {}
@@ -50,9 +50,9 @@ def shaken(model: Model) -> dict[str, Card]:
 
 
 def _unsupported(structure: Structure) -> list[Diagnostic]:
-    """Buildings that the shaken ground moves and that could move as one body, contacts open.
+    """Buildings on shaken ground that can move as a rigid body with open contacts.
 
-    A body without height, such as a ball or a bar between walls, may be meant to fly.
+    A body without height, such as a ball or a bar between walls, may fly on purpose.
     """
     directions = [DIRECTIONS.index(d) for d in shaken(structure.model)]
     problems = []
@@ -68,14 +68,15 @@ def _unsupported(structure: Structure) -> list[Diagnostic]:
 
 
 def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -> str:
-    """In words, a motion of a building as one body that nothing opposes and the ground excites; or nothing.
+    """Describes a rigid-body motion of a building that nothing resists and the ground excites; empty if
+    none.
 
     Columns of the matrices here are shifts along x and y and a turn about the middle of the building, in
     units that move its edge by one.
     """
     nodes = [structure.model.nodes[n] for n in b.nodes]
     if any(set(DIRECTIONS) <= set(n.fixed) for n in nodes):
-        return ""  # nearly all: no need to look at matrices
+        return ""  # nearly all buildings: skips the matrices
     places = np.array([(n.x, n.y) for n in nodes])
     middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
     size = float(np.ptp(places, axis=0).max()) / 2.0
@@ -109,7 +110,7 @@ def some(nodes: Sequence[int], most: int = 6) -> str:
 
 
 def unmoved_feet(structure: Structure) -> list[Diagnostic]:
-    """Feet of buildings that stand still while SUPPORTS move other feet of the same building."""
+    """Feet of a building that stay fixed while SUPPORTS moves its other feet."""
     model, problems = structure.model, list[Diagnostic]()
     cards = [c for c in model.equake if c["SUPPORTS"] is not None and c["DIRECTION"] != "Y"]
     moved = {n for c in cards for n in c["SUPPORTS"]}
@@ -130,7 +131,7 @@ def _shift(structure: Structure, d: int) -> Array:
 
 
 def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Array:
-    """Motions over all columns: those given of some nodes, those of the beam ends between them, zero
+    """Motions over all columns: the given ones of some nodes, those of the beam ends between them, zero
     elsewhere.
 
     Parameters

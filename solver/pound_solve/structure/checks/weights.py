@@ -1,4 +1,4 @@
-"""Weights and strengths against the structure that bears them."""
+"""Weights and strengths that do not fit the structure."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ LOWEST, HIGHEST = 0.1, 1000.0  #: height of a building or a model of one [m]
 
 
 def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings, with the warning, that are lower than a model on a shaking table or higher than
-    any building; those in a centrifuge have another gravity.
+    """Names of buildings, with the warning, lower than any shaking-table model or higher than any building;
+    centrifuge models, recognised by their gravity, are skipped.
     """
     model = structure.model
     metre = METRE.get(model.units.length.lower())
@@ -48,8 +48,8 @@ def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
 
 
 def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings, with the warning, that weigh hardly more than their beams and columns, or more
-    than their columns can bear.
+    """Names of buildings, with the warning, that weigh hardly more than their frame or more than their
+    columns can carry.
     """
     model = structure.model
     force, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
@@ -103,9 +103,7 @@ def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> floa
 
 
 def _strain(model: Model, b: Building, weight: float) -> float:
-    """Axial strain under the weight of the members that stand on the base; 0 where other elements do,
-    too.
-    """
+    """Axial strain of the members on the base under the weight; 0 if other elements stand there too."""
     stiffness = 0.0
     for e in _lowest(model, b):
         card = model.props[e.prop]
@@ -116,7 +114,7 @@ def _strain(model: Model, b: Building, weight: float) -> float:
 
 
 def _lowest(model: Model, b: Building) -> list[Element]:
-    """Elements that join the base of a building, or the ground, to what is above it."""
+    """Elements that connect a building to its base or to the ground."""
     inside = frozenset(b.nodes)
     top = b.base + SAME_LEVEL * (max(model.nodes[n].y for n in b.nodes) - b.base)
     lowest = []
@@ -180,6 +178,6 @@ def far(structure: Structure) -> list[Diagnostic]:
 
 
 def _standing(structure: Structure) -> Iterator[Building]:
-    """The buildings of some height that the ground shakes along x."""
+    """Buildings with height that the ground shakes along x."""
     if "X" in shaken(structure.model):
         yield from (b for b in buildings(structure) if stands(structure.model, b.nodes))

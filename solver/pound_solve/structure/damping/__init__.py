@@ -1,1 +1,1 @@
-"""Damping models, one a file."""
+"""Damping models, one per file."""

@@ -1,4 +1,4 @@
-"""The damping of a structure: the groups of all cards of DAMPING, summed."""
+"""Assembly of a structure's damping from all cards of DAMPING."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def add_damping(structure: Structure, loaded: Structure | None = None) -> list[D
     structure : Structure
         Its dashpots are assembled; its damping matrices, laws and damping texts are extended.
     loaded : Structure or None
-        With the stiffness of the static state: the cards with AFTER=STATIC are added.  None: all others
-        are.
+        The structure with the stiffness of the static state, for cards with AFTER=STATIC. None: adds all
+        other cards.
 
     Returns
     -------
     list of Diagnostic
-        The cards that are at fault, and warnings.
+        Errors in the cards, and warnings.
     """
     sources, problems = _Sources(structure, loaded or structure), list[Diagnostic]()
     # of the tangent and of the secant stiffness
@@ -68,7 +68,7 @@ def add_damping(structure: Structure, loaded: Structure | None = None) -> list[D
 
 
 def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group | None:
-    """Damping of one card; None where it is at fault."""
+    """Damping of one card; None if the card is in error."""
 
     def warn(message: str, item: str) -> None:
         problems.append(
@@ -88,7 +88,7 @@ def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group |
 
 
 def _matrices(structure: Structure, group: Group) -> list[Matrix]:
-    """Damping matrices of a group over all columns; its dashpots beside laws are not among them."""
+    """Damping matrices of a group over all columns, excluding dashpots parallel to laws."""
     matrices = []
     if group.relative is not None:
         n = structure.n_free
@@ -109,7 +109,7 @@ def between_nodes(structure: Structure, damping: Proportional) -> Matrix:
 
 
 def _multiples(structure: Structure, dashpots: Dashpots) -> Array:
-    """Multiple of the stiffness [T] that the dashpot beside every law gets, shape (n_laws,)."""
+    """Factor on each law's stiffness for its parallel dashpot [T], shape (n_laws,)."""
     model = structure.model
     return np.array(
         [
@@ -122,8 +122,8 @@ def _multiples(structure: Structure, dashpots: Dashpots) -> Array:
 
 
 def _at_supports(structure: Structure, c: Matrix) -> Matrix:
-    """Contribution of a damping of the unknowns at moved supports, if it acts on the motion relative to the
-    quasi-static one, shape (n, n).
+    """Terms at moved supports of a damping that acts on the motion relative to the quasi-static one, shape
+    (n, n).
     """
     n, influence = structure.n_free, structure.influence()
     pull = c @ influence
@@ -161,9 +161,9 @@ class _Sources:
         chosen, terms = frozenset(nodes), []
         for where, at, matrix in self.structure.mass_blocks:
             inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
-            if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node has its own
+            if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node has its own mass
                 terms.append((at, np.where(inside[:, None] & inside, matrix, 0.0)))
-            else:  # a consistent matrix is shared evenly by the nodes that can move
+            else:  # the nodes that can move share a consistent matrix evenly
                 loose = {k for k in where if len(set(self.structure.model.nodes[k].fixed)) < 3}
                 terms.append((at, matrix * (len(loose & chosen) / max(len(loose), 1))))
         return self.structure.dofs.assembled(terms)

@@ -40,7 +40,7 @@ class DampingContext:
     building : callable
         ``building(name)``: nodes of the building of that name.
     warn : callable
-        ``warn(message, item)`` tells of an item of the card that is not taken as it stands.
+        ``warn(message, item)`` reports an item of the card that is not applied as given.
     """
 
     mass: Callable[[Collection[int] | None], matrices.Matrix]
@@ -95,8 +95,8 @@ AFTER = Field(
 
 
 class Dashpots(NamedTuple):
-    """Dashpots beside the hysteretic laws of elements, `beta` [T] times the stiffness that the law has at
-    the time: tangent, or `secant`.
+    """Dashpots parallel to the hysteretic laws of elements: `beta` [T] times the law's present stiffness,
+    tangent or `secant`.
     """
 
     elements: Chosen
@@ -109,8 +109,8 @@ class Group:
     """Damping of one card and words for the report.
 
     `relative` acts on the motion relative to the quasi-static one of moved supports (mass-proportional and
-    modal damping: they have no place between two nodes); `proportional` acts between nodes;
-    `dashpots` follow the laws.
+    modal damping, which do not act between two nodes); `proportional` acts between nodes; `dashpots` follow
+    the laws.
     """
 
     relative: matrices.Matrix | None
@@ -124,13 +124,13 @@ class DampingError(ItemError):
 
 
 def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext) -> Array:
-    """Circular frequencies of OMEGA, or of MODES on a card; numbers beyond the last mode mean the last one.
+    """Circular frequencies from OMEGA or MODES of a card; numbers beyond the last mode select the last one.
 
     Parameters
     ----------
     card : Card
     omega : callable
-        Returns those of the modes; called only where MODES are given.
+        Returns the modal frequencies; called only if MODES is given.
     context : DampingContext
 
     Raises
@@ -162,7 +162,7 @@ def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext)
 
 
 def ratios(card: Card, count: int) -> Array:
-    """One ratio for each of `count` frequencies: as many as XI has, or its one value for all.
+    """Damping ratio at each of `count` frequencies: the values of XI, or its single value for all.
 
     Raises
     ------
@@ -178,7 +178,7 @@ def ratios(card: Card, count: int) -> Array:
 
 
 def apart(at: Array, item: str) -> None:
-    """Raise DampingError where two frequencies or modes are the same: no curve goes through both."""
+    """Raise DampingError if two frequencies or modes coincide, since no curve passes through both."""
     close = np.diff(np.sort(at)) <= 1e-9 * np.abs(at).max()
     if close.any():
         raise DampingError(f"two of these are the same ({np.sort(at)[1:][close][0]:.6g})", item)
@@ -190,7 +190,7 @@ def values(numbers: Array) -> str:
 
 
 def span(omega: Array, rates: Array) -> str:
-    """Range of the ratios that the modes get, for the report."""
+    """Range of the modal damping ratios, as text for the report."""
     moving = omega > 0.0
     if not moving.any():
         return "no mode"

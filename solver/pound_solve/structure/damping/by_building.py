@@ -1,4 +1,4 @@
-"""Whether every building is damped once, where cards of DAMPING name buildings."""
+"""Check that cards of DAMPING that name buildings damp every building exactly once."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from pound_solve.structure.structure import Structure
 
 
 def uneven(structure: Structure) -> list[Diagnostic]:
-    """Buildings that several cards damp, one of them by name, and buildings without damping beside those.
+    """Buildings damped by several cards, one of them by name, and undamped buildings if others are damped
+    by name.
 
-    A card for some NODES or PROPS only is meant to go with others.
+    A card for some NODES or PROPS only is expected to combine with others.
     """
     cards, problems = structure.model.damping, _apart(structure)
     named = [c for c in cards if c["BUILDING"]]

@@ -1,12 +1,12 @@
-r"""MODAL: damping ratios of the modes, constant matrix.
+r"""MODAL: damping ratios of the modes, as a constant matrix.
 
 .. math:: C = M \Bigl(\sum_n 2\xi_n\omega_n\,\phi_n\phi_n^T\Bigr) M, \qquad \phi_n^T M \phi_n = 1
 
 with the modes of the initial structure, contacts open.  XI is either a list, mode by mode, whose last value
-holds for the rest (one value: uniform damping), or the ratio at some frequencies (OMEGA) or modes (MODES):
-then it is linear from one to the next, over frequency or over the number of the mode, and
-beyond the first and the last it stays constant or follows its line (:math:`\xi` at two points: tri-linear
-or linear damping).
+applies to the rest (one value: uniform damping), or the ratio at some frequencies (OMEGA) or modes (MODES):
+then it is linear from one to the next, over frequency or over the number of the mode, and beyond the first
+and the last it stays constant or follows its line (:math:`\xi` at two points: tri-linear or linear
+damping).
 
 References
 ----------
@@ -38,8 +38,8 @@ from pound_solve.structure.damping.base import (
 
 
 def through(x: Array, at: Array, xi: Array, straight: bool) -> Array:
-    """Piecewise linear function through (`at`, `xi`), evaluated at `x`; beyond its ends it goes on straight
-    or constant.
+    """Piecewise linear function through (`at`, `xi`), evaluated at `x`, with linear or constant
+    extrapolation.
     """
     order = np.argsort(at)
     at, xi = at[order], xi[order]
@@ -76,7 +76,7 @@ def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Arr
     if len(at) < 2:
         raise DampingError("a line needs two points; XI alone is the same for all modes", item)
     beyond = card["MODES"] is not None and max(card["MODES"]) > len(omega)
-    if beyond and (at == at[0]).all() and (xi_at == xi_at[0]).all():  # the last mode stands for all of them
+    if beyond and (at == at[0]).all() and (xi_at == xi_at[0]).all():  # all of them select the last mode
         return np.full(len(omega), xi_at[0]), f"XI {xi_at[0]:.6g} of every mode"
     apart(at, item)
     straight = card["BEYOND"] == "LINEAR"

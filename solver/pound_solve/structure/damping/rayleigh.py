@@ -6,12 +6,12 @@ by :math:`2\xi_i\omega_i = \alpha + \beta\omega_i^2`:
 .. math:: \alpha = 2\omega_1\omega_2\frac{\xi_1\omega_2 - \xi_2\omega_1}{\omega_2^2-\omega_1^2}, \qquad
           \beta = 2\frac{\xi_2\omega_2 - \xi_1\omega_1}{\omega_2^2-\omega_1^2}
 
-The mass part acts on the masses of NODES, the stiffness part on the elements of PROPS; contacts are never
-damped by it.  With BUILDING both act on this building alone, and MODES are its own.  K is that of the
-structure at rest (STIFFNESS=INITIAL), or every hysteretic law has a dashpot beside it with :math:`\beta`
-times its present stiffness, TANGENT (none while that is negative) or SECANT (that of the farthest reversal
-so far, see `secant`); with ELASTIC the laws have no share, so that a yielding hinge is not restrained by
-its dashpot.
+The mass part acts on the masses of NODES, the stiffness part on the elements of PROPS; it never damps
+contacts. With BUILDING, both act on this building alone, and MODES counts its own modes. STIFFNESS selects
+K. INITIAL takes the structure at rest.  With TANGENT or SECANT every hysteretic law has a parallel dashpot
+with :math:`\beta` times its present stiffness: the tangent (none while it is negative), or the secant to
+the farthest reversal so far (see `secant`).  ELASTIC leaves out the laws, so that no dashpot restrains a
+yielding hinge.
 
 References
 ----------

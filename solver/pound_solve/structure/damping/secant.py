@@ -1,10 +1,10 @@
-r"""A hysteretic law with its secant stiffness among its internal variables.
+r"""A hysteretic law that keeps its secant stiffness as an internal variable.
 
 .. math:: k_s = \frac{f_t}{d_t}
 
-with the point :math:`(d_t, f_t)` farthest from :math:`d = 0` of all reversals; the initial stiffness
-before the first.  A reversal is an event where the rate changes its sign: a dashpot has no force there, so
-that it may follow :math:`k_s` without a jump.
+where :math:`(d_t, f_t)` is the reversal farthest from :math:`d = 0`; before the first reversal it is the
+initial stiffness.  At a reversal the rate is zero, so a dashpot has no force and can follow :math:`k_s`
+without a jump.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pound_solve.laws.automaton import Law, State
 
 
 class SecantLaw(Law):
-    """A law with two internal variables more, which its rule does not use: the deformation of the farthest
+    """A law with two more internal variables, which its rule ignores: the deformation of the farthest
     reversal, and the secant stiffness.
     """
 

@@ -1,1 +1,1 @@
-"""Elements: frame members, springs, dashpots and contacts, one kind a file."""
+"""Elements: frame members, springs, dashpots and contacts, one kind per file."""

@@ -38,15 +38,15 @@ class Role(Enum):
 
     @property
     def collides(self) -> bool:
-        """Whether its closures are collisions; it joins its nodes only while it is closed.  Its losses are
-        lost in contacts, while those of springs by slip are hysteretic, and those of dashpots damping.
+        """Whether its closures are collisions; it connects its nodes only while closed. Its losses count as
+        contact losses, those of slipping springs as hysteretic, those of dashpots as damping.
         """
         return self is Role.CONTACT
 
     @property
     def viscous(self) -> bool:
-        """Whether its law resists the rate, too, as part of the force that is reported; dashpots that a
-        damping model adds to a spring are no part of the spring's force.
+        """Whether the reported force includes the law's resistance to the rate; it excludes dashpots that a
+        damping model adds to a spring.
         """
         return self in (Role.CONTACT, Role.DAMPER)
 
@@ -76,8 +76,8 @@ class LawSpring:
     strengths : tuple of float or None
         Forces there [F] or [F L].
     beside : float
-        Flexibility of the elastic part that the beam beside it has [L/F] or [1/(F L)]: `yields` count it,
-        the deformation does not.
+        Flexibility of the elastic part that belongs to the adjoining beam [L/F] or [1/(F L)]: `yields`
+        include it, the deformation does not.
     role : Role
     normal_component : str
         Of friction: the component of the same element whose force presses the faces together.
@@ -116,11 +116,11 @@ class LawSpring:
 
     @property
     def damps(self) -> bool:
-        """Whether its force may follow the rate: contacts and dampers have dashpots on some branches."""
+        """Whether its force may depend on the rate: contacts and dampers have dashpots on some branches."""
         return self.role.viscous or bool(self.beta or self.secant) or self.law.curved
 
     def whole(self, deformation: float, force: float) -> float:
-        """Deformation in the sense of `yields`, with the elastic part beside it, from that of the law."""
+        """Deformation comparable with `yields`: the law's plus the elastic part in the adjoining beam."""
         return deformation + self.beside * force
 
     def branch(self, state: State) -> Branch:
@@ -132,7 +132,7 @@ class LawSpring:
         return branch._replace(damping=branch.damping + self.beta * max(branch.stiffness, 0.0) + follows)
 
     def force(self, state: State, d: float, v: float) -> float:
-        """Force that is reported at deformation `d` and rate `v`."""
+        """Reported force at deformation `d` and rate `v`."""
         return self.law.force(state, d, v if self.role.viscous else 0.0)[0]
 
 
@@ -188,14 +188,14 @@ class Parts:
     outputs: list[Output] = field(default_factory=list)
 
     def internal(self) -> tuple[Dof, ...]:
-        """DOFs of the element's own, beside those of its nodes."""
+        """Internal DOFs of the element."""
         blocks = [*self.stiffness, *self.damping, *self.mass]
         touched = [b.dofs for b in blocks] + [s.dofs for s in self.laws]
         used = [f for dofs in touched for f in dofs if f[1] > 2]
         return tuple(sorted(set(used)))
 
     def initial(self) -> ElementMatrix:
-        """Initial stiffness on the nodes' DOFs alone, the element's own following statically.
+        """Initial stiffness on the nodal DOFs, with the internal DOFs condensed statically.
 
         Damping in proportion to it acts on the member as a whole; on a hinge, whose initial stiffness is
         large, it would add to the yield moment.
@@ -237,8 +237,8 @@ class ElementContext:
         ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
         along a direction; contacts only.
     stiffness_along : callable
-        ``stiffness_along(node, (nx, ny))``: elements that meet a node, and their axial stiffness along a
-        direction [F/L], where they have any; contacts only.
+        ``stiffness_along(node, (nx, ny))``: elements at a node with their non-zero axial stiffness along a
+        direction [F/L]; contacts only.
     """
 
     element: Element
@@ -259,7 +259,7 @@ class ElementError(ItemError):
 
     @classmethod
     def of_law(cls, refusal: ValueError, item: str) -> Self:
-        """Refusal of a law, at the law's item at fault, or at `item`, which names the law."""
+        """Convert a law's refusal to an error at the law's faulty item, or else at `item`."""
         return cls(str(refusal), refusal.item if isinstance(refusal, ItemError) else item)
 
 
@@ -280,7 +280,7 @@ DAMAGE = (
 
 
 def signed(values: tuple[float, ...], item: str) -> tuple[float, float]:
-    """Strengths in both directions, positive and negative; one value stands for both.
+    """Strengths in both directions, positive and negative; a single value applies to both.
 
     Raises
     ------
@@ -320,7 +320,7 @@ def hysteretic(
     strength : tuple of float
         Forces at which it yields, positive and negative.
     share : float
-        Of its elastic deformation that is its own; the beam beside it has the rest.
+        Share of its elastic deformation that it keeps; the adjoining beam has the rest.
 
     Raises
     ------
@@ -346,7 +346,7 @@ def hysteretic(
 
 
 def _rounded_down(x: float) -> float:
-    """The largest number of four digits that is not above `x` > 0, but for its rounding."""
+    """The largest four-digit number not above `x` > 0, except for its rounding."""
     unit = 10.0 ** (math.floor(math.log10(x)) - 3)
     return math.floor(x / unit * (1.0 + 1e-12)) * unit
 
@@ -362,7 +362,7 @@ def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def direction(dx: float, dy: float) -> tuple[float, float]:
-    """Unit vector along (dx, dy); an axis exactly, where it differs from that by rounding only."""
+    """Unit vector along (dx, dy), snapped to an axis if it differs by rounding only."""
     length = math.hypot(dx, dy)
     c, s = dx / length, dy / length
     return (0.0 if abs(c) < 1e-14 else c), (0.0 if abs(s) < 1e-14 else s)

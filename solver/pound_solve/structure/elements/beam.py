@@ -1,4 +1,4 @@
-r"""The elastic beam between two nodes, which FRAME and BEAM_COLUMN share.
+r"""The elastic beam between two nodes that FRAME and BEAM_COLUMN share.
 
 Axial and bending stiffness, shear deformation by :math:`\phi = 12EI/(G A_s L^2)`, rigid end blocks,
 pinned and flexible joints (condensed inside the member), initial forces, self weight, uniform and point
@@ -6,11 +6,10 @@ loads, lumped or consistent mass.
 
 Local axes: x from I to J, y to its left; matrices and interpolation are those of `beam_matrices`.
 
-A member that yields has hinges at the ends of the flexible length.  The beam between them then has
-separate end DOFs, which the hinges connect to the nodes.  The flexibility of hinges with a length is taken
-off the beam, so that the elastic member is the same with and without them.  If it is more than nine tenths
-of what would leave no beam, only a share of it is taken off, and the hinges do without the rest
-(`laws.condensed`).
+A member that yields has hinges at the ends of the flexible length.  The beam between them then has separate
+end DOFs, which the hinges connect to the nodes.  The flexibility of hinges with a length is subtracted from
+the beam, so that the elastic member is the same with and without them.  At most nine tenths of the beam's
+flexibility is subtracted; longer hinges lose the excess themselves (`laws.condensed`).
 
 References
 ----------
@@ -52,8 +51,8 @@ from pound_solve.structure.elements.beam_matrices import (
 
 COORDINATE_ROUNDING = 1e-9  #: of coordinates, share of a length
 
-MOST_TAKEN = 0.9  #: largest flexibility taken off a beam by its hinges, as a share of all that it has
-INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
+MOST_TAKEN = 0.9  #: largest flexibility subtracted from a beam for its hinges, as a share of the beam's own
+INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the internal DOF behind a hinge, by local DOF
 
 
 @dataclass(frozen=True)
@@ -64,12 +63,12 @@ class Member:
     ----------
     parts : Parts
     dofs : tuple of Dof
-        Those of the nodes, then the member's own.
+        Nodal DOFs, then internal ones.
     opening : ndarray, shape (6, n_freedoms)
         Deformation of the hinges by local DOF: stretch (rows 0, 3) and bend (rows 2, 5), positive in
         tension and where the member sags (tension on the right of the line from I to J).
     share : float
-        Of the flexibility of the hinges that they have themselves; the beam behind them has the rest.
+        Share of the hinges' flexibility that stays in them; the beam has the rest.
     """
 
     parts: Parts
@@ -79,7 +78,7 @@ class Member:
 
 
 def pair(values: tuple[float, ...]) -> tuple[float, float]:
-    """Values at I and J; one value stands for both."""
+    """Values at I and J; a single value applies to both."""
     return values[0], values[-1]
 
 
@@ -96,9 +95,9 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     context : ElementContext
         With a property card that has the fields `FIELDS`.
     hinged : tuple of int
-        Local DOFs (0, 3 stretch, 2, 5 bend) that a hinge holds.
+        Local DOFs (0, 3 stretch, 2, 5 bend) with a hinge.
     taken : ndarray, shape (6, 6)
-        Flexibility of the hinges, which is taken off the beam as far as that allows [L/F, 1/F, 1/(F L)].
+        Flexibility of the hinges, subtracted from the beam up to `MOST_TAKEN` [L/F, 1/F, 1/(F L)].
 
     Raises
     ------
@@ -173,11 +172,11 @@ class _FlexiblePart:
         Stiffness without pins and joints.
     pins : list of int
     forces, shape, flexibility : ndarray, shape (6, 6)
-        With pins and joints, less what the hinges take.
+        With pins and joints, less the flexibility of the hinges.
     closed : ndarray, shape (6, 6)
         `shape` with closed hinges.
     share : float
-        Of the flexibility of the hinges that is taken off the beam.
+        Share of the hinges' flexibility subtracted from the beam.
     """
 
     phi: float
@@ -190,16 +189,14 @@ class _FlexiblePart:
     share: float
 
     def end_forces(self, load: Array) -> Array:
-        """Forces on the ends of the beam by loads that are equivalent to `load`, the nodes at rest, shape
-        (6,).
-        """
+        """Forces on the ends of the beam from loads equivalent to `load`, nodes at rest, shape (6,)."""
         forces: Array = self.k @ (self.flexibility @ load) - load
         forces[self.pins] = 0.0
         return forces
 
 
 def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart:
-    """The beam of a property card, less the flexibility `taken` by its hinges."""
+    """The beam of a property card, less the flexibility `taken` for its hinges."""
     ea, ei, phi = p["E"] * p["A"], p["E"] * p["I"], 0.0
     if p["AS"] > 0.0 and ei > 0.0:
         if p["G"] is None:
@@ -220,7 +217,7 @@ def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart
 
 
 def _lengths_fit(p: Card, length: float) -> None:
-    """Refuse a hinge that is longer than the member, by more than the rounding of coordinates."""
+    """Refuse a hinge longer than the member by more than the rounding of coordinates."""
     longest = max(pair(p["LP"]))
     if longest > length * (1.0 + COORDINATE_ROUNDING):
         message = f"a hinge of {longest:.10g} is longer than the flexible length, {length:.10g}"
@@ -230,8 +227,8 @@ def _lengths_fit(p: Card, length: float) -> None:
 def _kinematics(
     context: ElementContext, line: _Line, hinged: tuple[int, ...]
 ) -> tuple[tuple[Dof, ...], Array, Array]:
-    """DOFs of the member, and from them the local displacements of the flexible ends, shape (6, n_dofs):
-    as the nodes move them, and of the beam behind the hinges.
+    """DOFs of the member, and two maps from them to local displacements, shape (6, n_dofs): of the flexible
+    ends as the nodes move them, and of the beam behind the hinges.
     """
     assert context.j is not None
     hinges = tuple((context.element.id, INSIDE[d]) for d in hinged)
@@ -299,8 +296,8 @@ def _add_geometry(
 
 
 def _loads(context: ElementContext, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
-    """Consistent loads on the beam's ends, initial forces included, and the loads on the rigid end blocks,
-    shape (6,) each, local and global.
+    """Consistent loads on the beam's ends (local, with initial forces) and loads on the rigid end blocks
+    (global), shape (6,) each.
     """
     p = context.prop
     uniform = np.zeros(2)
@@ -334,14 +331,14 @@ def _initial(p: Card, length: float) -> Array:
 def _corotational(
     p: Card, length: float, forces: Array, held: Array
 ) -> tuple[tuple[float, ...], dict[str, Array]]:
-    """Parameters of corotational geometry (see `corotational`), and what it adds to the end forces.
+    """Parameters of corotational geometry (see `corotational`), and its contribution to the end forces.
 
     Parameters
     ----------
     forces : ndarray, shape (6, 6)
         Local end forces of the beam for unit end displacements.
     held : ndarray, shape (6,)
-        End forces of the undisplaced beam, those of member loads apart, which keep their direction.
+        End forces of the undisplaced beam, without those of member loads, which keep their direction.
     """
     ends = [3, 2, 5]
     d = np.array([[1.0, 0.0], [0.0, -1.0], [0.0, -1.0]])
@@ -361,8 +358,8 @@ def _corotational(
 def _bowed(
     p: Card, length: float, phi: float, shape: Array, inner: Array, at_nodes: Array
 ) -> tuple[Array, dict[str, Array]]:
-    """Geometric stiffness of the bent member and its rigid blocks for an axial force of one, shape (n, n),
-    and what that adds to the end forces beyond the rotation of the chord.
+    """Geometric stiffness of the bent member and its rigid blocks for a unit axial force, shape (n, n), and
+    its contribution to the end forces beyond the rotation of the chord.
     """
     flexible = np.zeros((6, 6))
     for xi, w in zip(GAUSS_X, GAUSS_W):

@@ -8,16 +8,17 @@ So an N-M diagram becomes its springs, edge by edge:
 
 .. math:: y_i = -\Delta M_i / \Delta N_i, \qquad F_i = |\Delta N_i| / 4
 
-(each of two parallel edges gives a half; an edge so steep that its spring would stand outside of any
-section becomes one that feels more of the bend than of the stretch).  Plastic flow is normal to the
-diagram, since it is that of the springs.  A diagram P that is not symmetric becomes :math:`(P - P)/2` about
-the centre of its extremes, which keeps its width in every direction, so the pure forces and moments too.
-The centre is off the origin where the section resists compression better than tension: the springs' yield
-forces are then :math:`(s_i \pm 1) F_i` with :math:`s_i = \alpha + \beta y_i`.
+(each of two parallel edges gives a half; an edge so steep that its spring would lie outside any section
+becomes a spring that responds more to bending than to stretching).  Plastic flow follows from the springs
+and is normal to the diagram.  A diagram P that is not symmetric becomes :math:`(P - P)/2` about the centre
+of its extremes, which keeps its width in every direction, and with it the strengths in pure force and pure
+moment. The centre is off the origin where the section resists compression better than tension: the springs'
+yield forces are then :math:`(s_i \pm 1) F_i` with :math:`s_i = \alpha + \beta y_i`.
 
-The springs are as stiff as they are strong, and altogether as the length LP of the beam in bending;
-their flexibility is taken off the beam between the hinges, so that the elastic member is exactly that
-of E, A, I.  Of long hinges only a share is, as in `frame`; each spring then does without the rest.
+The stiffness of the springs is proportional to their strength, and together they are as stiff in bending as
+a length LP of the beam.  Their flexibility is subtracted from the beam between the hinges, so that the
+elastic member is exactly that of E, A, I. For long hinges only a share is subtracted, as in `frame`, and
+each spring gives up the rest.
 
 References
 ----------
@@ -41,7 +42,7 @@ from pound_solve.structure.elements import beam
 from pound_solve.structure.elements.base import ElementContext, ElementError, Parts, hysteretic, signed
 from pound_solve.structure.elements.beam import pair
 
-OUTMOST = 2.0  #: levers (largest moment over axial force) from the axis that a spring stands at most
+OUTMOST = 2.0  #: largest distance of a spring from the axis, in levers (largest moment over axial force)
 KNEE = 0.15  #: share of the axial strength of a steel section up to which the moment is not reduced
 
 
@@ -51,7 +52,7 @@ class Springs(NamedTuple):
     Attributes
     ----------
     direction : ndarray, shape (n, 2)
-        Deformation of each for a unit of stretch and of bend [-, L].
+        Deformation of each spring per unit stretch and unit bend [-, L].
     strength : ndarray, shape (n,)
         F [F].
     shift : ndarray, shape (n,)
@@ -121,7 +122,7 @@ def springs(corners: Array) -> Springs:
     """
     half = np.ptp(corners, axis=0) / 2
     centre, lever = corners.min(axis=0) + half, half[1] / half[0]
-    by_angle: dict[float, tuple[Array, float]] = {}  # parallel edges are one spring
+    by_angle: dict[float, tuple[Array, float]] = {}  # parallel edges make one spring
     for edge in np.roll(corners, -1, axis=0) - corners:
         reach = max(abs(edge[0]), abs(edge[1]) / (OUTMOST * lever)) * (-1 if tuple(edge) < (0, 0) else 1)
         d, f = edge / reach, abs(reach) / 4

@@ -6,8 +6,8 @@ Local axes: x from I to J, y to its left.  Interpolation over the flexible lengt
     N_1 &= \frac{1 - 3\xi^2 + 2\xi^3 + \phi(1-\xi)}{1+\phi}, &
     N_2 &= \frac{L(\xi - 2\xi^2 + \xi^3 + \tfrac{\phi}{2}(\xi - \xi^2))}{1+\phi}
 
-(mirrored at J), which solves the unloaded Timoshenko beam, so nodal results are exact for end loads and
-consistent loads alike.
+(mirrored at J), which solves the unloaded Timoshenko beam, so nodal results are exact for both end loads
+and consistent loads.
 
 References
 ----------
@@ -64,7 +64,7 @@ def end_blocks(at_i: float, at_j: float) -> Array:
 
 
 def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]:
-    """Put pins and flexibilities between the beam's ends and what holds them.
+    """Put pins and flexibilities between the beam's ends and their supports.
 
     With loads f on the beam its ends x follow the held displacements u by
     ``u - x = soft (k x - f)``, and a pinned end by ``0 = k x - f``.
@@ -93,7 +93,7 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
     whole = np.diag(held) + b @ k
     shape, flexibility = (np.asarray(np.linalg.solve(whole, x), float) for x in (np.diag(held), b))
     forces = k @ shape
-    # no rounding may pass for a stiffness: it would hide a mechanism
+    # rounding must not count as stiffness, since it would hide a mechanism
     forces[pins] = 0.0
     if len(pins) == 2:
         forces[[1, 4]] = 0.0
@@ -101,9 +101,7 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
 
 
 def spare(k: Array, length: float, ea: float, joints: Array, taken: Array, pins: list[int]) -> float:
-    """Multiple of the flexibility `taken` off the ends that would leave the beam without any
-    flexibility.
-    """
+    """Multiple of the flexibility `taken` from the ends at which the beam would have none left."""
     flexibility = np.zeros((3, 3))
     flexibility[0, 0] = length / ea
     flexibility[1:, 1:] = np.linalg.inv(k[np.ix_([2, 5], [2, 5])])

@@ -1,15 +1,15 @@
-"""CONTACT: two nodes, or a node and a wall, that meet along a direction.
+"""CONTACT: impact between two nodes, or a node and a wall, along a direction.
 
 The closure is the displacement of I less that of J along the direction (the wall does not move);
 the contact touches when it reaches GAP.  The direction points from I to J (or to the wall): along the line
 between the nodes, or at ANGLE.  A negative GAP is an overlap from the start.  Compression is positive.
 
-K=ADJACENT takes the stiffness of the neighbours: the axial stiffness EA/L of the elements that meet a node
-of the contact, along its direction, as Watanabe and Kawashima (2004, 13th World Conf. Earthquake Engng,
-Vancouver) and Cole et al. (2011) do; ADJACENT says which, of the two nodes' stiffnesses, or their
-harmonic mean :math:`2 k_1 k_2 / (k_1 + k_2)`.  A wall is rigid.
+K=ADJACENT takes the axial stiffness EA/L of the elements at the contact's nodes along its direction, as
+Watanabe and Kawashima (2004, 13th World Conf.  Earthquake Engng, Vancouver) and Cole et al. (2011) do;
+ADJACENT selects the stiffness at one node or the harmonic mean :math:`2 k_1 k_2 / (k_1 + k_2)`.  A wall is
+rigid.
 
-With MU there is a second component, the friction across the direction (see `contact.friction`).
+MU adds a second component, friction across the direction (see `contact.friction`).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def direction(context: ElementContext) -> tuple[float, float]:
 
 
 def adjacent(context: ElementContext, nodes: list[int], normal: tuple[float, float]) -> tuple[float, str]:
-    """Stiffness of a contact from its neighbours [F/L], and its source in words."""
+    """Stiffness of a contact from the adjacent elements [F/L], and its source in words."""
     choice, pairs = context.prop["ADJACENT"], []
     for node in nodes:
         axial = context.stiffness_along(node, normal)
@@ -68,7 +68,7 @@ def rubbing(
             if card[item] is not None:
                 raise ElementError(f"{item} belongs to friction: give MU, too", item)
         return [], ""
-    from pound_solve.laws.contact import friction  # a deck without it does not load it
+    from pound_solve.laws.contact import friction  # imported only for decks with friction
 
     if card["KT"] is None:
         raise ElementError("friction needs KT, the tangential stiffness while it sticks", "MU")
@@ -100,7 +100,7 @@ def across(
 
 
 def build(context: ElementContext) -> Parts:
-    """Build the contact's component, and that of its friction."""
+    """Build the contact's component and its friction component."""
     card, (nx, ny) = context.prop, direction(context)
     ends = [(context.i.id, 1.0)] + ([(context.j.id, -1.0)] if context.j is not None else [])
     masses = card["MASSES"] or tuple(context.mass_along(node, (nx, ny)) for node, _ in ends)

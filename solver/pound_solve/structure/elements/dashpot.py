@@ -1,6 +1,6 @@
 """DASHPOT: components x, y and rotation that resist the rate; geometry as in SPRING.
 
-A linear one without play and limit is part of the structure's damping matrix; any other follows a law of
+A linear dashpot without play and limit enters the structure's damping matrix; any other follows a law of
 `pound_solve.laws.damper`.
 """
 

@@ -1,21 +1,21 @@
 r"""FOUNDATION: a rigid rectangular footing on the surface of an elastic half-space.
 
-Springs along x and y and on the rotation have the footing's static stiffness.  Each direction is a cone in
-the soil that has this stiffness and the footing's area, and sends waves down: translation with wave
-speed c is a dashpot beside the spring,
+Springs along x and y and on the rotation have the footing's static stiffness. Each direction is modelled as
+a cone in the soil with this stiffness and the footing's area, which radiates waves downwards.  Translation
+with wave speed c is a dashpot parallel to the spring,
 
 .. math:: C = \rho c A,
 
-and rocking a dashpot whose far end carries a mass of its own (no radiation at low frequency),
+and rocking is a dashpot whose far end carries a separate mass (no radiation at low frequency),
 
 .. math:: C_r = \rho c I, \qquad J = \rho I z_0, \qquad z_0 = 3\rho c^2 I / K_r .
 
 These are exact for the cone at all frequencies.  :math:`c` is the speed of shear waves along x, else that
 of compression waves, at most twice that of shear waves (soil that is nearly incompressible).
 
-With UPLIFT the soil takes no tension: a row of springs below the footing gives the rotation its
-stiffness, :math:`K' = 3K_r/B^2` in all, and a spring between footing and row makes the vertical stiffness
-right, :math:`1/K_s = 1/K_y - 1/K'`.  With a bearing strength the springs are crushed.
+With UPLIFT the soil takes no tension: a row of springs below the footing gives the rotation its stiffness,
+:math:`K' = 3K_r/B^2` in all, and a spring between footing and row makes the vertical stiffness right,
+:math:`1/K_s = 1/K_y - 1/K'`.  With a bearing strength the springs can crush.
 
 References
 ----------
@@ -38,7 +38,7 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import ElementContext, ElementError, ElementMatrix, Output, Parts
 from pound_solve.structure.elements.multispring import lobatto, no_tension
 
-TAIL, ROW = 3, 5  #: own DOFs: rotation of the rocking cone's mass, settlement of the row of springs
+TAIL, ROW = 3, 5  #: internal DOFs: rotation of the rocking cone's mass, settlement of the row of springs
 
 
 def stiffness(g: float, nu: float, b: float, across: float) -> tuple[float, float, float]:
@@ -67,7 +67,9 @@ def stiffness(g: float, nu: float, b: float, across: float) -> tuple[float, floa
 
 
 def radiation(p: Card, gravity: float, rocking: float) -> tuple[float, float, float, float]:
-    """Dashpots along x and y [F T/L] and in rocking [F L T], and the mass behind that [F L T^2]."""
+    """Dashpots along x and y [F T/L] and in rocking [F L T], and the mass behind the rocking dashpot [F L
+    T^2].
+    """
     rho = p["WGT"] / gravity
     if rho == 0.0:
         return 0.0, 0.0, 0.0, 0.0
@@ -108,7 +110,7 @@ def _uplift(
     Returns
     -------
     float
-        Stiffness of the spring between footing and row, which makes the vertical stiffness `ky` [F/L].
+        Stiffness of the spring between footing and row that brings the vertical stiffness to `ky` [F/L].
     """
     p, number = context.prop, context.element.id
     row: float = 3 * kr / p["B"] ** 2
@@ -128,8 +130,8 @@ def _join(
     spring: tuple[float, Mapping[Dof, float]],
     dashpot: tuple[float, Mapping[Dof, float]],
 ) -> None:
-    """Add spring and dashpot of one direction, each a coefficient along a row of DOFs, and their joint
-    force as output, with its name and unit.
+    """Add the spring and dashpot of one direction, each a coefficient along a row of DOFs, and their
+    combined force as an output with its name and unit.
     """
     (name, unit), (k, spring_row), (c, row) = quantity, spring, dashpot
     if k:

@@ -1,13 +1,12 @@
 r"""FRAME: beam-column between two nodes, elastic or with hinges at its ends.
 
 The one-component member: an elastic beam (`beam`) in series with a rotational spring at either end of its
-flexible length, which follows a hysteresis rule.  The hinge has its own stiffness KH (moment over
-rotation), or a length LP over which the section of the beam yields (moment over curvature): then its
-stiffness is :math:`EI/L_p`, and the flexibility :math:`L_p/EI` that it has is taken off the beam, so that
-the elastic member is exactly that of EI.  A slender beam has no more than that of :math:`L_p = L/4` at one
-end or :math:`L_p = L/6` at both.  What longer hinges have beyond nine tenths of that stays with the beam:
-the hinge then opens by the rotation of its length less this elastic part.  A hinge is at most as long as
-the member.
+flexible length, which follows a hysteresis rule. The hinge has its own stiffness KH (moment over rotation),
+or a length LP over which the section of the beam yields (moment over curvature): its stiffness is then
+:math:`EI/L_p`, and its flexibility :math:`L_p/EI` is subtracted from the beam, so that the elastic member
+is exactly that of EI. A slender beam can give up the flexibility of :math:`L_p = L/4` at one end or
+:math:`L_p = L/6` at both.  Flexibility beyond nine tenths of that stays with the beam: the hinge then opens
+by the rotation of its length less this elastic part.  A hinge is at most as long as the member.
 
 Moments and rotations of hinges are positive where the member sags: tension on the right of the line from
 I to J.  Only the hinges with a strength are built.
@@ -66,7 +65,7 @@ def build(context: ElementContext) -> Parts:
 
 
 def _consistent(context: ElementContext, strengths: list[str]) -> None:
-    """Raise where the items of hinges contradict each other."""
+    """Raise ElementError if the items of hinges contradict each other."""
     p = context.prop
     stiffness_items = [item for item in ("KH", "LP") if p[item] is not None]
     companions = [*stiffness_items, *(["DUCTU"] if p["DUCTU"] is not None else [])]
@@ -93,7 +92,7 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
 
 
 def _not_pinned(context: ElementContext, strengths: list[str], companions: list[str]) -> None:
-    """Raise where a pinned end has a yield moment; without any hinge its `companions` have no effect."""
+    """Raise ElementError if a pinned end has a yield moment, or if no hinge uses the `companions`."""
     p = context.prop
     pinned = [(end, item) for d, end, item in ENDS if item in strengths and d in beam.pinned(p)]
     if not pinned:

@@ -1,14 +1,14 @@
-r"""MULTISPRING: a row of springs across a section, which rocks, cracks or yields spring by spring.
+r"""MULTISPRING: a row of springs across a section that rocks, cracks or yields spring by spring.
 
-Springs along local x stand at distances :math:`y_i` from the axis; with the displacement u and the rotation
-:math:`\theta` of J less those of I (or of I against the ground)
+Springs along local x lie at distances :math:`y_i` from the axis.  With the displacement u and the rotation
+:math:`\theta` of J relative to I (or of I relative to the ground)
 
 .. math:: d_i = u_x - y_i\,\theta, \qquad N = \sum f_i, \qquad M = -\sum y_i f_i .
 
-Over a width the springs stand at the Gauss-Lobatto points with their weights as shares of stiffness and
-strength: the corners about which a section rocks are among them, and the rotational stiffness is exactly
-:math:`K b^2/12` from three springs on.  Springs that take no tension open and close; with a strength
-they are crushed, which leaves a gap.
+Given a width, the springs lie at the Gauss-Lobatto points, whose weights divide the stiffness and strength.
+The points include the corners about which a section rocks, and three or more springs give exactly the
+rotational stiffness :math:`K b^2/12`.  Springs that take no tension open and close; with a strength they
+crush, which leaves a gap.
 
 References
 ----------
@@ -56,7 +56,7 @@ def lobatto(count: int) -> tuple[Array, Array]:
 def no_tension(
     element: int, component: str, row: Mapping[Dof, float], k: float, strength: float | None, width: float
 ) -> LawSpring:
-    """A spring that opens in tension; crushed at its `strength`, elastic where that is None."""
+    """A spring that opens in tension and crushes at its `strength`; elastic if that is None."""
     far = FAR * width
     limit = k * far if strength is None else strength
     law = Law(RULE, (k, limit, -limit, far, 0.0, 0.0, 1.0))
@@ -73,7 +73,7 @@ def _row(context: ElementContext, y: float) -> dict[Dof, float]:
 
 
 def _places(context: ElementContext) -> tuple[Array, Array, float]:
-    """Distances of the springs from the axis, their shares, and the width that they stand on."""
+    """Distances of the springs from the axis, their shares, and the width that they cover."""
     p = context.prop
     if (p["WIDTH"] is None) == (p["Y"] is None):
         raise ElementError("give the springs' places as WIDTH or as Y", "Y")

@@ -1,10 +1,9 @@
 """SPRING: up to three uncoupled components (x, y, rotation), each with its own rule.
 
-The deformation is the displacement of J less that of I along the component; with one node only it is the
-displacement of that node against the ground.  The components lie along the global axes unless ANGLE turns
-them; ANGLE=MEMBER turns x into the line from I to J.  Forces make no moment unless ARM says where between
-the nodes the spring sits: rigid arms join it to them there, so that a force across the line turns both
-nodes.
+The deformation is the displacement of J relative to I along the component, or of a single node relative to
+the ground.  The components lie along the global axes unless ANGLE rotates them; ANGLE=MEMBER rotates x into
+the line from I to J. ARM places the spring between the nodes on rigid arms, so that a force across the line
+rotates both nodes; without it forces cause no moment.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ def components(context: ElementContext) -> list[tuple[str, tuple[Dof, ...], tupl
 
 
 def _line(context: ElementContext, item: str) -> tuple[float, float]:
-    """From I to J [L]; raises where there is no line."""
+    """Vector from I to J [L]; raises ElementError if there is none."""
     if context.j is None:
         raise ElementError(f"{item} needs a node J", item)
     line = context.j.x - context.i.x, context.j.y - context.i.y
@@ -75,7 +74,7 @@ def _axes(context: ElementContext) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def _at(way: tuple[float, float], context: ElementContext, first: bool) -> list[tuple[int, float]]:
-    """Displacement of the spring's end at node I (or J) along a direction, as terms: direction of the DOF,
+    """Displacement of the spring's end at node I (or J) along a direction, as pairs of DOF direction and
     factor.
     """
     terms = [(0, way[0]), (1, way[1])]
@@ -123,7 +122,7 @@ def build(context: ElementContext) -> Parts:
     return parts
 
 
-#: how the components of SPRING and DASHPOT lie
+#: fields for the directions of SPRING and DASHPOT
 PLACEMENT = (
     Field(
         "ANGLE",

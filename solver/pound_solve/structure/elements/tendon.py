@@ -4,9 +4,9 @@ Its force follows the rule `BILINEAR_SLACK` on the elongation :math:`e` along th
 
 .. math:: f = \frac{EA}{L}(e - s - p) \ge 0, \qquad s = \mathrm{SLACK} \quad\mathrm{or}\quad s = -N_0 L / EA
 
-with the plastic elongation :math:`p`, by which the slack grows (a prestress is lost).  In compression it
-is slack.  The prestress acts on the undeformed structure, whose deformation reduces it.
-In modes and stiffness-proportional damping a tendon counts where it is prestressed.
+with the plastic elongation :math:`p`, by which the slack grows (prestress is lost).  In compression the
+tendon is slack.  The prestress acts on the undeformed structure, whose deformation reduces it.  Modes and
+stiffness-proportional damping include a tendon only if it is prestressed.
 """
 
 from __future__ import annotations
