@@ -112,15 +112,15 @@ def test_as_the_differential_equation(n: float, beta: float) -> None:
 def test_series_and_their_inversion(n: float, beta: float, u: float) -> None:
     """y(u) put back into u(y), outwards and inwards; where it saturates, no more than 1 is asked."""
     p = rule("BOUC_WEN", N=n, BETA=beta).p
-    y, slope, w = bouc_wen.outwards(p, u)
+    y, slope, w = bouc_wen.outward_curve(p, u)
     if slope > 1e-5:
-        again, work = bouc_wen.inverse_outwards(p, y)
+        again, work = bouc_wen.inverse_outward_curve(p, y)
         assert again == pytest.approx(u, rel=1e-13 / slope)
         assert work == pytest.approx(w, rel=1e-12 / slope)
     assert 0.0 < y <= 1.0 and slope == pytest.approx(1.0 - y**n, abs=2e-14)
-    y, slope, w = bouc_wen.inwards(p, min(u, bouc_wen.inverse_inwards(p, 1.0)[0]))
-    again, work = bouc_wen.inverse_inwards(p, y)
-    assert again == pytest.approx(min(u, bouc_wen.inverse_inwards(p, 1.0)[0]), rel=1e-13)
+    y, slope, w = bouc_wen.inward_curve(p, min(u, bouc_wen.inverse_inward_curve(p, 1.0)[0]))
+    again, work = bouc_wen.inverse_inward_curve(p, y)
+    assert again == pytest.approx(min(u, bouc_wen.inverse_inward_curve(p, 1.0)[0]), rel=1e-13)
     assert work == pytest.approx(w, rel=1e-12) and y <= 1.0 + 1e-13
 
 

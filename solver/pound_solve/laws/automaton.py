@@ -19,6 +19,8 @@ from enum import IntEnum
 from typing import NamedTuple
 
 EVENTS = 3  #: most event functions of a branch
+K = 0  #: place of the (initial) stiffness among the parameters of a law
+FY, FY_MINUS = 1, 2  #: places of the yield forces (the negative one signed) in most hysteresis rules
 GAP = 2  #: place of the gap among the parameters of a contact
 PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule counts as zero
 AT_END = 1e-9  #: share of a deformation by which a law must pass the end of a line to have gone on
@@ -77,13 +79,13 @@ def linear(
 
 
 def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Recoverable energy of a law that unloads with its initial stiffness ``p[0]``."""
-    return 0.5 * f * f / p[0]
+    """Recoverable energy of a law that unloads with its initial stiffness ``p[K]``."""
+    return 0.5 * f * f / p[K]
 
 
 def first_stiffness(p: Numbers) -> float:
     """Stiffness of a rule none of whose branches is steeper than the first."""
-    return p[0]
+    return p[K]
 
 
 def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
@@ -307,7 +309,7 @@ class Law:
         """Return the energy [F L] lost so far by slip or release, dashpots apart."""
         lost = self.work(state, d) - self.stored(state, d)
         # a loss within the rounding of d is none: an elastic law dissipates nothing
-        return lost if abs(lost) > 1e-14 * self.p[0] * max(abs(d), abs(state[1])) ** 2 else 0.0
+        return lost if abs(lost) > 1e-14 * self.p[K] * max(abs(d), abs(state[1])) ** 2 else 0.0
 
 
 def consistent(law: Law, state: State, d: float, v: float) -> State:

@@ -5,9 +5,9 @@ Of a law :math:`f = k x + f_0` of the deformation :math:`x` the elastic part :ma
 .. math:: d = x - g f, \qquad f = \frac{k d + f_0}{1 - g k}, \qquad x = \frac{d + g f_0}{1 - g k}
 
 Every branch stays a line, and every event occurs at the same force; :math:`g k < 1` must hold on all
-branches.  A hinge of the length :math:`L_p` is such a law: its section bends elastically, too, by
-:math:`L_p / EI` for a moment of one, but that the beam behind it does already, if it is as long as the
-member (`structure.elements.frame`).
+branches.  A hinge of the length :math:`L_p` is such a law: its section also bends elastically, by
+:math:`L_p / EI` for a moment of one.  A beam behind it that is as long as the member already contains that
+part (`structure.elements.frame`).
 
 Parameters are those of the law, then :math:`g`; internal variables are those of the law.
 
@@ -23,23 +23,23 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from pound_solve.laws.automaton import Law, Numbers, Rule
+from pound_solve.laws.automaton import K, Law, Numbers, Rule
 from pound_solve.laws.functions import bound, missing
 from pound_solve.numerics.jit import Function
 
-STEEP = 0.99  #: most of g k: a branch is at most a hundred times as steep by the deformation that is left
+STEEP = 0.99  #: largest g k: by the remaining deformation a branch is at most a hundred times as steep
 
 # given to every copy of the functions below
-own_branch: Any = missing
-own_transition: Any = missing
-own_recoverable: Any = missing
-place = 0  #: of g among the parameters
+rule_branch: Any = missing
+rule_transition: Any = missing
+rule_recoverable: Any = missing
+place = 0  #: place of g among the parameters, after those of the rule
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Branch as a function of the remaining deformation, without the elastic part."""
     g = p[place]
-    k, c, f0, a1, b1, c1, a2, b2, c2, a3, b3, c3 = own_branch(p[:place], at, m)
+    k, c, f0, a1, b1, c1, a2, b2, c2, a3, b3, c3 = rule_branch(p[:place], at, m)
     s = 1.0 / (1.0 - g * k)
     shift = s * g * f0
     first = (s * a1, s * b1, c1 + a1 * shift)
@@ -51,16 +51,16 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Transition of the original rule, at the whole deformation."""
     g = p[place]
-    now = own_branch(p[:place], at, m)
-    s = 1.0 / (1.0 - g * now[0])
-    to: tuple[int, Numbers] = own_transition(p[:place], at, m, event, s * (d + g * now[2]), s * v)
-    return to
+    k, _, f0 = rule_branch(p[:place], at, m)[:3]
+    s = 1.0 / (1.0 - g * k)
+    after: tuple[int, Numbers] = rule_transition(p[:place], at, m, event, s * (d + g * f0), s * v)
+    return after
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Recoverable energy less that of the elastic part."""
     g = p[place]
-    energy: float = own_recoverable(p[:place], at, m, d + g * f, f) - 0.5 * g * f * f
+    energy: float = rule_recoverable(p[:place], at, m, d + g * f, f) - 0.5 * g * f * f
     return energy
 
 
@@ -71,7 +71,7 @@ def condensed(rule: Rule) -> Rule:
     Raises
     ------
     ValueError
-        The branches of the rule are no lines.
+        The branches of the rule are not straight.
     """
     if rule.curve is not None:
         raise ValueError("the branches of this rule are curves")
@@ -85,35 +85,35 @@ def condensed(rule: Rule) -> Rule:
         return k / (1.0 - p[n] * k)
 
     functions = {
-        "own_branch": rule.branch,
-        "own_transition": rule.transition,
-        "own_recoverable": rule.recoverable,
+        "rule_branch": rule.branch,
+        "rule_transition": rule.transition,
+        "rule_recoverable": rule.recoverable,
     }
 
-    def made(template: Function, function: Function) -> Function:
+    def bound_to_rule(template: Function, function: Function) -> Function:
         return bound(template, f"{function.__module__}.{function.__qualname__}-{n}", place=n, **functions)
 
     return Rule(
         rule.branches,
         start,
-        made(branch, rule.branch),
-        made(transition, rule.transition),
-        made(recoverable, rule.recoverable),
+        bound_to_rule(branch, rule.branch),
+        bound_to_rule(transition, rule.transition),
+        bound_to_rule(recoverable, rule.recoverable),
         steepest=steepest,
         parameters=n + 1,
         variables=rule.variables,
     )
 
 
-def without(law: Law, share: float) -> Law:
-    """The law without a share of its initial elastic deformation.
+def without(law: Law, elastic_share: float) -> Law:
+    """The law without that share of its initial elastic deformation.
 
     Raises
     ------
     ValueError
-        Its branches are no lines, or one of them may be so steep that no deformation is left on it.
+        Its branches are not straight, or one may be so steep that no deformation is left on it.
     """
-    g = share / law.p[0]
+    g = elastic_share / law.p[K]
     if law.rule.curve is None and g * law.rule.steepest(law.p) >= STEEP:
         raise ValueError("this rule unloads too steeply")
     return Law(condensed(law.rule), (*law.p, g))

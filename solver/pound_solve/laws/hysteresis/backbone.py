@@ -5,13 +5,13 @@ One side at a time (`mirror`), with the yield force :math:`F_y > 0`, the yield d
 
 .. math:: F(x) = F_y \left[(1 - r)\,\gamma\,\varphi(\max(x, \mu_L)) + r x\right]
 
-so the yield force left is the share :math:`\gamma\varphi` of the first one, on the elastic line; the
-hardening is not reduced.  :math:`\varphi` falls with the ductility along a straight line from 1 at
+so that the share :math:`\gamma\varphi` of the first yield force is left, on the elastic line; the hardening
+is not reduced.  :math:`\varphi` falls with the ductility along a straight line from 1 at
 :math:`D_1` to :math:`\varphi_R` at :math:`D_2`, and, if :math:`D_3` is given, on to 0.01 at :math:`D_3`; in
 the SUDDEN forms it stays at :math:`\varphi_R` up to :math:`D_3` and drops to 0.01 there.  :math:`\mu_L`
-is the largest ductility so far: of that side (EACH) or of either side (LARGEST).  With :math:`n` inelastic
-cycles :math:`\gamma = 1 - c n`, not below 0.01, in the forms with RCYC (:math:`c` in per cent there).  With
-CYCLES the number of cycles takes the place of the ductility: :math:`\gamma = \varphi(n)`, and
+is the largest ductility so far: of that side (EACH) or of either side (LARGEST).  In the forms with RCYC
+:math:`\gamma = 1 - c n`, not below 0.01, after :math:`n` inelastic cycles (RCYC is :math:`c` in per cent).
+With CYCLES the number of cycles takes the place of the ductility: :math:`\gamma = \varphi(n)`, and
 :math:`\varphi = 1`.
 
 A spring that has reached ductility :math:`\mu` unloads with
@@ -21,8 +21,9 @@ A spring that has reached ductility :math:`\mu` unloads with
 The second bound, the secant from the origin to the backbone, is ours: a softer line would reach no force on
 the far side of the origin, and for large :math:`\alpha` run flatter than the backbone itself.
 
-Ours, too, because no source says it: the loss by ductility acts at once, the backbone itself falls; a yield
-of a side is a cycle of that side as soon as the other side yields; both losses are multiplied.
+No source states these three choices, which are ours: the loss by ductility acts at once, so that the
+backbone itself falls; a yield of a side counts as a cycle of that side as soon as the other side yields;
+both losses are multiplied.
 
 Internal variables of each rule: the largest ductility of each side (1 before yield), a point (d, f), or on
 the backbone the ductility where the spring came to it, and how many times another side yielded than before,
@@ -41,7 +42,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import Numbers, linear, passes
+from pound_solve.laws.automaton import FY, FY_MINUS, K, Numbers, linear, passes
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 from pound_solve.laws.refusal import ItemError
 
@@ -50,19 +51,25 @@ ELASTIC, YIELDING, WEAKENING = 0, 1, 3
 
 BEFORE = -1e300  #: less than any ductility: on the other side of zero
 LEAST = 0.01  #: share of the yield force that is left in the end
-# numbers of a law: form of the loss, D3 (0: none), loss by a cycle
-FORM, GONE, BY_CYCLE, PARAMETERS = 8, 9, 10, 11
-#: internal variables: where the backbone was met; changes of the yielding side, with its sign
-MET, CHANGES, VARIABLES = 2, 4, 5
+# parameters of a law after K, FY, FY_MINUS: r, alpha; of the loss D1, D2, phi_R, its form, D3 (0: none) and
+# the loss by a cycle
+R, ALPHA, D1, D2, PHI_R, FORM, D3, BY_CYCLE = range(3, 11)
+PARAMETERS = 11  #: number of them all; a rule adds its own behind
+# internal variables: largest ductilities of both sides; the point (d, f); changes of the yielding side,
+# with the sign of the last one
+MU, MU_MINUS, D, F, CHANGES = range(5)
+MET = D  #: on the backbone, in place of the point: the ductility where the spring came to it
+VIRGIN = (1.0, 1.0, 0.0, 0.0, 0.0)  #: internal variables at first
+VARIABLES = 5
 _WORDS = "NONE EACH CYCLES LARGEST EACH_RCYC EACH_SUDDEN LARGEST_RCYC LARGEST_SUDDEN"
 FORMS = {word: code for code, word in enumerate(_WORDS.split())}  #: forms of the loss by Ruaumoko's codes
 _CYCLES, _LARGEST, _EACH_SUDDEN, _LARGEST_RCYC, _LARGEST_SUDDEN = 2.0, 3.0, 5.0, 6.0, 7.0
 _COUNTING = 4.0  #: the first form that counts cycles beside the ductility
 
-R = Field(
+R_FIELD = Field(
     "R", Kind.REAL, "-", default=0.0, lo=0.0, below=1.0, doc="ratio of post-yield to initial stiffness"
 )
-ALFA = Field(
+ALFA_FIELD = Field(
     "ALFA",
     Kind.REAL,
     "-",
@@ -164,31 +171,31 @@ def _loss(values: Mapping[str, Any]) -> Numbers:
 
 def yield_force(p: Numbers, s: float) -> float:
     """Yield force of a side, positive."""
-    return p[1] if s > 0.0 else -p[2]
+    return p[FY] if s > 0.0 else -p[FY_MINUS]
 
 
-def reached(m: Numbers, s: float) -> float:
+def largest_ductility(m: Numbers, s: float) -> float:
     """Largest ductility of a side so far."""
-    return m[0] if s > 0.0 else m[1]
+    return m[MU] if s > 0.0 else m[MU_MINUS]
 
 
-def curve(p: Numbers, x: float) -> float:
-    """Share of the yield force that is left at ductility, or after a number of cycles, `x`."""
-    begin, end, left, gone = p[5], p[6], p[7], p[GONE]
-    if gone > 0.0 and x >= gone:
+def phi(p: Numbers, x: float) -> float:
+    """Share of the yield force left at a ductility `x`, or with CYCLES after `x` cycles."""
+    d1, d2, phi_r, d3 = p[D1], p[D2], p[PHI_R], p[D3]
+    if d3 > 0.0 and x >= d3:
         return LEAST
-    if x >= end:
-        if gone == 0.0 or p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN:
-            return left
-        return left - (left - LEAST) * (x - end) / (gone - end)
-    if x <= begin:
+    if x >= d2:
+        if d3 == 0.0 or p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN:
+            return phi_r
+        return phi_r - (phi_r - LEAST) * (x - d2) / (d3 - d2)
+    if x <= d1:
         return 1.0
-    return 1.0 - (1.0 - left) * (x - begin) / (end - begin)
+    return 1.0 - (1.0 - phi_r) * (x - d1) / (d2 - d1)
 
 
-def share(p: Numbers, x: float) -> float:
+def strength_by_ductility(p: Numbers, x: float) -> float:
     """Share of the yield force that is left at ductility `x`."""
-    return 1.0 if p[FORM] == _CYCLES else curve(p, x)
+    return 1.0 if p[FORM] == _CYCLES else phi(p, x)
 
 
 def is_largest(p: Numbers) -> bool:
@@ -196,125 +203,126 @@ def is_largest(p: Numbers) -> bool:
     return bool(p[FORM] == _LARGEST or p[FORM] >= _LARGEST_RCYC)
 
 
-def worst(p: Numbers, m: Numbers, s: float) -> float:
+def governing_ductility(p: Numbers, m: Numbers, s: float) -> float:
     """Largest ductility so far that determines the loss of strength of a side."""
-    return max(m[0], m[1]) if is_largest(p) else reached(m, s)
+    return max(m[MU], m[MU_MINUS]) if is_largest(p) else largest_ductility(m, s)
 
 
-def cycles(m: Numbers, s: float) -> float:
+def inelastic_cycles(m: Numbers, s: float) -> float:
     """Number of inelastic cycles of a side: its yields that were followed by one of the other side."""
     changes = abs(m[CHANGES]) - (s * m[CHANGES] > 0.0)
     return float(changes // 2.0)
 
 
-def factor(p: Numbers, m: Numbers, s: float) -> float:
+def strength_by_cycles(p: Numbers, m: Numbers, s: float) -> float:
     """Share of the yield force of a side that is left after its cycles."""
     if p[FORM] == _CYCLES:
-        return curve(p, cycles(m, s))
+        return phi(p, inelastic_cycles(m, s))
     if p[FORM] < _COUNTING:
         return 1.0
-    return max(1.0 - p[BY_CYCLE] * cycles(m, s), LEAST)
+    return max(1.0 - p[BY_CYCLE] * inelastic_cycles(m, s), LEAST)
 
 
-def piece(p: Numbers, mu: float, x: float) -> tuple[float, float, float]:
+def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]:
     """Straight line of the share of the yield force from ductility `x` on, where `mu` determines the loss
     so far: slope, value at zero, and the ductility where it ends (0: it does not).
     """
-    begin, end, left, gone = p[5], p[6], p[7], p[GONE]
-    driven = max(mu, begin)
+    d1, d2, phi_r, d3 = p[D1], p[D2], p[PHI_R], p[D3]
+    driven = max(mu, d1)
     if p[FORM] == 0.0 or p[FORM] == _CYCLES:
         return 0.0, 1.0, 0.0
-    if gone > 0.0 and max(x, driven) >= gone:
+    if d3 > 0.0 and max(x, driven) >= d3:
         return 0.0, LEAST, 0.0
     sudden = p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN
-    if max(x, driven) >= end and (gone == 0.0 or sudden):
-        return 0.0, left, gone
+    if max(x, driven) >= d2 and (d3 == 0.0 or sudden):
+        return 0.0, phi_r, d3
     if x < driven:
-        return 0.0, curve(p, driven), driven
-    if x < end:
-        slope = -(1.0 - left) / (end - begin)
-        return slope, 1.0 - slope * begin, end
-    slope = -(left - LEAST) / (gone - end)
-    return slope, left - slope * end, gone
+        return 0.0, phi(p, driven), driven
+    if x < d2:
+        slope = -(1.0 - phi_r) / (d2 - d1)
+        return slope, 1.0 - slope * d1, d2
+    slope = -(phi_r - LEAST) / (d3 - d2)
+    return slope, phi_r - slope * d2, d3
 
 
 def backbone(p: Numbers, m: Numbers, s: float, x: float) -> float:
     """Force of a side's backbone at a ductility `x` that it has reached, positive."""
-    r, left = p[3], factor(p, m, s) * share(p, worst(p, m, s))
-    return yield_force(p, s) * ((1.0 - r) * left + r * x)
+    r, ratio = p[R], strength_by_cycles(p, m, s) * strength_by_ductility(p, governing_ductility(p, m, s))
+    return yield_force(p, s) * ((1.0 - r) * ratio + r * x)
 
 
 def unloading(p: Numbers, x: float) -> float:
     """Stiffness of unloading after ductility `x`."""
-    k, r, alpha = p[0], p[3], p[4]
-    stiffness: float = k * max(x**-alpha, (1.0 - r) * share(p, x) / x + r)
+    k, r, alpha = p[K], p[R], p[ALPHA]
+    stiffness: float = k * max(x**-alpha, (1.0 - r) * strength_by_ductility(p, x) / x + r)
     return stiffness
 
 
 def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
     """Largest ductilities when side `s` has reached `x`."""
-    return (max(m[0], x), m[1]) if s > 0.0 else (m[0], max(m[1], x))
+    return (max(m[MU], x), m[MU_MINUS]) if s > 0.0 else (m[MU], max(m[MU_MINUS], x))
 
 
-def changed(m: Numbers, s: float, x: float) -> float:
+def changes_at(m: Numbers, s: float, x: float) -> float:
     """Changes of the yielding side, as counted when side `s` has followed the backbone to the ductility
     `x`.
     """
-    rests = not passes(x, m[MET], max(m[0], m[1]))
-    return m[CHANGES] if rests or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
+    stays = not passes(x, m[MET], max(m[MU], m[MU_MINUS]))
+    return m[CHANGES] if stays or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
 
 
-def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
+def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of side `s`, met at ductility `x`."""
     plus, minus = grown(m, s, x)
     m = (plus, minus, x, 0.0, m[CHANGES])
-    falls = piece(p, worst(p, m, s), x)[0] < 0.0
-    return pair(WEAKENING if falls else YIELDING, s), m
+    slope, _, _ = strength_line(p, governing_ductility(p, m, s), x)
+    return pair(WEAKENING if slope < 0.0 else YIELDING, s), m
 
 
 def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
     """Slope and force at zero of the present line of the backbone, mirrored to the positive side, and the
     ductility where it ends (0: it does not).
     """
-    k, r, s = p[0], p[3], side(at)
-    mu = worst(p, m, s)
-    slope, value, end = piece(p, mu, mu if at == pair(WEAKENING, s) else BEFORE)
-    left = (1.0 - r) * factor(p, m, s)
-    return (r + left * slope) * k, yield_force(p, s) * left * value, end
+    k, r, s = p[K], p[R], side(at)
+    mu = governing_ductility(p, m, s)
+    slope, value, end = strength_line(p, mu, mu if at == pair(WEAKENING, s) else BEFORE)
+    scale = (1.0 - r) * strength_by_cycles(p, m, s)
+    return (r + scale * slope) * k, yield_force(p, s) * scale * value, end
 
 
 def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Along the backbone until the motion reverses (event 0) or the line ends (event 1)."""
     s = side(at)
-    slope, f0, until = yield_line(p, at, m)
-    if until == 0.0:
+    slope, f0, end = yield_line(p, at, m)
+    if end == 0.0:
         return linear(slope, s * f0, turns_inward(s))
-    return linear(slope, s * f0, turns_inward(s), outward(s, until * yield_force(p, s) / p[0]))
+    return linear(slope, s * f0, turns_inward(s), outward(s, end * yield_force(p, s) / p[K]))
 
 
 def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
     """State after the end of a line of the backbone."""
-    s, x = side(at), yield_line(p, at, m)[2]
-    return enter(p, (m[0], m[1], m[2], m[3], changed(m, s, x)), s, x)
+    s = side(at)
+    _, _, x = yield_line(p, at, m)
+    return enter_backbone(p, (*m[:CHANGES], changes_at(m, s, x)), s, x)
 
 
-def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
+def reversed_at(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
     """Internal variables after a reversal on the backbone at `d`: ductilities, and the point itself."""
     s = side(at)
     slope, f0, _ = yield_line(p, at, m)
-    x = s * d * p[0] / yield_force(p, s)
+    x = s * d * p[K] / yield_force(p, s)
     plus, minus = grown(m, s, x)
-    return (plus, minus, d, slope * d + s * f0, changed(m, s, x))
+    return (plus, minus, d, slope * d + s * f0, changes_at(m, s, x))
 
 
-def meets(p: Numbers, m: Numbers, s: float, slope: float, d: float, f: float) -> float:
+def meeting_ductility(p: Numbers, m: Numbers, s: float, slope: float, d: float, f: float) -> float:
     """Ductility where the line of that slope through (d, f) meets the backbone of side `s`."""
-    r, fy, mu = p[3], yield_force(p, s), worst(p, m, s)
-    left, start = (1.0 - r) * factor(p, m, s), s * (slope * d - f) / fy
+    r, fy, mu = p[R], yield_force(p, s), governing_ductility(p, m, s)
+    scale, start = (1.0 - r) * strength_by_cycles(p, m, s), s * (slope * d - f) / fy
     x = BEFORE
-    while True:
-        fall, value, end = piece(p, mu, x)
-        meeting = max(x, (left * value + start) / (slope / p[0] - r - left * fall))
+    while True:  # one line of the backbone after the other
+        fall, value, end = strength_line(p, mu, x)
+        meeting = max(x, (scale * value + start) / (slope / p[K] - r - scale * fall))
         if end == 0.0 or meeting <= end:
             return meeting
         x = end

@@ -27,6 +27,7 @@ from pound_solve.laws.hysteresis import degrading_bilinear
 from pound_solve.laws.hysteresis.backbone import LOSS, loses_strength
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS = 0, 1, 2
+PLASTIC = 0  #: internal variable: plastic deformation
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -39,7 +40,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     k, plus, minus, r = p[:4]
     ke = (1.0 - r) * k
     if at == ELASTIC:
-        pull = ke * m[0]
+        pull = ke * m[PLASTIC]
         return linear(k, -pull, (ke, 0.0, -pull - (1.0 - r) * plus), (-ke, 0.0, pull + (1.0 - r) * minus))
     if at == YIELDING_PLUS:
         return linear(r * k, (1.0 - r) * plus, REVERSAL_DOWN)

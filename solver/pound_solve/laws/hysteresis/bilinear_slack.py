@@ -23,9 +23,12 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    FY,
+    FY_MINUS,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
+    K,
     Law,
     Numbers,
     Rule,
@@ -36,23 +39,25 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.refusal import ItemError
 
 SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
+GAP_PLUS, GAP_MINUS, R, GROW = range(3, 7)  #: parameters of a law after K, FY, FY_MINUS
+P_PLUS, P_MINUS = 0, 1  #: internal variables: plastic deformations of both sides; with GROW=NO the same
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
-    if p[3] <= 0.0:
+    if p[GAP_PLUS] <= 0.0:
         return ELASTIC_PLUS, (0.0, 0.0)
-    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), (0.0, 0.0)
+    return (ELASTIC_MINUS if p[GAP_MINUS] >= 0.0 else SLACK), (0.0, 0.0)
 
 
 def first_yield(p: Numbers) -> tuple[float, float]:
     """Deformations at yield: beyond the slack."""
-    return p[3] + p[1] / p[0], p[4] + p[2] / p[0]
+    return p[GAP_PLUS] + p[FY] / p[K], p[GAP_MINUS] + p[FY_MINUS] / p[K]
 
 
-def line(p: Numbers, at: int) -> tuple[float, float, float]:
+def yield_line(p: Numbers, at: int) -> tuple[float, float, float]:
     """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the engaged side."""
-    plus, minus, gap_plus, gap_minus = p[1:5]
+    plus, minus, gap_plus, gap_minus = p[FY:R]
     if at == YIELDING_PLUS:
         return gap_plus, plus, 1.0
     if at == YIELDING_MINUS:
@@ -60,63 +65,63 @@ def line(p: Numbers, at: int) -> tuple[float, float, float]:
     return (gap_plus, minus, 1.0) if at == BACK_PLUS else (gap_minus, plus, -1.0)
 
 
-def yields_back(p: Numbers, at: int, m: Numbers) -> float:
+def force_at_yield_back(p: Numbers, at: int, m: Numbers) -> float:
     """Force at which an elastic spring yields in the opposite direction, if it has not become slack
     before.
     """
-    k, plus, minus, _, _, r, grow = p[:7]
-    if grow != 0.0:
+    k, plus, minus, r = p[K], p[FY], p[FY_MINUS], p[R]
+    if p[GROW] != 0.0:
         return 0.0
-    hard = k * r / (1.0 - r) * m[0]
-    return minus + hard if at == ELASTIC_PLUS else plus + hard
+    shift = k * r / (1.0 - r) * m[P_PLUS]
+    return minus + shift if at == ELASTIC_PLUS else plus + shift
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Nothing, elastic on one side, or along a yield line."""
-    k, plus, minus, gap_plus, gap_minus, r = p[:6]
-    hard = k * r / (1.0 - r)
-    on_plus, on_minus = gap_plus + m[0], gap_minus + m[1]
+    k, plus, minus, gap_plus, gap_minus, r = p[:GROW]
+    h = k * r / (1.0 - r)
+    start_plus, start_minus = gap_plus + m[P_PLUS], gap_minus + m[P_MINUS]
     if at == SLACK:
-        return linear(0.0, 0.0, above(on_plus), below(on_minus))
+        return linear(0.0, 0.0, above(start_plus), below(start_minus))
     if at == ELASTIC_PLUS:
-        lets_go = (-k, 0.0, k * on_plus + max(yields_back(p, at, m), 0.0))
-        return linear(k, -k * on_plus, (k, 0.0, -k * on_plus - plus - hard * m[0]), lets_go)
+        goes_slack = (-k, 0.0, k * start_plus + max(force_at_yield_back(p, at, m), 0.0))
+        return linear(k, -k * start_plus, (k, 0.0, -k * start_plus - plus - h * m[P_PLUS]), goes_slack)
     if at == ELASTIC_MINUS:
-        lets_go = (k, 0.0, -k * on_minus - min(yields_back(p, at, m), 0.0))
-        return linear(k, -k * on_minus, (-k, 0.0, k * on_minus + minus + hard * m[1]), lets_go)
-    gap, fy, side = line(p, at)
+        goes_slack = (k, 0.0, -k * start_minus - min(force_at_yield_back(p, at, m), 0.0))
+        return linear(k, -k * start_minus, (-k, 0.0, k * start_minus + minus + h * m[P_MINUS]), goes_slack)
+    gap, fy, side = yield_line(p, at)
     slope = r * k
     f0 = (1.0 - r) * fy - slope * gap
     if at == YIELDING_PLUS:
         return linear(slope, f0, REVERSAL_DOWN)
     if at == YIELDING_MINUS:
         return linear(slope, f0, REVERSAL_UP)
-    turn = REVERSAL_UP if side > 0.0 else REVERSAL_DOWN
-    return linear(slope, f0, turn, (-side * slope, 0.0, -side * f0))
+    reversal = REVERSAL_UP if side > 0.0 else REVERSAL_DOWN
+    return linear(slope, f0, reversal, (-side * slope, 0.0, -side * f0))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Engage, yield, become slack, or unload where the motion reverses."""
-    k, grow = p[0], p[6]
+    k, r, grow = p[K], p[R], p[GROW]
     if at == SLACK:
         return (ELASTIC_PLUS if event == 0 else ELASTIC_MINUS), m
     if at == ELASTIC_PLUS:
         if event == 0:
             return YIELDING_PLUS, m
-        return (BACK_PLUS if yields_back(p, at, m) > 0.0 else SLACK), m
+        return (BACK_PLUS if force_at_yield_back(p, at, m) > 0.0 else SLACK), m
     if at == ELASTIC_MINUS:
         if event == 0:
             return YIELDING_MINUS, m
-        return (BACK_MINUS if yields_back(p, at, m) < 0.0 else SLACK), m
-    gap, fy, side = line(p, at)
-    slope = p[5] * k
-    now = d - gap - ((1.0 - p[5]) * fy + slope * (d - gap)) / k
+        return (BACK_MINUS if force_at_yield_back(p, at, m) < 0.0 else SLACK), m
+    gap, fy, side = yield_line(p, at)
+    slope = r * k
+    plastic = d - gap - ((1.0 - r) * fy + slope * (d - gap)) / k
     if grow == 0.0:
-        m = (now, now)
+        m = (plastic, plastic)
     elif side > 0.0:
-        m = (now, m[1])
+        m = (plastic, m[P_MINUS])
     else:
-        m = (m[0], now)
+        m = (m[P_PLUS], plastic)
     if event == 1:
         return SLACK, m
     return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m

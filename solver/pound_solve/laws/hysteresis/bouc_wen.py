@@ -17,7 +17,7 @@ so that :math:`u` and the work :math:`w = \int y\,du` are incomplete beta functi
 .. math:: \int_0^y \frac{y^{an-1}\,dy}{1 \mp y^n} = \frac{y^{an}}{n}\,\phi(a, \pm y^n), \quad
           \phi(a, q) = \sum_j \frac{q^j}{a + j}, \quad a = \tfrac1n \text{ for } u,\ \tfrac2n \text{ for } w
 
-which are summed as series and inverted by Newton's iteration: no step size, error below 1e-13.
+which are summed as series and inverted by Newton's iteration, without a step size, to an error below 1e-13.
 
 Internal variables: the position :math:`u d_y` (signed, along the present direction) and the deformation at
 the last reversal, and :math:`\int z\,dd` from :math:`z = 0`.
@@ -39,10 +39,13 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    FY,
+    FY_MINUS,
     PAST,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
+    K,
     Law,
     Numbers,
     Rule,
@@ -53,6 +56,11 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.mirror import need_both_sides
 
 LOADING, UNLOADING = 0, 1
+# parameters of a law after K, FY, FY_MINUS: r, n, beta; constants of the series of u and of w near y = 1;
+# scale (2 beta - 1)^(1/n) of an inward motion
+R, N, BETA, C_U, C_W, SCALE = range(3, 9)
+# internal variables at the last reversal: position along the present direction, deformation, integral of z
+POSITION, REVERSAL, INTEGRAL = range(3)
 SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit
 
 
@@ -63,7 +71,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Loading until the motion reverses, and unloading until it reverses again."""
-    return linear(p[0], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
+    return linear(p[K], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
 
 
 # ---------------------------------------------------------------------- y, u and w
@@ -86,7 +94,7 @@ def phi(a: float, q: float) -> float:
     return total / (a * (1.0 - q))
 
 
-def rest(a: float, t: float) -> float:
+def series_near_1(a: float, t: float) -> float:
     """Sum of (1-a)(2-a)...(j-a) t^j / (j j!), t up to 1/2."""
     j, term, total = 1.0, (1.0 - a) * t, (1.0 - a) * t
     while abs(term) > 1e-17:
@@ -96,106 +104,107 @@ def rest(a: float, t: float) -> float:
     return total
 
 
-def limit(a: float) -> float:
-    """Constant of q^a phi(a, q) = -log(1 - q) + limit(a) - rest(a, 1 - q), from both series at 1/2."""
-    constant: float = 0.5**a * phi(a, 0.5) - math.log(2.0) + rest(a, 0.5)
+def constant_near_1(a: float) -> float:
+    """Constant of q^a phi(a, q) = -log(1 - q) + constant - series_near_1(a, 1 - q); both series at 1/2."""
+    constant: float = 0.5**a * phi(a, 0.5) - math.log(2.0) + series_near_1(a, 0.5)
     return constant
 
 
-def outwards(p: Numbers, u: float) -> tuple[float, float, float]:
+def outward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
     """y, dy/du and w of dy/du = 1 - y^n at `u`."""
-    n, c1, c2 = p[4], p[6], p[7]
+    n, c_u, c_w = p[N], p[C_U], p[C_W]
     half = 0.5 ** (1.0 / n)
-    # of y^n = 1/2 and above: tau = -log(1 - y^n) = n u - c1 + rest
-    if n * u >= math.log(2.0) + c1 - rest(1.0 / n, 0.5):
-        tau = max(n * u - c1, math.log(2.0))
+    # y^n = 1/2 and above: tau = -log(1 - y^n) = n u - c_u + series_near_1, by Newton's iteration
+    if n * u >= math.log(2.0) + c_u - series_near_1(1.0 / n, 0.5):
+        tau = max(n * u - c_u, math.log(2.0))
         if tau < SATURATED:
             for _ in range(50):
                 t = math.exp(-tau)
-                up = (n * u - c1 + rest(1.0 / n, t) - tau) * (1.0 - t) ** (1.0 - 1.0 / n)
-                tau += up
-                if abs(up) < 1e-8:
+                step = (n * u - c_u + series_near_1(1.0 / n, t) - tau) * (1.0 - t) ** (1.0 - 1.0 / n)
+                tau += step
+                if abs(step) < 1e-8:
                     break
         t = math.exp(-tau)
-        return (1.0 - t) ** (1.0 / n), t, (tau + c2 - rest(2.0 / n, t)) / n
+        return (1.0 - t) ** (1.0 / n), t, (tau + c_w - series_near_1(2.0 / n, t)) / n
     y = min(u, half)
     for _ in range(50):
         slope = 1.0 - y**n
-        off = u - y * phi(1.0 / n, y**n) / n
-        y += off * slope * (1.0 - 0.5 * off * n * y ** (n - 1.0))
-        if abs(off) < 1e-6 * u:  # of third order: the next step is rounding
+        error = u - y * phi(1.0 / n, y**n) / n
+        y += error * slope * (1.0 - 0.5 * error * n * y ** (n - 1.0))
+        if abs(error) < 1e-6 * u:  # of third order: the next step is rounding
             break
     return y, 1.0 - y**n, y * y * phi(2.0 / n, y**n) / n
 
 
-def inwards(p: Numbers, u: float) -> tuple[float, float, float]:
+def inward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
     """y, dy/du and w of dy/du = 1 + (2 beta - 1) y^n at `u`; beyond y = 1 (no motion gets there) a straight
     line.
     """
-    n, g = p[4], p[8]
-    if g == 0.0:
+    n, scale = p[N], p[SCALE]
+    if scale == 0.0:
         return u, 1.0, 0.5 * u * u
-    far, w1 = inverse_inwards(p, 1.0)
+    far, w1 = inverse_inward_curve(p, 1.0)
     if u >= far:
-        slope = 1.0 + g**n
+        slope = 1.0 + scale**n
         return 1.0 + slope * (u - far), slope, w1 + (u - far) * (1.0 + 0.5 * slope * (u - far))
-    x = g * u
+    x = scale * u
     y = x
     for _ in range(50):
         slope = 1.0 + y**n
-        off = x - y * phi(1.0 / n, -(y**n)) / n
-        y += off * slope * (1.0 + 0.5 * off * n * y ** (n - 1.0))
-        if abs(off) < 1e-6 * x:
+        error = x - y * phi(1.0 / n, -(y**n)) / n
+        y += error * slope * (1.0 + 0.5 * error * n * y ** (n - 1.0))
+        if abs(error) < 1e-6 * x:
             break
-    return y / g, 1.0 + y**n, y * y * phi(2.0 / n, -(y**n)) / (n * g * g)
+    return y / scale, 1.0 + y**n, y * y * phi(2.0 / n, -(y**n)) / (n * scale * scale)
 
 
-def inverse_outwards(p: Numbers, y: float) -> tuple[float, float]:
+def inverse_outward_curve(p: Numbers, y: float) -> tuple[float, float]:
     """Return u and w of `y`, outwards."""
-    n, c1, c2 = p[4], p[6], p[7]
+    n, c_u, c_w = p[N], p[C_U], p[C_W]
     q = y**n
     if q <= 0.5:
         return y * phi(1.0 / n, q) / n, y * y * phi(2.0 / n, q) / n
     t = max(1.0 - q, math.exp(-SATURATED))
-    return (c1 - math.log(t) - rest(1.0 / n, t)) / n, (c2 - math.log(t) - rest(2.0 / n, t)) / n
+    u, w = c_u - math.log(t) - series_near_1(1.0 / n, t), c_w - math.log(t) - series_near_1(2.0 / n, t)
+    return u / n, w / n
 
 
-def inverse_inwards(p: Numbers, y: float) -> tuple[float, float]:
+def inverse_inward_curve(p: Numbers, y: float) -> tuple[float, float]:
     """Return u and w of `y`, inwards."""
-    n, g = p[4], p[8]
-    if g == 0.0:
+    n, scale = p[N], p[SCALE]
+    if scale == 0.0:
         return y, 0.5 * y * y
-    q = (g * y) ** n
+    q = (scale * y) ** n
     return y * phi(1.0 / n, -q) / n, y * y * phi(2.0 / n, -q) / n
 
 
 # ---------------------------------------------------------------------- the rule
 
 
-def yields(p: Numbers, s: float) -> float:
+def yield_deformation(p: Numbers, s: float) -> float:
     """Yield deformation of a side."""
-    return (p[1] if s > 0.0 else -p[2]) / p[0]
+    return (p[FY] if s > 0.0 else -p[FY_MINUS]) / p[K]
 
 
-def along(p: Numbers, s: float, x: float) -> tuple[float, float, float]:
+def motion_at(p: Numbers, s: float, x: float) -> tuple[float, float, float]:
     """s z, dz/dd and the integral of z dd from z = 0, at position `x` of a motion in direction `s`."""
     if x >= 0.0:
-        dy = yields(p, s)
-        y, slope, w = outwards(p, x / dy)
+        dy = yield_deformation(p, s)
+        y, slope, w = outward_curve(p, x / dy)
         return dy * y, slope, dy * dy * w
-    dy = yields(p, -s)
-    y, slope, w = inwards(p, -x / dy)
+    dy = yield_deformation(p, -s)
+    y, slope, w = inward_curve(p, -x / dy)
     return -dy * y, slope, dy * dy * w
 
 
 def position(p: Numbers, s: float, z: float) -> tuple[float, float]:
     """Position at the (mirrored) `z` of a motion in direction `s`, and the integral of z dd from z = 0."""
     if z >= 0.0:
-        dy = yields(p, s)
-        u, w = inverse_outwards(p, z / dy)
+        dy = yield_deformation(p, s)
+        u, w = inverse_outward_curve(p, z / dy)
         return dy * u, dy * dy * w
-    dy = yields(p, -s)
-    u, w = inverse_inwards(p, -z / dy)
+    dy = yield_deformation(p, -s)
+    u, w = inverse_inward_curve(p, -z / dy)
     return -dy * u, dy * dy * w
 
 
@@ -203,47 +212,48 @@ def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Force from the position along the present direction."""
-    k, r = p[0], p[3]
+    k, r = p[K], p[R]
     s = 1.0 if at == LOADING else -1.0
-    z, slope, done = along(p, s, m[0] + s * (d - m[1]))
-    work = k * (0.5 * r * (d - d0) * (d + d0) + (1.0 - r) * (done - m[2]))
+    z, slope, integral = motion_at(p, s, m[POSITION] + s * (d - m[REVERSAL]))
+    work = k * (0.5 * r * (d - d0) * (d + d0) + (1.0 - r) * (integral - m[INTEGRAL]))
     return k * (r * d + (1.0 - r) * s * z), k * (r + (1.0 - r) * slope), 0.0, work
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Reverse."""
     s = 1.0 if at == LOADING else -1.0
-    x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])
-    return (UNLOADING if at == LOADING else LOADING), (x, d, done)
+    z, _, _ = motion_at(p, s, m[POSITION] + s * (d - m[REVERSAL]))
+    x, integral = position(p, -s, -z)
+    return (UNLOADING if at == LOADING else LOADING), (x, d, integral)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy recovered down to zero force, which is found by Newton's iteration."""
-    k, r = p[0], p[3]
+    k, r = p[K], p[R]
     if f == 0.0:
         return 0.0
     s = -1.0 if f > 0.0 else 1.0
-    x0, before = position(p, s, s * (f / k - r * d) / (1.0 - r))
-    x, done = x0, before
+    x0, integral_0 = position(p, s, s * (f / k - r * d) / (1.0 - r))
+    x, integral = x0, integral_0
     for _ in range(50):
-        z, slope, done = along(p, s, x)
+        z, slope, integral = motion_at(p, s, x)
         step = -(r * (s * d + x - x0) + (1.0 - r) * z) / (r + (1.0 - r) * slope)
         x += step
-        if abs(step) < 1e-10 * abs(d):  # from one side, since the force is concave: the rest is rounding
+        if abs(step) < 1e-10 * abs(d):  # from one side, as the force is concave: the next step is rounding
             break
-    z, slope, done = along(p, s, x)
+    z, slope, integral = motion_at(p, s, x)
     end = d + s * (x - x0)
-    return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (before - done))
+    return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (integral_0 - integral))
 
 
 def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Differential equation of z, see `Rule`."""
-    k, r, n, beta = p[0], p[3], p[4], p[5]
+    k, r, n, beta = p[K], p[R], p[N], p[BETA]
     s = 1.0 if at == LOADING else -1.0
     z = (f / k - r * d) / (1.0 - r)
-    if s * z > -PAST * yields(p, -s):
-        return z, s * yields(p, s), n, -1.0, 0.0, r * k, (1.0 - r) * k
-    return z, -s * yields(p, -s), n, 2.0 * beta - 1.0, 0.0, r * k, (1.0 - r) * k
+    if s * z > -PAST * yield_deformation(p, -s):
+        return z, s * yield_deformation(p, s), n, -1.0, 0.0, r * k, (1.0 - r) * k
+    return z, -s * yield_deformation(p, -s), n, 2.0 * beta - 1.0, 0.0, r * k, (1.0 - r) * k
 
 
 RULE = Rule(
@@ -264,7 +274,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     """Rule from a card's values, a stiffness and the two yield forces."""
     need_both_sides(fy_plus, fy_minus)
     n, beta = values["N"], values["BETA"]
-    p = (k, fy_plus, fy_minus, values["R"], n, beta, limit(1.0 / n), limit(2.0 / n))
+    p = (k, fy_plus, fy_minus, values["R"], n, beta, constant_near_1(1.0 / n), constant_near_1(2.0 / n))
     return Law(RULE, (*p, (2.0 * beta - 1.0) ** (1.0 / n)))
 
 

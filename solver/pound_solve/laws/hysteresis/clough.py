@@ -1,8 +1,8 @@
 r"""Clough's degrading stiffness: reloading goes straight to the largest point of that side.
 
 The rule of `peak_oriented` with :math:`\beta = 0`.  ALFA=0, the default, is Clough's own: unloading with
-the initial stiffness.  A spring that reverses at zero force, however shortly after it, aims at the peak,
-too, and not at the point from which it unloaded.
+the initial stiffness.  A spring that reverses at zero force, or however shortly after it, also aims at the
+peak, and not at the point from which it unloaded.
 
 References
 ----------
@@ -18,7 +18,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.laws.automaton import Law
-from pound_solve.laws.hysteresis.backbone import ALFA, LOSS, R, parameters
+from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, LOSS, R_FIELD, parameters
 from pound_solve.laws.hysteresis.peak_oriented import RULE
 
 
@@ -31,7 +31,7 @@ SPEC = Spec(
     "hysteresis",
     "CLOUGH",
     "degrading stiffness, peak-oriented",
-    (R, ALFA, *LOSS),
+    (R_FIELD, ALFA_FIELD, *LOSS),
     code=11,
     reference="Clough & Johnston 1966; Ruaumoko rule 11",
     sample="R=0.05",

@@ -15,19 +15,26 @@ from dataclasses import replace
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import Numbers, above, below, linear, passes
-from pound_solve.laws.hysteresis.backbone import R as SHARE_OF_INITIAL
+from pound_solve.laws.automaton import FY, FY_MINUS, K, Numbers, above, below, linear, passes
+from pound_solve.laws.hysteresis.backbone import R_FIELD as RATIO_TO_INITIAL
+from pound_solve.laws.hysteresis.backbone import R
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 
 # branches of the positive side; those of the negative side are one more
 ELASTIC, CRACKED, YIELDING = 0, 1, 3
 
-PARAMETERS = 9  #: numbers of a law that belong to the backbone, with the power of unloading among them
+# parameters of a law after K, FY, FY_MINUS, R, ALPHA: ratios of both sides, of the crack force to the yield
+# force, and of the secant stiffness at the yield point to K
+FCR, FCR_MINUS, RHO, RHO_MINUS = range(5, 9)
+PARAMETERS = 9  #: number of them all; a rule adds its own behind
+MOST, MOST_MINUS = 0, 1  #: internal variables: largest deformations of both sides, mirrored
 
 Point = tuple[float, float]  #: deformation and force, mirrored
 
-R = replace(SHARE_OF_INITIAL, doc="ratio of post-yield stiffness to secant stiffness at the yield point")
-FCR = Field(
+R_FIELD = replace(
+    RATIO_TO_INITIAL, doc="ratio of post-yield stiffness to secant stiffness at the yield point"
+)
+FCR_FIELD = Field(
     "FCR",
     Kind.REAL,
     "-",
@@ -37,7 +44,7 @@ FCR = Field(
     count=(1, 2),
     doc="ratio of cracking force to yield force, positive and negative side; one value: both",
 )
-RHO = Field(
+RHO_FIELD = Field(
     "RHO",
     Kind.REAL,
     "-",
@@ -50,8 +57,8 @@ RHO = Field(
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the shares of
-    the crack forces and those of the secant stiffness, both of either side.
+    """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the ratios
+    of the crack forces and of the secant stiffnesses, each for both sides.
 
     Raises
     ------
@@ -63,46 +70,52 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     return k, fy_plus, fy_minus, values["R"], values["ALFA"], fcr[0], fcr[-1], rho[0], rho[-1]
 
 
-def of(p: Numbers, s: float) -> tuple[float, float, float, float]:
-    """Yield force, crack deformation and force, and yield deformation of a side."""
-    fy, share, rho = (p[1], p[5], p[7]) if s > 0.0 else (-p[2], p[6], p[8])
-    return fy, share * fy / p[0], share * fy, fy / (rho * p[0])
+def crack_point(p: Numbers, s: float) -> Point:
+    """Crack point of a side."""
+    fc = p[FCR] * p[FY] if s > 0.0 else p[FCR_MINUS] * -p[FY_MINUS]
+    return fc / p[K], fc
+
+
+def yield_point(p: Numbers, s: float) -> Point:
+    """Yield point of a side."""
+    fy, rho = (p[FY], p[RHO]) if s > 0.0 else (-p[FY_MINUS], p[RHO_MINUS])
+    return fy / (rho * p[K]), fy
 
 
 def first_yield(p: Numbers) -> tuple[float, float]:
     """Deformations at the yield points."""
-    return of(p, 1.0)[3], -of(p, -1.0)[3]
+    return yield_point(p, 1.0)[0], -yield_point(p, -1.0)[0]
 
 
 def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
     """Slope and force of the backbone at a deformation beyond the crack."""
-    fy, xc, fc, xy = of(p, s)
+    (xc, fc), (xy, fy) = crack_point(p, s), yield_point(p, s)
     if x >= xy:
-        slope = p[3] * fy / xy
+        slope = p[R] * fy / xy
         return slope, fy + slope * (x - xy)
     slope = (fy - fc) / (xy - xc)
     return slope, fc + slope * (x - xc)
 
 
-def largest(m: Numbers, s: float) -> float:
+def largest_deformation(m: Numbers, s: float) -> float:
     """Largest deformation of a side so far."""
-    return m[0] if s > 0.0 else m[1]
+    return m[MOST] if s > 0.0 else m[MOST_MINUS]
 
 
 def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
     """Largest deformations when side `s` has reached `x`."""
-    return (max(m[0], x), m[1]) if s > 0.0 else (m[0], max(m[1], x))
+    return (max(m[MOST], x), m[MOST_MINUS]) if s > 0.0 else (m[MOST], max(m[MOST_MINUS], x))
 
 
 def has_yielded(p: Numbers, s: float, m: Numbers) -> bool:
     """Whether a side has gone beyond its yield point."""
-    xy = of(p, s)[3]
-    return passes(largest(m, s), xy, xy)
+    xy, _ = yield_point(p, s)
+    return passes(largest_deformation(m, s), xy, xy)
 
 
 def peak(p: Numbers, s: float, m: Numbers) -> Point:
     """Largest deformation of a side and its force."""
-    x = largest(m, s)
+    x = largest_deformation(m, s)
     return x, backbone(p, s, x)[1]
 
 
@@ -111,9 +124,9 @@ def backbone_branch(p: Numbers, at: int) -> Numbers:
     (event 0) or the side yields (event 1).
     """
     if at == ELASTIC:
-        return linear(p[0], 0.0, above(of(p, 1.0)[1]), below(-of(p, -1.0)[1]))
+        return linear(p[K], 0.0, above(crack_point(p, 1.0)[0]), below(-crack_point(p, -1.0)[0]))
     s = side(at)
-    xc, xy = of(p, s)[1], of(p, s)[3]
+    xc, xy = crack_point(p, s)[0], yield_point(p, s)[0]
     if at < YIELDING:
         slope, f = backbone(p, s, xc)
         return linear(slope, s * (f - slope * xc), turns_inward(s), outward(s, xy))
@@ -121,6 +134,6 @@ def backbone_branch(p: Numbers, at: int) -> Numbers:
     return linear(slope, s * (f - slope * xy), turns_inward(s))
 
 
-def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
+def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of a side."""
-    return pair(YIELDING if x >= of(p, s)[3] else CRACKED, s), m
+    return pair(YIELDING if x >= yield_point(p, s)[0] else CRACKED, s), m

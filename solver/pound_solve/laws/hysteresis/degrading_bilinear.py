@@ -22,19 +22,25 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import FY, FY_MINUS, BranchKind, K, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.hysteresis.backbone import (
-    ALFA,
+    ALFA_FIELD,
+    CHANGES,
     ELASTIC,
     LOSS,
+    MU,
+    MU_MINUS,
     PARAMETERS,
+    R_FIELD,
     VARIABLES,
-    R,
-    enter,
-    meets,
+    VIRGIN,
+    D,
+    F,
+    enter_backbone,
+    meeting_ductility,
     next_branch,
     parameters,
-    turn,
+    reversed_at,
     unloading,
     yield_branch,
     yield_force,
@@ -44,34 +50,35 @@ from pound_solve.laws.mirror import side
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, (1.0, 1.0, 0.0, 0.0, 0.0)
+    return ELASTIC, VIRGIN
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic until a yield line is met, or along it until the motion reverses."""
     if at != ELASTIC:
         return yield_branch(p, at, m)
-    plus, minus, d, f = m[:4]
+    plus, minus, d, f = m[:CHANGES]
     k = unloading(p, max(plus, minus))
-    up, down = meets(p, m, 1.0, k, d, f), meets(p, m, -1.0, k, d, f)
-    return linear(k, f - k * d, above(up * p[1] / p[0]), below(down * p[2] / p[0]))
+    mu, mu_minus = meeting_ductility(p, m, 1.0, k, d, f), meeting_ductility(p, m, -1.0, k, d, f)
+    return linear(k, f - k * d, above(mu * p[FY] / p[K]), below(mu_minus * p[FY_MINUS] / p[K]))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield out of the elastic branch, or unload where the motion reverses."""
     if at == ELASTIC:
         s = 1.0 if event == 0 else -1.0
-        return enter(p, m, s, meets(p, m, s, unloading(p, max(m[0], m[1])), m[2], m[3]))
+        k = unloading(p, max(m[MU], m[MU_MINUS]))
+        return enter_backbone(p, m, s, meeting_ductility(p, m, s, k, m[D], m[F]))
     if event == 1:
         return next_branch(p, at, m)
-    return ELASTIC, turn(p, at, m, d)
+    return ELASTIC, reversed_at(p, at, m, d)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy recovered along the unloading line."""
     s = side(at)
-    x = 1.0 if at == ELASTIC else s * d * p[0] / yield_force(p, s)
-    return 0.5 * f * f / unloading(p, max(x, m[0], m[1]))
+    x = 1.0 if at == ELASTIC else s * d * p[K] / yield_force(p, s)
+    return 0.5 * f * f / unloading(p, max(x, m[MU], m[MU_MINUS]))
 
 
 RULE = Rule(
@@ -97,7 +104,7 @@ SPEC = Spec(
     "hysteresis",
     "DEGRADING_BILINEAR",
     "bilinear, elastic stiffness falls with ductility",
-    (R, ALFA, *LOSS),
+    (R_FIELD, ALFA_FIELD, *LOSS),
     code=10,
     reference="Nielsen & Imbeault 1970; Otani 1981; Ruaumoko rule 10",
     sample="R=0.1 ALFA=0.4",

@@ -29,6 +29,7 @@ from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, be
 from pound_solve.laws.mirror import inward, need_both_sides, outward, side, turns_inward, turns_outward
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BACK_MINUS = range(7)
+FOOT = 0  #: internal variable: foot of the elastic line, mirrored
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -47,8 +48,8 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at <= YIELDING_MINUS:
         return linear(r * k, s * (1.0 - r) * fy, turns_inward(s))
     if at <= INSIDE_MINUS:
-        shift = m[0] / (1.0 - r)
-        return linear(k, -s * k * m[0], outward(s, shift + fy / k), inward(s, shift + low / k))
+        shift = m[FOOT] / (1.0 - r)
+        return linear(k, -s * k * m[FOOT], outward(s, shift + fy / k), inward(s, shift + low / k))
     return linear(r * k, s * (1.0 - r) * low, turns_outward(s), inward(s, low / k))
 
 

@@ -32,7 +32,7 @@ deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511.
 Lignos DG, Krawinkler H (2011), Deterioration modeling of steel components in support of collapse prediction
 of steel moment frames under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate
 rotation; theta_p and theta_pc).
-Ours: an excursion deteriorates :math:`k_u` once, however often it reverses, and by no more than half; only
+Ours: an excursion deteriorates :math:`k_u` once, however often it reverses, and by at most a half; only
 :math:`\Lambda = 0` switches a mode off.
 """
 
@@ -42,84 +42,93 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import STRENGTHLESS, BranchKind, Numbers
+from pound_solve.laws.automaton import FY, FY_MINUS, STRENGTHLESS, BranchKind, K, Numbers
 from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
 FAILED = 0
-#: the rules' own come in pairs after it: positive side, negative side
+#: first branch of all three rules; those of a rule follow in pairs: positive side, negative side
 BRANCHES = BranchKind.OPEN.named(STRENGTHLESS)
 
-# Internal variables: five numbers of each side, mirrored (the first two are F_y and F_ref), then the
-# unloading stiffness now and at the start of the excursion, where it started, the energy of the finished
-# excursions, and of the present one up to the present branch, and where that was entered
-KU, KU_BEFORE, FOOT, DONE, SPENT, ENTERED = 10, 11, 12, 13, 14, 15
+# parameters of a law after K, FY, FY_MINUS: alpha_s; theta_p and theta_pc of both sides; lambda; theta_u of
+# both sides (0: none); energy capacities E_t for basic strength, post-capping strength, unloading stiffness
+# and reloading; exponent c
+R, THETA_P, THETA_P_MINUS, THETA_PC, THETA_PC_MINUS, LAMBDA, THETA_U, THETA_U_MINUS = range(3, 11)
+ET_STRENGTH, ET_CAP, ET_UNLOADING, ET_RELOADING, C = range(11, 16)
+PARAMETERS = 16  #: number of them all; a rule adds its own behind
+
+# internal variables: SIDE numbers of each side, then the unloading stiffness now and at the start of the
+# excursion, where it started, the energy of the finished excursions, and of the present one up to the
+# present branch, and where that was entered
+KU, KU_BEFORE, FOOT, DONE, SPENT, ENTERED = range(10, 16)
+FY_NOW, F_REF = 0, 1  #: first numbers of a side, mirrored: F_y and F_ref; the others are those of the rule
+SIDE = 5
 
 
 def variables_of_side(m: Numbers, s: float) -> Numbers:
     """Internal variables of a side."""
-    return m[0:5] if s > 0.0 else m[5:10]
+    return m[:SIDE] if s > 0.0 else m[SIDE:KU]
 
 
-def renew(m: Numbers, s: float, mine: Numbers) -> Numbers:
-    """Internal variables in which those of side `s` are replaced by `mine`."""
-    return mine + m[5:16] if s > 0.0 else m[0:5] + mine + m[10:16]
+def replace_side(m: Numbers, s: float, of_side: Numbers) -> Numbers:
+    """Internal variables in which those of side `s` are replaced."""
+    return of_side + m[SIDE:] if s > 0.0 else m[:SIDE] + of_side + m[KU:]
 
 
 def virgin(p: Numbers, s: float) -> tuple[float, float, float, float]:
     """Yield force, capping force and F_ref of a side at first, and the slope of the falling branch."""
-    k, r = p[0], p[3]
+    k, r = p[K], p[R]
     if s > 0.0:
-        fy, plastic, fall = p[1], p[4], p[6]
+        fy, theta_p, theta_pc = p[FY], p[THETA_P], p[THETA_PC]
     else:
-        fy, plastic, fall = -p[2], p[5], p[7]
-    cap = fy + r * k * plastic
-    return fy, cap, cap + cap / fall * (fy / k + plastic), -cap / fall
+        fy, theta_p, theta_pc = -p[FY_MINUS], p[THETA_P_MINUS], p[THETA_PC_MINUS]
+    cap = fy + r * k * theta_p
+    return fy, cap, cap + cap / theta_pc * (fy / k + theta_p), -cap / theta_pc
 
 
 def ultimate(p: Numbers, s: float) -> float:
     """Ultimate deformation of a side."""
-    return p[9] if s > 0.0 else p[10]
+    return p[THETA_U] if s > 0.0 else p[THETA_U_MINUS]
 
 
 def residual(p: Numbers, s: float) -> float:
     """Residual strength of a side."""
-    return p[8] * virgin(p, s)[0]
+    return p[LAMBDA] * virgin(p, s)[0]
 
 
 def hardening(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
     """Slope and force at zero deformation of the hardening line."""
-    fy = variables_of_side(m, s)[0]
-    slope = p[3] * p[0] * fy / virgin(p, s)[0]
-    return slope, fy - slope * fy / p[0]
+    fy = variables_of_side(m, s)[FY_NOW]
+    slope = p[R] * p[K] * fy / virgin(p, s)[0]
+    return slope, fy - slope * fy / p[K]
 
 
 def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
     """Slope and force at zero deformation of the falling line."""
-    return virgin(p, s)[3], variables_of_side(m, s)[1]
+    return virgin(p, s)[3], variables_of_side(m, s)[F_REF]
 
 
-def share(energy: float, before: float, capacity: float, c: float) -> float:
+def deterioration(energy: float, before: float, capacity: float, c: float) -> float:
     """Deterioration parameter beta of an excursion; 1 if the energy capacity is exhausted, 0 if the mode is
     off.
     """
-    left = capacity - before - energy
+    remaining = capacity - before - energy
     if capacity == 0.0 or energy <= 0.0:
         return 0.0
-    return 1.0 if left <= energy else (energy / left) ** c
+    return 1.0 if remaining <= energy else (energy / remaining) ** c
 
 
-def advance(line: Numbers, m: Numbers, d: float) -> Numbers:
+def add_work(line: Numbers, m: Numbers, d: float) -> Numbers:
     """Internal variables after adding the work done on a branch up to `d`."""
-    k, f0, d0 = line[0], line[2], m[ENTERED]
-    return (*m[0:14], m[SPENT] + (0.5 * k * (d + d0) + f0) * (d - d0), d)
+    (k, _, f0), d0 = line[:3], m[ENTERED]
+    return (*m[:SPENT], m[SPENT] + (0.5 * k * (d + d0) + f0) * (d - d0), d)
 
 
 def softened(p: Numbers, m: Numbers, f: float) -> float:
     """Deteriorated unloading stiffness of a motion that reverses at the force `f`."""
     before = m[KU_BEFORE]
     energy = m[SPENT] - 0.5 * f * f / before
-    return before * (1.0 - min(share(energy, m[DONE], p[13], p[15]), 0.5))
+    return before * (1.0 - min(deterioration(energy, m[DONE], p[ET_UNLOADING], p[C]), 0.5))
 
 
 def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, float, bool]:
@@ -129,19 +138,21 @@ def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, 
     -------
     internal variables, beta of the reloading, whether the component fails
     """
-    energy, before, c = max(m[SPENT], 0.0), m[DONE], p[15]
-    strength, cap = share(energy, before, p[11], c), share(energy, before, p[12], c)
-    stiffness, reloading = share(energy, before, p[13], c), share(energy, before, p[14], c)
-    mine = variables_of_side(m, s)
-    fy = max(mine[0] * (1.0 - strength), residual(p, s))
-    m = renew(m, s, (fy, mine[1] * (1.0 - cap), *mine[2:5]))
-    m = (*m[0:11], m[KU], d, before + energy, 0.0, d)
+    energy, before, c = max(m[SPENT], 0.0), m[DONE], p[C]
+    strength = deterioration(energy, before, p[ET_STRENGTH], c)
+    cap = deterioration(energy, before, p[ET_CAP], c)
+    stiffness = deterioration(energy, before, p[ET_UNLOADING], c)
+    reloading = deterioration(energy, before, p[ET_RELOADING], c)
+    of_side = variables_of_side(m, s)
+    fy = max(of_side[FY_NOW] * (1.0 - strength), residual(p, s))
+    m = replace_side(m, s, (fy, of_side[F_REF] * (1.0 - cap), *of_side[2:]))
+    m = (*m[:KU_BEFORE], m[KU], d, before + energy, 0.0, d)
     return m, reloading, max(max(strength, cap), max(stiffness, reloading)) >= 1.0
 
 
 def recoverable_energy(p: Numbers, m: Numbers, line: Numbers, loading: bool, d: float, f: float) -> float:
     """Energy recovered along the unloading line."""
-    ku = softened(p, advance(line, m, d), f) if loading else m[KU]
+    ku = softened(p, add_work(line, m, d), f) if loading else m[KU]
     return 0.5 * f * f / ku
 
 
@@ -209,7 +220,7 @@ BACKBONE = (
 
 
 def fields(modes: str, most: int) -> tuple[Field, ...]:
-    """Fields of a card: the backbone, and capacities of the `modes` of deterioration, at `most` so many."""
+    """Fields of a card: the backbone, and energy capacities of at most `most` `modes` of deterioration."""
     return (
         *BACKBONE,
         Field(

@@ -19,21 +19,23 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import NEVER, BranchKind, Law, Numbers, Rule, linear
+from pound_solve.laws.automaton import NEVER, BranchKind, K, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
+    DONE,
     FAILED,
     FOOT,
     KU,
     KU_BEFORE,
-    advance,
+    PARAMETERS,
+    add_work,
     end_excursion,
     falling,
     fields,
     hardening,
     parameters,
     recoverable_energy,
-    renew,
+    replace_side,
     residual,
     softened,
     ultimate,
@@ -43,6 +45,7 @@ from pound_solve.laws.hysteresis.imk import (
 from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
 
 ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
+LIMIT, MEETS, ONTO = 2, 3, 4  #: internal variables of a side: strength limit; place of meeting; line there
 FAR = 1e300
 
 
@@ -51,8 +54,8 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     sides = []
     for s in (1.0, -1.0):
         fy, cap, ref, _ = virgin(p, s)
-        sides += [fy, ref, cap, fy / p[0], float(HARDENING)]
-    return ELASTIC, (*sides, p[0], p[0], 0.0, 0.0, 0.0, 0.0)
+        sides += [fy, ref, cap, fy / p[K], float(HARDENING)]
+    return ELASTIC, (*sides, p[K], p[K], 0.0, 0.0, 0.0, 0.0)
 
 
 def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
@@ -60,15 +63,15 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
     if kind == HARDENING:
         return hardening(p, s, m)
     if kind == LIMITED:
-        return 0.0, variables_of_side(m, s)[2]
+        return 0.0, variables_of_side(m, s)[LIMIT]
     if kind == FALLING:
         return falling(p, s, m)
     return 0.0, residual(p, s)
 
 
-def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
+def next_line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
     """Line of the bound after `kind`, and (mirrored) deformation where it begins."""
-    least, limit = residual(p, s), variables_of_side(m, s)[2]
+    least, limit = residual(p, s), variables_of_side(m, s)[LIMIT]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     end = (least - f2) / k2
     falls = max((f2 - f1) / (k1 - k2), (limit - f2) / k2)
@@ -86,22 +89,22 @@ def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
     return RESIDUAL, (FAR if kind == RESIDUAL else end)
 
 
-def yields(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
+def bound_met(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
     """Line of the bound that the elastic line from its foot meets, and where (mirrored)."""
-    ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), variables_of_side(m, s)[2]
+    ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), variables_of_side(m, s)[LIMIT]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
-    low = foot + least / ku
-    if k2 * low + f2 <= least:
-        return RESIDUAL, low
+    lowest = foot + least / ku
+    if k2 * lowest + f2 <= least:
+        return RESIDUAL, lowest
     if limit <= least:
-        return LIMITED, low
-    if k1 * low + f1 < least:
-        return LEAST, low
-    hard = (f1 + ku * foot) / (ku - k1) if ku > k1 else FAR
+        return LIMITED, lowest
+    if k1 * lowest + f1 < least:
+        return LEAST, lowest
+    hardens = (f1 + ku * foot) / (ku - k1) if ku > k1 else FAR
     stops = foot + limit / ku
     falls = (f2 + ku * foot) / (ku - k2)
-    meets = min(hard, min(stops, falls))
-    return (HARDENING if meets == hard else LIMITED if meets == stops else FALLING), meets
+    meets = min(hardens, min(stops, falls))
+    return (HARDENING if meets == hardens else LIMITED if meets == stops else FALLING), meets
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -113,11 +116,11 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at < LEAST:
         ku, foot = m[KU], m[FOOT]
         return linear(
-            ku, -ku * foot, outward(s, min(variables_of_side(m, s)[3], last)), inward(s, s * foot)
+            ku, -ku * foot, outward(s, min(variables_of_side(m, s)[MEETS], last)), inward(s, s * foot)
         )
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
-    to = min(following(p, s, m, kind)[1], last)
+    to = min(next_line(p, s, m, kind)[1], last)
     return linear(k, s * f0, turns_inward(s), outward(s, to) if to < FAR else NEVER)
 
 
@@ -125,24 +128,25 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Yield, pass to the next line of the bound, fail, reverse, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
-    now = branch(p, at, m)
-    m = advance(now, m, d)
-    mine = variables_of_side(m, s)
+    present = branch(p, at, m)
+    m = add_work(present, m, d)
+    of_side = variables_of_side(m, s)
     if kind == ELASTIC and event == 1:
         m, _, fails = end_excursion(p, m, -s, d)
-        meets, where = yields(p, -s, m)
-        m = renew(m, -s, (*variables_of_side(m, -s)[0:3], where, float(meets)))
+        onto, where = bound_met(p, -s, m)
+        m = replace_side(m, -s, (*variables_of_side(m, -s)[:MEETS], where, float(onto)))
         return (FAILED if fails else pair(ELASTIC, -s)), m
     if kind == ELASTIC:
-        then, where = int(mine[4]), mine[3]
+        then, where = int(of_side[ONTO]), of_side[MEETS]
     elif event == 1:
-        then, where = following(p, s, m, kind)
+        then, where = next_line(p, s, m, kind)
     else:
-        f = s * (now[0] * d + now[2])
+        k, _, f0 = present[:3]
+        f = s * (k * d + f0)
         ku = softened(p, m, f)
-        limit = min(mine[2], f) if kind >= FALLING else mine[2]
-        m = renew(m, s, (*mine[0:2], limit, s * d, float(kind)))
-        return pair(ELASTIC, s), (*m[0:10], ku, m[KU_BEFORE], d - s * f / ku, *m[13:16])
+        limit = min(of_side[LIMIT], f) if kind >= FALLING else of_side[LIMIT]
+        m = replace_side(m, s, (*of_side[:LIMIT], limit, s * d, float(kind)))
+        return pair(ELASTIC, s), (*m[:KU], ku, m[KU_BEFORE], d - s * f / ku, *m[DONE:])
     lost = then == RESIDUAL and residual(p, s) == 0.0
     if lost or 0.0 < ultimate(p, s) < where:
         return FAILED, m
@@ -174,7 +178,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=16,
+    parameters=PARAMETERS,
     variables=16,
 )
 

@@ -13,7 +13,7 @@ from pound_solve.laws.automaton import Law, Numbers
 from pound_solve.laws.hysteresis.imk import fields, parameters
 from pound_solve.laws.hysteresis.imk_pinching import MODES, RULE
 
-NO_PINCHING: Numbers = (1.0, 0.0)
+NO_PINCHING: Numbers = (1.0, 0.0)  #: kappa_F and kappa_D without a break point
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

@@ -17,8 +17,8 @@ from the local peak to zero force, the *foot* of the other side's excursion, whi
 Reloading is never stiffer than :math:`k`: where a soft :math:`k_u` has brought the foot too near to the
 peak, or beyond it, the peak moves on to where a line of that stiffness meets the backbone.
 
-A motion that reverses before unloads along :math:`k_u` and, if it reverses again, from there to the break
-point or to the peak.
+A motion that reverses before the peak unloads along :math:`k_u`.  If it reverses again, it goes from there
+to the break point or to the peak.
 
 Internal variables beyond those of `imk`: deformation of the peak, deformation and force of the local peak
 of each side.
@@ -37,21 +37,22 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import NEVER, BranchKind, Law, Numbers, Rule, linear
+from pound_solve.laws.automaton import NEVER, BranchKind, K, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
     FAILED,
     FOOT,
     KU,
     KU_BEFORE,
-    advance,
+    PARAMETERS,
+    add_work,
     end_excursion,
     falling,
     fields,
     hardening,
     parameters,
     recoverable_energy,
-    renew,
+    replace_side,
     residual,
     softened,
     ultimate,
@@ -64,6 +65,8 @@ ELASTIC, HARDENING, FALLING, RESIDUAL, UNLOADING = 1, 3, 5, 7, 9
 #: reloading, by the points between which it goes
 FOOT_BREAK, FOOT_LOCAL, FOOT_PEAK, BREAK_LOCAL, BREAK_PEAK, LOCAL_BREAK, LOCAL_PEAK = range(11, 25, 2)
 FAR = 1e300
+KAPPA_F, KAPPA_D = PARAMETERS, PARAMETERS + 1  #: parameters of a law after those of `imk`
+PEAK, LOCAL_D, LOCAL_F = 2, 3, 4  #: internal variables of a side: peak; local peak, deformation and force
 
 Point = tuple[float, float]  #: deformation and force, mirrored
 
@@ -73,8 +76,8 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     sides = []
     for s in (1.0, -1.0):
         fy, _, ref, _ = virgin(p, s)
-        sides += [fy, ref, fy / p[0], fy / p[0], fy]
-    return ELASTIC, (*sides, p[0], p[0], 0.0, 0.0, 0.0, 0.0)
+        sides += [fy, ref, fy / p[K], fy / p[K], fy]
+    return ELASTIC, (*sides, p[K], p[K], 0.0, 0.0, 0.0, 0.0)
 
 
 def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
@@ -85,28 +88,28 @@ def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
 
 def peak(p: Numbers, s: float, m: Numbers) -> Point:
     """Largest deformation of a side, with the force of the backbone."""
-    d = variables_of_side(m, s)[2]
+    d = variables_of_side(m, s)[PEAK]
     return d, backbone(p, s, m, d)
 
 
 def local(s: float, m: Numbers) -> Point:
     """Last turning point of a side."""
-    mine = variables_of_side(m, s)
-    return mine[3], mine[4]
+    of_side = variables_of_side(m, s)
+    return of_side[LOCAL_D], of_side[LOCAL_F]
 
 
 def break_point(p: Numbers, s: float, m: Numbers) -> tuple[bool, Point]:
     """Whether this excursion is pinched, and the break point."""
-    kf, kd = p[16], p[17]
+    kappa_f, kappa_d = p[KAPPA_F], p[KAPPA_D]
     d, f = peak(p, s, m)
     foot = s * m[FOOT]
-    where = (1.0 - kd) * (d - f / m[KU_BEFORE])
-    if kf == 1.0 or foot >= where:
+    where = (1.0 - kappa_d) * (d - f / m[KU_BEFORE])
+    if kappa_f == 1.0 or foot >= where:
         return False, (0.0, 0.0)
-    return True, (where, kf * f * (where - foot) / (d - foot))
+    return True, (where, kappa_f * f * (where - foot) / (d - foot))
 
 
-def ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
+def reloading_ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
     """End points of a reloading branch."""
     first, last = (s * m[FOOT], 0.0), peak(p, s, m)
     if kind >= LOCAL_BREAK:
@@ -127,13 +130,13 @@ def by_local(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
     return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)
 
 
-def cap(p: Numbers, s: float, m: Numbers) -> float:
+def cap_deformation(p: Numbers, s: float, m: Numbers) -> float:
     """Deformation where the hardening line meets the falling one."""
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     return (f2 - f1) / (k1 - k2)
 
 
-def bottom(p: Numbers, s: float, m: Numbers) -> float:
+def residual_start(p: Numbers, s: float, m: Numbers) -> float:
     """Deformation where the falling line comes to the residual strength."""
     k2, f2 = falling(p, s, m)
     return (residual(p, s) - f2) / k2
@@ -141,21 +144,21 @@ def bottom(p: Numbers, s: float, m: Numbers) -> float:
 
 def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
     """Line of the backbone at a deformation."""
-    if d >= bottom(p, s, m):
+    if d >= residual_start(p, s, m):
         return RESIDUAL
-    return FALLING if d >= cap(p, s, m) else HARDENING
+    return FALLING if d >= cap_deformation(p, s, m) else HARDENING
 
 
-def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
+def next_branch(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
     """Branch that follows a loading branch (the positive side's number stands for both sides), and the
     deformation where it begins.
     """
     if kind == ELASTIC:
         return HARDENING, peak(p, s, m)[0]
     if kind == HARDENING:
-        return FALLING, cap(p, s, m)
+        return FALLING, cap_deformation(p, s, m)
     if kind == FALLING:
-        return RESIDUAL, bottom(p, s, m)
+        return RESIDUAL, residual_start(p, s, m)
     if kind == RESIDUAL:
         return RESIDUAL, FAR
     if kind == UNLOADING:
@@ -164,7 +167,7 @@ def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
         if d >= peak(p, s, m)[0]:
             return on_backbone(p, s, m, d), d
         return (LOCAL_BREAK if pinched and d < d1 and f < f1 else LOCAL_PEAK), d
-    d, f = ends(p, s, m, kind)[1]
+    d, f = reloading_ends(p, s, m, kind)[1]
     if kind in (FOOT_BREAK, LOCAL_BREAK):
         return (BREAK_LOCAL if by_local(p, s, m, d, f) else BREAK_PEAK), d
     if kind in (FOOT_LOCAL, BREAK_LOCAL):
@@ -175,7 +178,7 @@ def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
 def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
     """Slope and (mirrored) force at zero deformation of a branch."""
     if kind == ELASTIC:
-        return p[0], 0.0
+        return p[K], 0.0
     if kind == HARDENING:
         return hardening(p, s, m)
     if kind == FALLING:
@@ -185,7 +188,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
     if kind == UNLOADING:
         d, f = local(s, m)
         return m[KU], f - m[KU] * d
-    (d1, f1), (d2, f2) = ends(p, s, m, kind)
+    (d1, f1), (d2, f2) = reloading_ends(p, s, m, kind)
     k = (f2 - f1) / (d2 - d1) if d2 > d1 else 0.0
     return k, f2 - k * d2
 
@@ -197,24 +200,25 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     s = side(at)
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
-    to = following(p, s, m, kind)[1]
+    to = next_branch(p, s, m, kind)[1]
     if ultimate(p, s) > 0.0:
         to = min(to, ultimate(p, s))
     back = inward(s, -f0 / k) if kind in (ELASTIC, UNLOADING) else turns_inward(s)
     return linear(k, s * f0, back, outward(s, to) if to < FAR else NEVER)
 
 
-def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
+def enter_side(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
     """End an excursion at `d` and enter side `s`."""
-    m, faster, fails = end_excursion(p, m, s, d)
-    mine = variables_of_side(m, s)
-    m = renew(m, s, (*mine[0:2], mine[2] * (1.0 + faster), *mine[3:5]))
+    m, beta, fails = end_excursion(p, m, s, d)
+    of_side = variables_of_side(m, s)
+    m = replace_side(m, s, (*of_side[:PEAK], of_side[PEAK] * (1.0 + beta), *of_side[LOCAL_D:]))
     to, f = peak(p, s, m)
-    k, foot = p[0], s * d
+    k, foot = p[K], s * d
     if f > k * (to - foot):
         (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
         to = min((f1 + k * foot) / (k - k1), (f2 + k * foot) / (k - k2))
-        m = renew(m, s, (*mine[0:2], max(to, foot + residual(p, s) / k), *mine[3:5]))
+        to = max(to, foot + residual(p, s) / k)
+        m = replace_side(m, s, (*of_side[:PEAK], to, *of_side[LOCAL_D:]))
     if fails or peak(p, s, m)[1] <= 0.0:
         return FAILED, m
     if break_point(p, s, m)[0]:
@@ -226,10 +230,10 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Go on to the next line of a path, fail, reverse, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
-    now = branch(p, at, m)
-    m = advance(now, m, d)
+    present = branch(p, at, m)
+    m = add_work(present, m, d)
     if event == 1:
-        then, where = following(p, s, m, kind)
+        then, where = next_branch(p, s, m, kind)
         lost = then == RESIDUAL and residual(p, s) == 0.0
         if lost or 0.0 < ultimate(p, s) < where:
             return FAILED, m
@@ -237,12 +241,13 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if kind == ELASTIC:
         return pair(ELASTIC, -s), m
     if kind == UNLOADING:
-        return enter(p, m, -s, d)
-    f = s * (now[0] * d + now[2])
+        return enter_side(p, m, -s, d)
+    k, _, f0 = present[:3]
+    f = s * (k * d + f0)
     ku = softened(p, m, f)
-    mine = variables_of_side(m, s)
-    m = renew(m, s, (*mine[0:2], max(mine[2], s * d), s * d, f))
-    return pair(UNLOADING, s), (*m[0:10], ku, *m[11:16])
+    of_side = variables_of_side(m, s)
+    m = replace_side(m, s, (*of_side[:PEAK], max(of_side[PEAK], s * d), s * d, f))
+    return pair(UNLOADING, s), (*m[:KU], ku, *m[KU_BEFORE:])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -277,7 +282,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=18,
+    parameters=PARAMETERS + 2,
     variables=16,
 )
 

@@ -36,23 +36,28 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    FY,
+    FY_MINUS,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
+    K,
     Law,
     Numbers,
     Rule,
     linear,
     rate_independent,
 )
-from pound_solve.laws.hysteresis.backbone import R
+from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
 LOADING, UNLOADING = 0, 1
 LEAST_R = 1.2  #: least exponent: at 1 the integral of the curve has another form
-# internal variables: reversal, meeting point, exponent, largest and smallest deformation
-REVERSAL, MEETING, EXPONENT, HIGH, LOW = 0, 2, 4, 5, 6
+# parameters of a law after K, FY, FY_MINUS, by their symbols
+B, R0, C1, C2, A1, A2, A3, A4 = range(3, 11)
+# internal variables: reversal, meeting point, exponent n, largest and smallest deformation
+D_R, F_R, D_0, F_0, EXPONENT, HIGH, LOW = range(7)
 
 
 def knee(n: float, x: float) -> tuple[float, float]:
@@ -67,7 +72,7 @@ def knee(n: float, x: float) -> tuple[float, float]:
     return value, value * small / (x * (1.0 + small))
 
 
-def ratios(a: float, c: float, t: float) -> float:
+def pochhammer_sum(a: float, c: float, t: float) -> float:
     """Sum of (a)_j / (c)_j t^j with Pochhammer symbols, t up to 1/2."""
     j, term, total = 0.0, 1.0, 1.0
     while abs(term) > 1e-17:
@@ -77,67 +82,72 @@ def ratios(a: float, c: float, t: float) -> float:
     return total
 
 
-def beyond(n: float, x: float) -> float:
-    """An integral of the knee from 1 on."""
+def area_beyond_1(n: float, x: float) -> float:
+    """Antiderivative of the knee from 1 on."""
     small = x**-n
     inverse: float = (1.0 + small) ** (-1.0 / n)
-    return x * inverse * ratios(1.0 / n, 1.0 - 1.0 / n, small / (1.0 + small))
+    return x * inverse * pochhammer_sum(1.0 / n, 1.0 - 1.0 / n, small / (1.0 + small))
 
 
 def area(n: float, x: float) -> float:
     """Integral of the knee from 0 to `x`, by hypergeometric series after Pfaff's transformation."""
     if x <= 0.0:
         return 0.5 * x * x
-    near = min(x, 1.0)
-    q = near**n
+    up_to_1 = min(x, 1.0)
+    q = up_to_1**n
     inner: float = (
-        0.5 * near * near * (1.0 + q) ** (-1.0 / n) * ratios(1.0 / n, 1.0 + 2.0 / n, q / (1.0 + q))
+        0.5
+        * up_to_1
+        * up_to_1
+        * (1.0 + q) ** (-1.0 / n)
+        * pochhammer_sum(1.0 / n, 1.0 + 2.0 / n, q / (1.0 + q))
     )
-    return inner if x <= 1.0 else inner + beyond(n, x) - beyond(n, 1.0)
+    return inner if x <= 1.0 else inner + area_beyond_1(n, x) - area_beyond_1(n, 1.0)
 
 
-def begin(p: Numbers, s: float, high: float, low: float, d: float, f: float) -> Numbers:
+def half_cycle(p: Numbers, s: float, high: float, low: float, d: float, f: float) -> Numbers:
     """Internal variables of a motion in direction `s` from a reversal at (d, f)."""
-    k, b = p[0], p[3]
-    fy, peak = (p[1], high) if s > 0.0 else (-p[2], -low)
-    a, per = (p[9], p[10]) if s > 0.0 else (p[7], p[8])
+    k, b, r0, c1, c2 = p[K], p[B], p[R0], p[C1], p[C2]
+    fy, peak = (p[FY], high) if s > 0.0 else (-p[FY_MINUS], -low)
+    a, a_per = (p[A3], p[A4]) if s > 0.0 else (p[A1], p[A2])
     dy = fy / k
     shift = 1.0
     if d != 0.0 or f != 0.0:
-        shift += a * ((high - low) / (2.0 * per * dy)) ** 0.8
-    meets = s * ((1.0 - b) * fy * shift - s * (f - k * d)) / ((1.0 - b) * k)
-    eta = abs(s * peak - meets) / dy
-    return (d, f, meets, f + k * (meets - d), p[4] * (1.0 - p[5] * eta / (p[6] + eta)), high, low)
+        shift += a * ((high - low) / (2.0 * a_per * dy)) ** 0.8
+    d_0 = s * ((1.0 - b) * fy * shift - s * (f - k * d)) / ((1.0 - b) * k)
+    eta = abs(s * peak - d_0) / dy
+    return (d, f, d_0, f + k * (d_0 - d), r0 * (1.0 - c1 * eta / (c2 + eta)), high, low)
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin."""
-    return LOADING, begin(p, 1.0, p[1] / p[0], p[2] / p[0], 0.0, 0.0)
+    return LOADING, half_cycle(p, 1.0, p[FY] / p[K], p[FY_MINUS] / p[K], 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Loading until the motion reverses, and unloading until it reverses again."""
-    return linear(p[0], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
+    return linear(p[K], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Force on the present half cycle."""
-    k, b, n = p[0], p[3], m[EXPONENT]
-    span = m[MEETING] - m[REVERSAL]
-    x, x0 = (d - m[REVERSAL]) / span, (d0 - m[REVERSAL]) / span
+    k, b, n = p[K], p[B], m[EXPONENT]
+    d_r, f_r = m[D_R], m[F_R]
+    span = m[D_0] - d_r
+    x, x0 = (d - d_r) / span, (d0 - d_r) / span
     y, slope = knee(n, x)
-    force = m[REVERSAL + 1] + k * span * (b * x + (1.0 - b) * y)
-    done = 0.5 * b * (x - x0) * (x + x0) + (1.0 - b) * (area(n, x) - area(n, x0))
-    work = span * (m[REVERSAL + 1] * (x - x0) + k * span * done)
+    force = f_r + k * span * (b * x + (1.0 - b) * y)
+    integral = 0.5 * b * (x - x0) * (x + x0) + (1.0 - b) * (area(n, x) - area(n, x0))
+    work = span * (f_r * (x - x0) + k * span * integral)
     return force, k * (b + (1.0 - b) * slope), 0.0, work
 
 
 def reversed_at(p: Numbers, at: int, m: Numbers, d: float, f: float) -> Numbers:
     """Internal variables after a reversal."""
     s = -1.0 if at == LOADING else 1.0
-    return begin(p, s, max(m[HIGH], d), min(m[LOW], d), d, f)
+    return half_cycle(p, s, max(m[HIGH], d), min(m[LOW], d), d, f)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -152,13 +162,13 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
         return 0.0
     if (f > 0.0) == (at == LOADING):
         m = reversed_at(p, at, m, d, f)
-    to = d
+    d_end = d
     for _ in range(100):
-        now, slope, _, _ = curve(p, at, m, d, to, 0.0)
-        to -= now / slope
-        if abs(now) < 1e-14 * abs(f):
+        f_end, slope, _, _ = curve(p, at, m, d, d_end, 0.0)
+        d_end -= f_end / slope
+        if abs(f_end) < 1e-14 * abs(f):
             break
-    return -curve(p, at, m, d, to, 0.0)[3]
+    return -curve(p, at, m, d, d_end, 0.0)[3]
 
 
 RULE = Rule(
@@ -197,7 +207,7 @@ SPEC = Spec(
     "MENEGOTTO_PINTO",
     "steel: round knee, Bauschinger effect, isotropic hardening",
     (
-        R,
+        R_FIELD,
         Field("R0", Kind.REAL, "-", default=20.0, lo=2.0, hi=100.0, doc="exponent of the virgin curve"),
         Field(
             "CR1",

@@ -18,19 +18,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import FY, FY_MINUS, BranchKind, K, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     LOSS,
     PARAMETERS,
+    R_FIELD,
     VARIABLES,
-    R,
+    VIRGIN,
     backbone,
-    enter,
+    enter_backbone,
+    largest_ductility,
     next_branch,
     parameters,
-    reached,
-    turn,
+    reversed_at,
     yield_branch,
     yield_force,
 )
@@ -41,29 +42,29 @@ SECANT = 5
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, (1.0, 1.0, 0.0, 0.0, 0.0)
+    return ELASTIC, VIRGIN
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic, on the backbone, or on the line between the origin and a side's peak."""
     if at == ELASTIC:
-        return linear(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
+        return linear(p[K], 0.0, above(p[FY] / p[K]), below(p[FY_MINUS] / p[K]))
     if at < SECANT:
         return yield_branch(p, at, m)
     s = side(at)
-    mu = reached(m, s)
-    peak = mu * yield_force(p, s) / p[0]
+    mu = largest_ductility(m, s)
+    peak = mu * yield_force(p, s) / p[K]
     return linear(backbone(p, m, s, mu) / peak, 0.0, outward(s, peak), inward(s, 0.0))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield; reverse; arrive at the peak, or pass through the origin."""
     if at == ELASTIC:
-        return enter(p, m, 1.0 if event == 0 else -1.0, 1.0)
+        return enter_backbone(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < SECANT:
-        return next_branch(p, at, m) if event == 1 else (pair(SECANT, s), turn(p, at, m, d))
-    return enter(p, m, s, reached(m, s)) if event == 0 else (pair(SECANT, -s), m)
+        return next_branch(p, at, m) if event == 1 else (pair(SECANT, s), reversed_at(p, at, m, d))
+    return enter_backbone(p, m, s, largest_ductility(m, s)) if event == 0 else (pair(SECANT, -s), m)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -95,7 +96,7 @@ SPEC = Spec(
     "hysteresis",
     "ORIGIN_CENTRED",
     "unloads to the origin",
-    (R, *LOSS),
+    (R_FIELD, *LOSS),
     code=7,
     reference="Ruaumoko rule 7",
     sample="R=0.1",

@@ -10,26 +10,29 @@ where :math:`\mu` is the largest ductility of that side (1 before it has yielded
 target on it follows the backbone.  A reversal before that unloads with :math:`k_u` again; if it reverses
 once more before the force is zero, it returns along the same line and goes on towards the target.
 
-A reloading line is never steeper than :math:`k_u` (ours; for large :math:`\beta` the target may lie steeply
-above, or behind): it then has the slope :math:`k_u` up to the backbone.
+A reloading line is never steeper than :math:`k_u` (ours): where the target lies steeply above the point, or
+behind it, as for large :math:`\beta`, the line has the slope :math:`k_u` up to the backbone.
 
 Internal variables: those of `backbone`; the point is that of the last reversal, or of zero force.
 """
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import BranchKind, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import FY, FY_MINUS, BranchKind, K, Numbers, Rule, above, below, linear
 from pound_solve.laws.hysteresis.backbone import (
     CHANGES,
     ELASTIC,
     PARAMETERS,
     VARIABLES,
+    VIRGIN,
+    D,
+    F,
     backbone,
-    enter,
-    meets,
+    enter_backbone,
+    largest_ductility,
+    meeting_ductility,
     next_branch,
-    reached,
-    turn,
+    reversed_at,
     unloading,
     yield_branch,
     yield_force,
@@ -38,72 +41,72 @@ from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
 
 UNLOADING, RELOADING = 5, 7
 
-# numbers of a law, after those of the backbone: beta; whether peaks count on both sides
+# parameters of a law after those of the backbone: beta; whether a peak counts for both sides
 BETA, MIRRORED = PARAMETERS, PARAMETERS + 1
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, (1.0, 1.0, 0.0, 0.0, 0.0)
+    return ELASTIC, VIRGIN
 
 
-def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
+def reloading(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
     """Slope of the reloading line of side `s`, and the ductility at which it meets the backbone."""
-    mu, fy = reached(m, s), yield_force(p, s)
+    mu, fy = largest_ductility(m, s), yield_force(p, s)
     target = mu - p[BETA] * (mu - 1.0)
     steepest = unloading(p, mu)
-    event, rise = target * fy / p[0] - s * m[2], backbone(p, m, s, target) - s * m[3]
-    if 0.0 < rise < steepest * event:
-        return rise / event, target
-    return steepest, meets(p, m, s, steepest, m[2], m[3])
+    run, rise = target * fy / p[K] - s * m[D], backbone(p, m, s, target) - s * m[F]
+    if 0.0 < rise < steepest * run:
+        return rise / run, target
+    return steepest, meeting_ductility(p, m, s, steepest, m[D], m[F])
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic, on the backbone, unloading, or reloading."""
     if at == ELASTIC:
-        return linear(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
+        return linear(p[K], 0.0, above(p[FY] / p[K]), below(p[FY_MINUS] / p[K]))
     if at < UNLOADING:
         return yield_branch(p, at, m)
-    s, d, f = side(at), m[2], m[3]
+    s, d, f = side(at), m[D], m[F]
     if at < RELOADING:
-        k = unloading(p, reached(m, s))
+        k = unloading(p, largest_ductility(m, s))
         return linear(k, f - k * d, outward(s, s * d), inward(s, s * (d - f / k)))
-    k, end = aim(p, m, s)
-    return linear(k, f - k * d, turns_inward(s), outward(s, end * yield_force(p, s) / p[0]))
+    k, end = reloading(p, m, s)
+    return linear(k, f - k * d, turns_inward(s), outward(s, end * yield_force(p, s) / p[K]))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield; reverse; return to the last reversal, or reach zero force; arrive at the backbone."""
     if at == ELASTIC:
-        return enter(p, m, 1.0 if event == 0 else -1.0, 1.0)
+        return enter_backbone(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < UNLOADING:
         if event == 1:
             return next_branch(p, at, m)
-        plus, minus, d, f, changes = turn(p, at, m, d)
+        plus, minus, d, f, changes = reversed_at(p, at, m, d)
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
         return pair(UNLOADING, s), (plus, minus, d, f, changes)
-    plus, minus, d0, f0 = m[:4]
+    plus, minus, d0, f0 = m[:CHANGES]
     if at < RELOADING:
         if event == 1:
-            d = d0 - f0 / unloading(p, reached(m, s))
+            d = d0 - f0 / unloading(p, largest_ductility(m, s))
             return pair(RELOADING, -s), (plus, minus, d, 0.0, m[CHANGES])
-        # a reversal on the backbone, too: the line from there ends where it begins
+        # also after a reversal on the backbone: the reloading line from there ends where it begins
         return pair(RELOADING, s), m
-    k, end = aim(p, m, s)
+    k, end = reloading(p, m, s)
     if event == 1:
-        return enter(p, m, s, end)
+        return enter_backbone(p, m, s, end)
     return pair(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0), m[CHANGES])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy recovered along the unloading line."""
     if at == ELASTIC:
-        return 0.5 * f * f / p[0]
+        return 0.5 * f * f / p[K]
     s = side(at)
-    x = s * d * p[0] / yield_force(p, s) if at < UNLOADING else 0.0
-    return 0.5 * f * f / unloading(p, max(x, reached(m, s)))
+    x = s * d * p[K] / yield_force(p, s) if at < UNLOADING else 0.0
+    return 0.5 * f * f / unloading(p, max(x, largest_ductility(m, s)))
 
 
 RULE = Rule(

@@ -18,7 +18,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.laws.automaton import Law
-from pound_solve.laws.hysteresis.backbone import ALFA, LOSS, R, parameters
+from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, LOSS, R_FIELD, parameters
 from pound_solve.laws.hysteresis.peak_oriented import RULE
 
 
@@ -31,7 +31,7 @@ SPEC = Spec(
     "hysteresis",
     "Q_HYST",
     "degrading stiffness, towards the larger peak",
-    (R, ALFA, *LOSS),
+    (R_FIELD, ALFA_FIELD, *LOSS),
     code=12,
     reference="Saiidi & Sozen 1979; Ruaumoko rule 12",
     sample="R=0.05 ALFA=0.5",

@@ -16,8 +16,8 @@ Work along a curve scaled by :math:`c` (1 or 2) from its origin, :math:`w = (u -
 
 Internal variables: the number of open reversals, whether some were dropped, and deformation and force of up
 to seven, the latest first.  At an eighth the second and the third oldest are dropped.  A branch that would
-have met the curves from there goes on to the next outer ones: the loop between the oldest reversal, which
-was on the skeleton, and its mirror image.
+have met the curves from these goes on to the next outer curves: those of the loop between the oldest
+reversal, which was on the skeleton, and its mirror image.
 
 References
 ----------
@@ -35,8 +35,10 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    FY,
     NEVER,
     BranchKind,
+    K,
     Law,
     Numbers,
     Rule,
@@ -47,6 +49,10 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.mirror import need_both_sides, outward, turns_inward
 
 LOADING, UNLOADING = 0, 1
+N, ALPHA = 3, 4  #: parameters of a law after K, FY, FY_MINUS
+# internal variables: number of open reversals, whether some were dropped; deformation and force of the
+# reversals, the latest first
+OPEN, DROPPED, D1, F1, D2, F2, D3, F3 = range(8)
 DEPTH = 7.0  #: reversals stored
 VIRGIN = (0.0,) * 16  #: internal variables without a reversal
 
@@ -56,74 +62,74 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     return LOADING, VIRGIN
 
 
-def strain(p: Numbers, w: float) -> float:
+def sigma(p: Numbers, w: float) -> float:
     """Deformation of the curve, sigma(w)."""
-    d: float = w + p[4] * w * abs(w) ** (p[3] - 1.0)
+    d: float = w + p[ALPHA] * w * abs(w) ** (p[N] - 1.0)
     return d
 
 
 def energy(p: Numbers, w: float) -> float:
     """Integral of w d(sigma)."""
-    n = p[3]
-    area: float = 0.5 * w * w + p[4] * n / (n + 1.0) * abs(w) ** (n + 1.0)
+    n = p[N]
+    area: float = 0.5 * w * w + p[ALPHA] * n / (n + 1.0) * abs(w) ** (n + 1.0)
     return area
 
 
-def force(p: Numbers, x: float) -> float:
+def skeleton_force(p: Numbers, x: float) -> float:
     """Force of the curve: w with sigma(w) = x, by Newton's iteration.
 
     It starts above the root of a convex function, so that it comes down to it monotonically.
     """
-    n, alpha = p[3], p[4]
+    n, alpha = p[N], p[ALPHA]
     size = abs(x)
     if size == 0.0:
         return 0.0
     w: float = min(size, (size / alpha) ** (1.0 / n))
     for _ in range(100):
-        down = (w + alpha * w**n - size) / (1.0 + alpha * n * w ** (n - 1.0))
-        w -= down
-        if abs(down) < 1e-9 * w:  # it converges quadratically: the next step is rounding
+        step = (w + alpha * w**n - size) / (1.0 + alpha * n * w ** (n - 1.0))
+        w -= step
+        if abs(step) < 1e-9 * w:  # it converges quadratically: the next step is rounding
             break
     return w if x > 0.0 else -w
 
 
 def origin(m: Numbers) -> tuple[float, float, float]:
     """Scale of the present curve, deformation and force of its origin."""
-    return (1.0, 0.0, 0.0) if m[0] == 0.0 else (2.0, m[2], m[3])
+    return (1.0, 0.0, 0.0) if m[OPEN] == 0.0 else (2.0, m[D1], m[F1])
 
 
 def from_dropped(m: Numbers) -> bool:
     """Whether the present branch began on a curve whose reversals are no longer stored."""
-    return m[1] != 0.0 and (m[0] == 2.0 or m[0] == 3.0)
+    return m[DROPPED] != 0.0 and (m[OPEN] == 2.0 or m[OPEN] == 3.0)
 
 
-def bound(m: Numbers) -> tuple[float, float]:
+def outer_origin(m: Numbers) -> tuple[float, float]:
     """Origin of the next outer curve beyond a dropped one: the oldest reversal or its mirror image."""
-    return (-m[4], -m[5]) if m[0] == 2.0 else (m[6], m[7])
+    return (-m[D2], -m[F2]) if m[OPEN] == 2.0 else (m[D3], m[F3])
 
 
-def end(p: Numbers, m: Numbers) -> tuple[float, float]:
+def closing_point(p: Numbers, m: Numbers) -> tuple[float, float]:
     """Deformation and force where a branch meets the curve that it came from.
 
     Where that curve is no longer stored, the end is the intersection with the next outer one: the branch is
     the steeper of the two, so that bisection finds it, between its own origin and the mirror image of the
     other's.
     """
-    if m[0] == 1.0:
-        return -m[2], -m[3]
+    if m[OPEN] == 1.0:
+        return -m[D1], -m[F1]
     if not from_dropped(m):
-        return m[4], m[5]
-    d0, f0 = bound(m)
-    fy = p[1]
-    scale = 0.5 * p[0] / fy
-    inner, outer = m[2], -d0
+        return m[D2], m[F2]
+    d0, f0 = outer_origin(m)
+    fy = p[FY]
+    scale = 0.5 * p[K] / fy
+    inner, outer = m[D1], -d0
     s = 1.0 if outer > inner else -1.0
     while True:
         d = 0.5 * (inner + outer)
-        f = m[3] + 2.0 * fy * force(p, (d - m[2]) * scale)
-        if d in (inner, outer):
+        f = m[F1] + 2.0 * fy * skeleton_force(p, (d - m[D1]) * scale)
+        if d in (inner, outer):  # neighbouring numbers
             return d, f
-        if s * (f - f0 - 2.0 * fy * force(p, (d - d0) * scale)) < 0.0:
+        if s * (f - f0 - 2.0 * fy * skeleton_force(p, (d - d0) * scale)) < 0.0:
             inner = d
         else:
             outer = d
@@ -132,72 +138,74 @@ def end(p: Numbers, m: Numbers) -> tuple[float, float]:
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Events: a reversal, or the loop closes."""
     s = 1.0 if at == LOADING else -1.0
-    return linear(p[0], 0.0, turns_inward(s), outward(s, s * end(p, m)[0]) if m[0] > 0.0 else NEVER)
+    return linear(
+        p[K], 0.0, turns_inward(s), outward(s, s * closing_point(p, m)[0]) if m[OPEN] > 0.0 else NEVER
+    )
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Force on the skeleton or on the branch from the latest reversal."""
-    k, fy, n, alpha = p[0], p[1], p[3], p[4]
+    k, fy, n, alpha = p[K], p[FY], p[N], p[ALPHA]
     dy = fy / k
     c, d1, f1 = origin(m)
-    w, w0 = force(p, (d - d1) / (c * dy)), force(p, (d0 - d1) / (c * dy))
+    w, w0 = skeleton_force(p, (d - d1) / (c * dy)), skeleton_force(p, (d0 - d1) / (c * dy))
     work = f1 * (d - d0) + c * c * fy * dy * (energy(p, w) - energy(p, w0))
     return f1 + c * fy * w, k / (1.0 + alpha * n * abs(w) ** (n - 1.0)), 0.0, work
 
 
-def turn(m: Numbers, d: float, f: float) -> Numbers:
+def with_reversal(m: Numbers, d: float, f: float) -> Numbers:
     """Store a reversal."""
-    if m[0] == DEPTH:
-        return (DEPTH - 1.0, 1.0, d, f, *m[2:10], *m[14:16], 0.0, 0.0)
-    return (m[0] + 1.0, m[1], d, f, *m[2:14])
+    if m[OPEN] == DEPTH:  # the four latest and the oldest stay: 6 with the new one
+        return (DEPTH - 1.0, 1.0, d, f, *m[D1:10], *m[14:16], 0.0, 0.0)
+    return (m[OPEN] + 1.0, m[DROPPED], d, f, *m[D1:14])
 
 
-def close(m: Numbers) -> Numbers:
+def without_closed_loop(m: Numbers) -> Numbers:
     """Internal variables without the reversals of the closed loop; without any, where the skeleton goes
     on.
     """
     if from_dropped(m):
-        d0, f0 = bound(m)
-        if m[0] == 2.0:
-            return (2.0, 0.0, d0, f0, m[4], m[5], *VIRGIN[6:])
-        return (1.0, 0.0, d0, f0, *VIRGIN[4:])
-    if m[0] <= 2.0:
+        d0, f0 = outer_origin(m)
+        if m[OPEN] == 2.0:
+            return (2.0, 0.0, d0, f0, m[D2], m[F2], *VIRGIN[D3:])
+        return (1.0, 0.0, d0, f0, *VIRGIN[D2:])
+    if m[OPEN] <= 2.0:
         return VIRGIN
-    return (m[0] - 2.0, m[1], *m[6:16], 0.0, 0.0, 0.0, 0.0)
+    return (m[OPEN] - 2.0, m[DROPPED], *m[D3:], 0.0, 0.0, 0.0, 0.0)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Reverse, or go on along the curve that the branch came from."""
     if event == 1:
-        return at, close(m)
-    back = UNLOADING if at == LOADING else LOADING
+        return at, without_closed_loop(m)
+    opposite = UNLOADING if at == LOADING else LOADING
     s = 1.0 if at == LOADING else -1.0
-    if m[0] == 0.0 and s * d <= 0.0:
-        return back, m  # a virgin state that starts in the other direction
-    return back, turn(m, d, curve(p, at, m, d, d, 0.0)[0])
+    if m[OPEN] == 0.0 and s * d <= 0.0:
+        return opposite, m  # a virgin state that starts in the other direction
+    return opposite, with_reversal(m, d, curve(p, at, m, d, d, 0.0)[0])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy recovered along the branches down to zero force."""
-    k, fy = p[0], p[1]
+    k, fy = p[K], p[FY]
     if f > 0.0 if at == LOADING else f < 0.0:
-        m = turn(m, d, f)
-    back, now = 0.0, f
-    while now * f > 0.0:
-        f1, to = m[3], end(p, m)[1]  # there a loop closes and the curve changes
-        if to * f < 0.0:
-            to = 0.0
-        a, b = 0.5 * (now - f1) / fy, 0.5 * (to - f1) / fy
-        back -= 2.0 * f1 * (strain(p, b) - strain(p, a)) + 4.0 * fy * (energy(p, b) - energy(p, a))
-        m, now = close(m), to
-    return back * fy / k
+        m = with_reversal(m, d, f)
+    recovered, f_from = 0.0, f
+    while f_from * f > 0.0:
+        f1, f_to = m[F1], closing_point(p, m)[1]  # there a loop closes and the curve changes
+        if f_to * f < 0.0:
+            f_to = 0.0
+        a, b = 0.5 * (f_from - f1) / fy, 0.5 * (f_to - f1) / fy
+        recovered -= 2.0 * f1 * (sigma(p, b) - sigma(p, a)) + 4.0 * fy * (energy(p, b) - energy(p, a))
+        m, f_from = without_closed_loop(m), f_to
+    return recovered * fy / k
 
 
 def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Elastic part of the deformation from the origin of the curve, see `Rule`."""
-    k, fy, n, alpha = p[0], p[1], p[3], p[4]
+    k, fy, n, alpha = p[K], p[FY], p[N], p[ALPHA]
     c, _, f1 = origin(m)
     s = 1.0 if at == LOADING else -1.0
     return (f - f1) / k, s * c * fy / k, n - 1.0, 0.0, alpha * n, 0.0, k

@@ -14,14 +14,14 @@ One side at a time (`mirror`), on the backbone of `cracking`.
   line.
 * A reversal short of the pinch point (:math:`d < d_P`; before both sides have yielded :math:`F < \pi F_m`)
   begins an inner loop: then either side is loaded to its *corner*, its last reversal, and on from there.  A
-  reversal before the corner changes nothing.  One beyond it becomes the corner or, beyond the pinch point,
-  too, ends the inner loop.
+  reversal before the corner changes nothing.  One beyond the corner becomes the corner; one that is also
+  beyond the pinch point ends the inner loop.
 * A motion that turns while it unloads returns along the same line.
 
 The branches were found from the forces that the old program gives for one record, of ductilities up to 2.05
 (:math:`r = 0.06, F_{cr} = \rho = 0.99, \alpha = 0.4, \pi = 0.3`); the factor 1/2 of :math:`d_P` may stand
-for a parameter that was not varied.  What happens beyond the ductility
-DULT is not known: the backbone goes on, and the report warns.
+for a parameter that was not varied.  The behaviour beyond the ductility DULT is not known: the backbone
+continues, and the report warns.
 
 Internal variables: largest deformation of each side; whether an inner loop is on; corner of each side; the
 point where the present line began; the last reversal, and the branch that it left.
@@ -38,62 +38,66 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear
-from pound_solve.laws.hysteresis.backbone import ALFA
+from pound_solve.laws.automaton import BranchKind, K, Law, Numbers, Rule, linear
+from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, ALPHA
 from pound_solve.laws.hysteresis.cracking import (
     ELASTIC,
-    FCR,
+    FCR_FIELD,
     PARAMETERS,
-    RHO,
+    R_FIELD,
+    RHO_FIELD,
     YIELDING,
     Point,
-    R,
     backbone,
     backbone_branch,
-    enter,
+    crack_point,
+    enter_backbone,
     first_yield,
     grown,
     has_yielded,
-    largest,
-    of,
+    largest_deformation,
     parameters,
     peak,
+    yield_point,
 )
 from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
 
 # branches of the positive side, after those of the backbone; those of the negative side are one more
 UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 5, 7, 9, 11
-PINCH = PARAMETERS  #: number of a law, after those of the backbone
-# internal variables
-INNER, CORNERS, ORIGIN, TURN, LEFT = 2, 3, 7, 9, 11
+PINCH = PARAMETERS  #: parameter of a law, after those of the backbone
+# internal variables after the largest deformations: whether an inner loop is on; as mirrored points the
+# corners of both sides, where the present line began, and the last reversal; the branch that this left
+INNER, X_CORNER, F_CORNER, X_CORNER_MINUS, F_CORNER_MINUS = range(2, 7)
+X_ORIGIN, F_ORIGIN, X_REVERSAL, F_REVERSAL, LEFT = range(7, 12)
+NO_POINTS = (0.0,) * 10  #: these at first
 
 
 def unloading(p: Numbers, s: float, x: float) -> float:
     """Stiffness of unloading after a largest deformation `x`."""
-    fy, xc, _, xy = of(p, s)
-    if x <= xc:
-        return p[0]
-    soft = fy / xy * (x / xy) ** -p[4]
-    stiffness: float = max(min(p[0], soft), backbone(p, s, x)[1] / x)
+    xy, fy = yield_point(p, s)
+    if x <= crack_point(p, s)[0]:
+        return p[K]
+    soft = fy / xy * (x / xy) ** -p[ALPHA]
+    stiffness: float = max(min(p[K], soft), backbone(p, s, x)[1] / x)
     return stiffness
 
 
-def softness(p: Numbers, s: float, m: Numbers) -> float:
-    """Unloading stiffness of a side."""
-    return unloading(p, s, largest(m, s))
+def unloading_of_side(p: Numbers, s: float, m: Numbers) -> float:
+    """Stiffness of unloading after the largest deformation of a side so far."""
+    return unloading(p, s, largest_deformation(m, s))
 
 
 def pinch(p: Numbers, s: float, m: Numbers) -> Point:
     """Pinch point of a side."""
-    return max(0.5 * (largest(m, -s) - of(p, -s)[3]), 0.0), p[PINCH] * peak(p, s, m)[1]
+    return max(0.5 * (largest_deformation(m, -s) - yield_point(p, -s)[0]), 0.0), p[PINCH] * peak(p, s, m)[1]
 
 
 def corner(s: float, m: Numbers) -> Point:
     """Corner of an inner loop on a side, or without a loop its last reversal; (0, 0) if there was none."""
-    return (m[3], m[4]) if s > 0.0 else (m[5], m[6])
+    return (m[X_CORNER], m[F_CORNER]) if s > 0.0 else (m[X_CORNER_MINUS], m[F_CORNER_MINUS])
 
 
-def short(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
+def before_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
     """Whether a point lies before the pinch point."""
     xp, fp = pinch(p, s, m)
     if has_yielded(p, 1.0, m) and has_yielded(p, -1.0, m):
@@ -105,10 +109,10 @@ def by_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
     """Whether the path from a point to the peak goes through the pinch point."""
     (xp, fp), (xt, ft) = pinch(p, s, m), peak(p, s, m)
     flatter = (fp - f) * (xt - x) < (ft - f) * (xp - x)
-    return x < xp < xt and f <= fp < ft and flatter and ft - fp <= softness(p, s, m) * (xt - xp)
+    return x < xp < xt and f <= fp < ft and flatter and ft - fp <= unloading_of_side(p, s, m) * (xt - xp)
 
 
-def onward(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
+def loading_branch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
     """Line that a side follows from a point on as it is loaded: to the pinch point or to the peak."""
     return pair(TO_PINCH if by_pinch(p, s, m, x, f) else TO_PEAK, s)
 
@@ -121,19 +125,19 @@ def end(p: Numbers, m: Numbers, at: int) -> Point:
     return pinch(p, s, m) if at < TO_PEAK else peak(p, s, m)
 
 
-def started(m: Numbers, x: float, f: float) -> Numbers:
+def with_origin(m: Numbers, x: float, f: float) -> Numbers:
     """Internal variables with the mirrored point at which a line begins."""
-    return (*m[0:7], x, f, m[9], m[10], m[11])
+    return (*m[:X_ORIGIN], x, f, *m[X_REVERSAL:])
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: the crack points are the peaks."""
-    return ELASTIC, (of(p, 1.0)[1], of(p, -1.0)[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return ELASTIC, (crack_point(p, 1.0)[0], crack_point(p, -1.0)[0], *NO_POINTS)
 
 
 def line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
     """Slope of a loading line, and its force at zero deformation, mirrored."""
-    x0, f0 = m[ORIGIN], m[ORIGIN + 1]
+    x0, f0 = m[X_ORIGIN], m[F_ORIGIN]
     x1, f1 = end(p, m, at)
     slope = (f1 - f0) / (x1 - x0) if x1 > x0 else 0.0
     return slope, f1 - slope * x1
@@ -145,7 +149,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return backbone_branch(p, at)
     s = side(at)
     if at < TO_CORNER:
-        x, f, k = m[TURN], m[TURN + 1], softness(p, s, m)
+        x, f, k = m[X_REVERSAL], m[F_REVERSAL], unloading_of_side(p, s, m)
         return linear(k, s * (f - k * x), outward(s, x), inward(s, x - f / k))
     slope, f = line(p, at, m)
     return linear(slope, s * f, turns_inward(s), outward(s, end(p, m, at)[0]))
@@ -153,54 +157,56 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def load(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State at zero force, where a side begins to be loaded."""
-    m = started(m, x, 0.0)
+    m = with_origin(m, x, 0.0)
     xc, fc = corner(s, m)
-    if m[INNER] != 0.0 and x < xc and 0.0 < fc <= softness(p, s, m) * (xc - x):
+    if m[INNER] != 0.0 and x < xc and 0.0 < fc <= unloading_of_side(p, s, m) * (xc - x):
         return pair(TO_CORNER, s), m
-    return onward(p, s, m, x, 0.0), m
+    return loading_branch(p, s, m, x, 0.0), m
 
 
-def reverse(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
+def reversed_at(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
     """Internal variables after a reversal: largest deformation, inner loop, corner, the point itself."""
     s = side(at)
-    plus, minus, inner = m[0:3]
+    plus, minus, inner = m[:X_CORNER]
     if at < UNLOADING:
         plus, minus = grown(m, s, x)
-    point = corner(s, m)
+    x_corner, f_corner = corner(s, m)
     if at < TO_CORNER or at >= TO_PINCH:
-        point, inner = (x, f), 1.0 if at >= UNLOADING and short(p, s, m, x, f) else 0.0
+        x_corner, f_corner = x, f
+        inner = 1.0 if at >= UNLOADING and before_pinch(p, s, m, x, f) else 0.0
+    origin, reversal = m[X_ORIGIN:X_REVERSAL], (x, f, float(at))
     if s > 0.0:
-        return (plus, minus, inner, point[0], point[1], m[5], m[6], m[7], m[8], x, f, float(at))
-    return (plus, minus, inner, m[3], m[4], point[0], point[1], m[7], m[8], x, f, float(at))
+        return (plus, minus, inner, x_corner, f_corner, *m[X_CORNER_MINUS:X_ORIGIN], *origin, *reversal)
+    return (plus, minus, inner, *m[X_CORNER:X_CORNER_MINUS], x_corner, f_corner, *origin, *reversal)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Crack, yield, reverse, return, come to zero force, or to the end of a line."""
     if at == ELASTIC:
         s = 1.0 if event == 0 else -1.0
-        return enter(p, m, s, of(p, s)[1])
+        return enter_backbone(p, m, s, crack_point(p, s)[0])
     s = side(at)
     if UNLOADING <= at < TO_CORNER:
         if event == 0:
             return int(m[LEFT]), m
-        return load(p, m, -s, -(m[TURN] - m[TURN + 1] / softness(p, s, m)))
-    now = branch(p, at, m)
+        return load(p, m, -s, -(m[X_REVERSAL] - m[F_REVERSAL] / unloading_of_side(p, s, m)))
+    k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
-        return pair(UNLOADING, s), reverse(p, at, m, s * d, s * (now[0] * d + now[2]))
+        return pair(UNLOADING, s), reversed_at(p, at, m, s * d, s * (k * d + f0))
     if at < YIELDING:
         return pair(YIELDING, s), m
     x, f = end(p, m, at)
     if x >= peak(p, s, m)[0]:
-        return enter(p, m, s, x)
-    return onward(p, s, m, x, f) if at < TO_PINCH else pair(TO_PEAK, s), started(m, x, f)
+        return enter_backbone(p, m, s, x)
+    return loading_branch(p, s, m, x, f) if at < TO_PINCH else pair(TO_PEAK, s), with_origin(m, x, f)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy recovered along the unloading line."""
     if at == ELASTIC:
-        return 0.5 * f * f / p[0]
+        return 0.5 * f * f / p[K]
     s = side(at)
-    x = largest(m, s)
+    x = largest_deformation(m, s)
     if at < UNLOADING:
         x = max(x, s * d)
     return 0.5 * f * f / unloading(p, s, x)
@@ -240,10 +246,10 @@ SPEC = Spec(
     "SCHOETTLER_RESTREPO",
     "pinched, with cracking: reinforced concrete",
     (
-        R,
-        ALFA,
-        FCR,
-        RHO,
+        R_FIELD,
+        ALFA_FIELD,
+        FCR_FIELD,
+        RHO_FIELD,
         Field(
             "PINCH",
             Kind.REAL,

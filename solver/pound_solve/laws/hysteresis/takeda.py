@@ -24,7 +24,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
-from pound_solve.laws.hysteresis.backbone import ALFA, LOSS, R, parameters
+from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, LOSS, R_FIELD, parameters
 from pound_solve.laws.hysteresis.peak_oriented import RULE
 
 
@@ -38,8 +38,8 @@ SPEC = Spec(
     "TAKEDA",
     "modified Takeda, for reinforced concrete",
     (
-        R,
-        ALFA,
+        R_FIELD,
+        ALFA_FIELD,
         Field(
             "BETA",
             Kind.REAL,

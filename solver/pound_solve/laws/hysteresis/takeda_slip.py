@@ -8,17 +8,17 @@ of the side and its force, a prime marks the other side.
   .. math:: k_u = \frac{F_m + F_c'}{d_m + d_c'} \quad (d_m \le d_y), \qquad
             k_u = \frac{F_y + F_c'}{d_y + d_c'} \left(\frac{d_y}{d_m}\right)^{\alpha} \quad (d_m > d_y)
 
-  up to yield towards the crack point of the other side, and never softer than that (ours).
+  Up to yield this line points at the crack point of the other side; it is never softer than that (ours).
 * If the other side has not cracked, this line goes on to its crack force, and from there the backbone, if
   this side has not yielded; else a straight line to the yield point of the other side (rule 6).
 * From zero force at :math:`d_0` a side that has cracked is loaded straight to :math:`(d_m, F_m)` (rule 4);
-  before its yield to its yield point, if that line is steeper.
+  before it has yielded, to its yield point, if that line is steeper.
 * Once it has gone beyond its yield point, and :math:`d_0` lies on the other side, it slips with
 
   .. math:: k_s = \frac{F_m}{d_m + d_z'} \left(\frac{d_m}{d_m + d_z'}\right)^{n}, \qquad
             d_z' = d_m' - \frac{F_m'}{k_u'}
 
-  until it meets the line from the origin to :math:`(d_m, F_m)`, and follows that one.
+  until it meets the line from the origin to :math:`(d_m, F_m)`, and then follows that line.
 * A reversal on one of these lines unloads with :math:`b k_u`, but not softer than the line that it leaves
   (rule 7, where :math:`b = 0.7`), nor than the straight line from :math:`d_0` (ours): no loop gives energy.
 * A motion that turns while it unloads returns along the same line.
@@ -44,57 +44,59 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear, passes
-from pound_solve.laws.hysteresis.backbone import ALFA
+from pound_solve.laws.automaton import BranchKind, K, Law, Numbers, Rule, linear, passes
+from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, ALPHA
 from pound_solve.laws.hysteresis.cracking import (
     ELASTIC,
-    FCR,
+    FCR_FIELD,
     PARAMETERS,
-    RHO,
+    R_FIELD,
+    RHO_FIELD,
     YIELDING,
-    R,
     backbone,
     backbone_branch,
-    enter,
+    crack_point,
+    enter_backbone,
     first_yield,
     grown,
     has_yielded,
-    largest,
-    of,
+    largest_deformation,
     parameters,
     peak,
+    yield_point,
 )
 from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
 
 # branches of the positive side, after those of the backbone; those of the negative side are one more
 UNLOADING, SLIPPING, TO_PEAK = 5, 7, 9
-SLIP, INNER = PARAMETERS, PARAMETERS + 1  #: numbers of a law, after those of the backbone
-ZERO, LINE, TURN, SLOPE, LEFT = 2, 3, 5, 7, 8  #: internal variables
+SLIP, INNER = PARAMETERS, PARAMETERS + 1  #: parameters of a law after those of the backbone: n and b
+# internal variables after the largest deformations, mirrored: d_0; the points where the present line began
+# and of the last reversal; stiffness of unloading from there, and the branch that the reversal left
+ZERO, X_ORIGIN, F_ORIGIN, X_REVERSAL, F_REVERSAL, SLOPE, LEFT = range(2, 9)
 
 
 def unloading(p: Numbers, s: float, x: float) -> float:
     """Stiffness of unloading from the backbone at a deformation `x`."""
-    fy, xy = of(p, s)[0], of(p, s)[3]
-    _, xc, fc, _ = of(p, -s)
+    (xy, fy), (xc, fc) = yield_point(p, s), crack_point(p, -s)
     to_crack: float = (backbone(p, s, x)[1] + fc) / (x + xc)
     if x <= xy:
         return to_crack
-    stiffness: float = max((fy + fc) / (xy + xc) * (xy / x) ** p[4], to_crack)
+    stiffness: float = max((fy + fc) / (xy + xc) * (xy / x) ** p[ALPHA], to_crack)
     return stiffness
 
 
-def slip(p: Numbers, s: float, m: Numbers) -> float:
+def slip_stiffness(p: Numbers, s: float, m: Numbers) -> float:
     """Stiffness of a side while it slips."""
-    (x, f), (other, force) = peak(p, s, m), peak(p, -s, m)
-    reach = x + other - force / unloading(p, -s, other)
-    stiffness: float = f / reach * (x / reach) ** p[SLIP]
+    (x, f), (x_other, f_other) = peak(p, s, m), peak(p, -s, m)
+    span = x + x_other - f_other / unloading(p, -s, x_other)  # d_m + d_z'
+    stiffness: float = f / span * (x / span) ** p[SLIP]
     return stiffness
 
 
 def slips(p: Numbers, s: float, m: Numbers) -> bool:
     """Whether a side slips before it is loaded to its peak."""
     x, f = peak(p, s, m)
-    return m[ZERO] < 0.0 and has_yielded(p, s, m) and slip(p, s, m) * (x - m[ZERO]) < f
+    return m[ZERO] < 0.0 and has_yielded(p, s, m) and slip_stiffness(p, s, m) * (x - m[ZERO]) < f
 
 
 def end(p: Numbers, m: Numbers, at: int) -> float:
@@ -103,7 +105,7 @@ def end(p: Numbers, m: Numbers, at: int) -> float:
     x, f = peak(p, s, m)
     if at >= TO_PEAK:
         return x
-    k = slip(p, s, m)
+    k = slip_stiffness(p, s, m)
     return -k * m[ZERO] / (f / x - k)
 
 
@@ -111,20 +113,20 @@ def line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
     """Slope of a loading line, and its force at zero deformation, mirrored."""
     s = side(at)
     if at < TO_PEAK:
-        k = slip(p, s, m)
+        k = slip_stiffness(p, s, m)
         return k, -k * m[ZERO]
     x, f = peak(p, s, m)
-    k = (f - m[LINE + 1]) / (x - m[LINE]) if x > m[LINE] else 0.0
+    k = (f - m[F_ORIGIN]) / (x - m[X_ORIGIN]) if x > m[X_ORIGIN] else 0.0
     return k, f - k * x
 
 
-def inner(p: Numbers, m: Numbers, at: int, x: float, f: float) -> float:
+def inner_stiffness(p: Numbers, m: Numbers, at: int, x: float, f: float) -> float:
     """Stiffness of unloading from a point of a loading line."""
     s = side(at)
-    k = max(p[INNER] * unloading(p, s, largest(m, s)), line(p, m, at)[0])
+    k = max(p[INNER] * unloading(p, s, largest_deformation(m, s)), line(p, m, at)[0])
     if x > m[ZERO]:
         k = max(k, f / (x - m[ZERO]))
-    return min(k, p[0])
+    return min(k, p[K])
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -132,12 +134,12 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     return ELASTIC, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def unloaded(p: Numbers, m: Numbers, s: float) -> float:
+def end_of_unloading(p: Numbers, m: Numbers, s: float) -> float:
     """Deformation at which the unloading line of a side ends: at zero force or, before the other side has
     cracked, at its crack force; mirrored.
     """
-    beyond = of(p, -s)[2] if largest(m, -s) == 0.0 else 0.0
-    return m[TURN] - (m[TURN + 1] + beyond) / m[SLOPE]
+    beyond = crack_point(p, -s)[1] if largest_deformation(m, -s) == 0.0 else 0.0
+    return m[X_REVERSAL] - (m[F_REVERSAL] + beyond) / m[SLOPE]
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -146,17 +148,16 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return backbone_branch(p, at)
     s = side(at)
     if at < SLIPPING:
-        x, f, k = m[TURN], m[TURN + 1], m[SLOPE]
-        return linear(k, s * (f - k * x), outward(s, x), inward(s, unloaded(p, m, s)))
+        x, f, k = m[X_REVERSAL], m[F_REVERSAL], m[SLOPE]
+        return linear(k, s * (f - k * x), outward(s, x), inward(s, end_of_unloading(p, m, s)))
     k, f = line(p, m, at)
     return linear(k, s * f, turns_inward(s), outward(s, end(p, m, at)))
 
 
 def crack(p: Numbers, m: Numbers, s: float) -> tuple[int, Numbers]:
     """State on the backbone of a side at its crack point."""
-    x = of(p, s)[1]
-    plus, minus = grown(m, s, x)
-    return enter(p, (plus, minus, *m[2:9]), s, x)
+    x, _ = crack_point(p, s)
+    return enter_backbone(p, (*grown(m, s, x), *m[ZERO:]), s, x)
 
 
 def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tuple[int, Numbers]:
@@ -164,23 +165,22 @@ def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tupl
     `k`.
     """
     zero = x - f / k
-    fy, _, _, xy = of(p, s)
-    plus, minus = m[0], m[1]
-    most = largest(m, s)
+    xy, fy = yield_point(p, s)
+    plus, minus = m[:ZERO]
+    most = largest_deformation(m, s)
     if most < xy and (f > 0.0 or fy * (most - zero) > peak(p, s, m)[1] * (xy - zero)):
         plus, minus = grown(m, s, xy)
-    m = (plus, minus, zero, x, f, *m[5:9])
+    m = (plus, minus, zero, x, f, *m[X_REVERSAL:])
     return pair(SLIPPING if slips(p, s, m) else TO_PEAK, s), m
 
 
-def reverse(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
+def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
     """Internal variables after a reversal."""
     s = side(at)
-    most = largest(m, s)
+    most = largest_deformation(m, s)
     if at >= UNLOADING and (at < TO_PEAK or passes(most, x, most)):
-        return (*m[0:5], x, f, inner(p, m, at, x, f), float(at))
-    plus, minus = grown(m, s, x)
-    return (plus, minus, *m[2:5], x, f, unloading(p, s, x), float(at))
+        return (*m[:X_REVERSAL], x, f, inner_stiffness(p, m, at, x, f), float(at))
+    return (*grown(m, s, x), *m[ZERO:X_REVERSAL], x, f, unloading(p, s, x), float(at))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -191,33 +191,33 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if UNLOADING <= at < SLIPPING:
         if event == 0:
             return int(m[LEFT]), m
-        if largest(m, -s) > 0.0:
-            return load(p, m, -s, -unloaded(p, m, s), 0.0, m[SLOPE])
+        if largest_deformation(m, -s) > 0.0:
+            return load(p, m, -s, -end_of_unloading(p, m, s), 0.0, m[SLOPE])
         if not has_yielded(p, s, m):
             return crack(p, m, -s)
-        return load(p, m, -s, -unloaded(p, m, s), of(p, -s)[2], m[SLOPE])
-    now = branch(p, at, m)
+        return load(p, m, -s, -end_of_unloading(p, m, s), crack_point(p, -s)[1], m[SLOPE])
+    k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
-        return pair(UNLOADING, s), reverse(p, m, at, s * d, s * (now[0] * d + now[2]))
+        return pair(UNLOADING, s), reversed_at(p, m, at, s * d, s * (k * d + f0))
     if at < YIELDING:
         return pair(YIELDING, s), m
     x = end(p, m, at)
     if at >= TO_PEAK:
-        return enter(p, m, s, x)
-    return pair(TO_PEAK, s), (*m[0:3], x, slip(p, s, m) * (x - m[ZERO]), *m[5:9])
+        return enter_backbone(p, m, s, x)
+    return pair(TO_PEAK, s), (*m[:X_ORIGIN], x, slip_stiffness(p, s, m) * (x - m[ZERO]), *m[X_REVERSAL:])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy recovered along the unloading line."""
     s = side(at)
     if at == ELASTIC:
-        k = p[0]
+        k = p[K]
     elif at < UNLOADING:
-        k = unloading(p, s, max(largest(m, s), s * d))
+        k = unloading(p, s, max(largest_deformation(m, s), s * d))
     elif at < SLIPPING:
         k = m[SLOPE]
     else:
-        k = inner(p, m, at, s * d, s * f)
+        k = inner_stiffness(p, m, at, s * d, s * f)
     return 0.5 * f * f / k
 
 
@@ -248,10 +248,10 @@ SPEC = Spec(
     "TAKEDA_SLIP",
     "Takeda with slip, with cracking: reinforced concrete",
     (
-        R,
-        ALFA,
-        FCR,
-        RHO,
+        R_FIELD,
+        ALFA_FIELD,
+        FCR_FIELD,
+        RHO_FIELD,
         Field(
             "SLIP",
             Kind.REAL,

@@ -39,6 +39,8 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.refusal import ItemError
 
 ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
+D1_PLUS = 3  #: place of d_1 and d_2 in the parameters of a law, each for both sides, after k, r and r_2
+P1, P2 = 0, 1  #: internal variables: slips of both springs
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -51,11 +53,11 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     k, r, r2, d1_plus, d1_minus, d2_plus, d2_minus = p[:7]
     first, second = (1.0 - r) * k, (r - r2) * k
     if at == ELASTIC:
-        return linear(k, -first * m[0] - second * m[1], above(m[0] + d1_plus), below(m[0] + d1_minus))
+        return linear(k, -first * m[P1] - second * m[P2], above(m[P1] + d1_plus), below(m[P1] + d1_minus))
     if at == FIRST_PLUS:
-        return linear(r * k, first * d1_plus - second * m[1], REVERSAL_DOWN, above(m[1] + d2_plus))
+        return linear(r * k, first * d1_plus - second * m[P2], REVERSAL_DOWN, above(m[P2] + d2_plus))
     if at == FIRST_MINUS:
-        return linear(r * k, first * d1_minus - second * m[1], REVERSAL_UP, below(m[1] + d2_minus))
+        return linear(r * k, first * d1_minus - second * m[P2], REVERSAL_UP, below(m[P2] + d2_minus))
     if at == SECOND_PLUS:
         return linear(r2 * k, first * d1_plus + second * d2_plus, REVERSAL_DOWN)
     return linear(r2 * k, first * d1_minus + second * d2_minus, REVERSAL_UP)
@@ -63,13 +65,13 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Slip, slip more, or unload where the motion reverses."""
-    d1_plus, d1_minus, d2_plus, d2_minus = p[3:7]
+    d1_plus, d1_minus, d2_plus, d2_minus = p[D1_PLUS:]
     if at == ELASTIC:
         return (FIRST_PLUS if event == 0 else FIRST_MINUS), m
     if at == FIRST_PLUS:
-        return (ELASTIC, (d - d1_plus, m[1])) if event == 0 else (SECOND_PLUS, m)
+        return (ELASTIC, (d - d1_plus, m[P2])) if event == 0 else (SECOND_PLUS, m)
     if at == FIRST_MINUS:
-        return (ELASTIC, (d - d1_minus, m[1])) if event == 0 else (SECOND_MINUS, m)
+        return (ELASTIC, (d - d1_minus, m[P2])) if event == 0 else (SECOND_MINUS, m)
     if at == SECOND_PLUS:
         return ELASTIC, (d - d1_plus, d - d2_plus)
     return ELASTIC, (d - d1_minus, d - d2_minus)

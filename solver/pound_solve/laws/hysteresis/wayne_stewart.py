@@ -40,7 +40,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import STRENGTHLESS, BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import (
+    FY,
+    FY_MINUS,
+    STRENGTHLESS,
+    BranchKind,
+    K,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 from pound_solve.laws.refusal import ItemError
 
@@ -48,11 +60,14 @@ SLACK, FAILED, UNLOADING = 0, 1, 2
 #: the first of each pair of branches: positive side, negative side
 ELASTIC, YIELDING, BEYOND, PINCHED, RELOADING = 3, 5, 7, 9, 11
 
-# parameters of a law: stiffness, yield forces and share of hardening; ultimate forces, intercept of the
-# pinched line, slope beyond the ultimate force and ends of the slack; numbers of the target and of the
-# stiffness of reloading, and slopes of the pinched and the unloading lines (slopes as shares of K)
-K, FY, FY_MINUS, R, FU, FU_MINUS, INTERCEPT, TRI = range(8)
+# parameters of a law after K, FY, FY_MINUS: hardening ratio, ultimate forces, intercept F_i of the pinched
+# line, slope beyond the ultimate force, ends of the slack; beta, alpha; slopes of the pinched and of the
+# unloading lines (slopes as shares of K)
+R, FU, FU_MINUS, INTERCEPT, TRI = range(3, 8)
 GAP_PLUS, GAP_MINUS, BETA, ALPHA, PINCH, UNLOAD = range(8, 14)
+# internal variables: largest deformations of both sides, foot of the unloading line; for its upper and its
+# lower end the branch there and the deformation
+MOST, MOST_MINUS, FOOT, UPPER, UPPER_END, LOWER, LOWER_END = range(7)
 
 Line = tuple[float, float]  #: slope and force at zero deformation
 
@@ -104,7 +119,7 @@ def reloading(p: Numbers, s: float, m: Numbers) -> tuple[float, float, float]:
     """Target deformation and the line towards it: slope and force at zero deformation."""
     k, beta, alpha = p[K], p[BETA], p[ALPHA]
     gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
-    most = m[0] if s > 0.0 else m[1]
+    most = m[MOST] if s > 0.0 else m[MOST_MINUS]
     if most == 0.0:
         return dy, k, -k * gap
     reach = beta * most
@@ -151,7 +166,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(0.0, 0.0)
     if at == UNLOADING:
         ku = unloading(p)
-        return linear(ku, -ku * m[2], above(m[4]), below(m[6]))
+        return linear(ku, -ku * m[FOOT], above(m[UPPER_END]), below(m[LOWER_END]))
     s = side(at)
     gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
     if at < YIELDING:
@@ -175,8 +190,8 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
     foot = d - f / unloading(p)
     other, end = upper_end(p, -s, m, -s * foot)
     if s > 0.0:
-        return UNLOADING, (m[0], m[1], foot, float(at), d, other, -end)
-    return UNLOADING, (m[0], m[1], foot, other, end, float(at), d)
+        return UNLOADING, (m[MOST], m[MOST_MINUS], foot, float(at), d, other, -end)
+    return UNLOADING, (m[MOST], m[MOST_MINUS], foot, other, end, float(at), d)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -184,7 +199,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if at == SLACK:
         return (ELASTIC if event == 0 else ELASTIC + 1), m
     if at == UNLOADING:
-        return (int(m[3]) if event == 0 else int(m[5])), m
+        return (int(m[UPPER]) if event == 0 else int(m[LOWER])), m
     s = side(at)
     if at < YIELDING:
         back = SLACK if is_slack(p) else pair(ELASTIC, -s)
@@ -193,9 +208,9 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         if event == 0:
             most = s * d - backbone(p, s)[0]
             if s > 0.0:
-                m = (max(most, m[0]), m[1], 0.0, 0.0, 0.0, 0.0, 0.0)
+                m = (max(most, m[MOST]), m[MOST_MINUS], 0.0, 0.0, 0.0, 0.0, 0.0)
             else:
-                m = (m[0], max(most, m[1]), 0.0, 0.0, 0.0, 0.0, 0.0)
+                m = (m[MOST], max(most, m[MOST_MINUS]), 0.0, 0.0, 0.0, 0.0, 0.0)
         elif at < BEYOND:
             return pair(BEYOND, s), m
         else:
@@ -204,8 +219,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         if at < RELOADING:
             return pair(RELOADING if pinch_end(p, s, m)[0] else BEYOND, s), m
         return pair(YIELDING if reloading(p, s, m)[0] < backbone(p, s)[2] else BEYOND, s), m
-    line = branch(p, at, m)
-    return unload(p, at, m, s, d, line[0] * d + line[2])
+    k, _, f0 = branch(p, at, m)[:3]
+    return unload(p, at, m, s, d, k * d + f0)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -220,10 +235,12 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     ku = unloading(p)
     slope, f0 = pinched(p)
     if at == pair(PINCHED, s):
-        left = f
+        on_line = f
     else:
-        left = s * min((f0 + slope * s * (d - f / ku)) / (1.0 - slope / ku), 0.0)
-    return 0.5 * (f * f - left * left) / ku + (0.5 * left * left / slope if left != 0.0 else 0.0)
+        on_line = s * min((f0 + slope * s * (d - f / ku)) / (1.0 - slope / ku), 0.0)
+    return 0.5 * (f * f - on_line * on_line) / ku + (
+        0.5 * on_line * on_line / slope if on_line != 0.0 else 0.0
+    )
 
 
 RULE = Rule(
