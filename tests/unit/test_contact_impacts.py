@@ -248,7 +248,7 @@ def test_share_is_one_function_on_both_sides_of_its_series(x: float) -> None:
     for scale in (0.2, 0.2002, 1e-3, 1e-9):
         y = x * scale
         series = math.fsum((-y) ** j / (j + 2) for j in range(60))
-        assert restitution.share(y) == pytest.approx(series, rel=1e-13)
+        assert restitution.phi(y) == pytest.approx(series, rel=1e-13)
 
 
 def test_hertz_impact_in_closed_form() -> None:
@@ -275,7 +275,7 @@ def test_damping_after_a_slow_touch_is_that_of_the_impact_that_gets_there(name: 
     """
     law = build(name, E=0.3).law
     n = law.p[1]
-    share = 0.5 if name == "RUBBER_BUMPER" else restitution.share(law.p[3])
+    share = 0.5 if name == "RUBBER_BUMPER" else restitution.phi(law.p[3])
     deep = ((n + 1.0) * share) ** (1.0 / (n + 1.0))
     assert Impact(law, 0.0, 1.0).motion()[0].max() == pytest.approx(deep, rel=1e-6)
     states = [law.transition(law.start(), 0, 0.0, v0) for v0 in (1.0, 1e-3, 1e-9, 0.0)]

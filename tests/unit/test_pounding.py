@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from decks import results_of
 from pound_solve.catalog import catalog
 from pound_solve.laws.contact import restitution
-from pound_solve.laws.two_bars import Diaphragm, Pair, after, mean_speed, strain
+from pound_solve.laws.two_bars import Diaphragm, Pair, mean_speed, strain, velocity_after
 
 # Table IV of Cole et al. 2011: weights 1600 and 3000 kN
 B1, B2 = Diaphragm(1600 / 9.81, 1881300.0), Diaphragm(3000 / 9.81, 752520.0)
@@ -59,15 +59,15 @@ def test_velocities_of_the_paper() -> None:
     one = v1 + 2 / (1 + m1 * t2 / (m2 * t1)) * (v2 - v1)
     two = v2 + 2 / (t2 / t1 + m2 / m1) * (v1 - v2)
     a1, a2 = pair.alpha_paper
-    assert (after(v1, v2, a1), after(v2, v1, a2)) == pytest.approx((one, two), rel=1e-14)
+    assert (velocity_after(v1, v2, a1), velocity_after(v2, v1, a2)) == pytest.approx((one, two), rel=1e-14)
     a1, a2 = pair.alpha_lumped
-    assert after(v1, v2, a1, pair.e_paper) == pytest.approx(one, rel=1e-14)
-    assert after(v1, v2, a1, 0.0) == pytest.approx((m1 * v1 + m2 * v2) / (m1 + m2), rel=1e-14)
+    assert velocity_after(v1, v2, a1, pair.e_paper) == pytest.approx(one, rel=1e-14)
+    assert velocity_after(v1, v2, a1, 0.0) == pytest.approx((m1 * v1 + m2 * v2) / (m1 + m2), rel=1e-14)
     # Eq 10: strain times stiffness is the force; the bar is 2 long, so c = 2 L / T = 8
     assert strain(v1, v_c, 8.0) * pair.first.stiffness * 2.0 == pytest.approx(pair.force * (v1 - v2))
     r = 0.3  # Eq 20, with Eq 22
-    mixed = r * one + (1 - r) * after(v1, v2, a1, 0.0)
-    assert after(v1, v2, a1, r * pair.e_paper) == pytest.approx(mixed, rel=1e-14)
+    mixed = r * one + (1 - r) * velocity_after(v1, v2, a1, 0.0)
+    assert velocity_after(v1, v2, a1, r * pair.e_paper) == pytest.approx(mixed, rel=1e-14)
 
 
 # ---------------------------------------------------------------------- the exact theory

@@ -22,7 +22,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-ROUNDING = 1e-12  #: share by which like impedances may differ
+ROUNDING = 1e-12  #: relative difference up to which impedances count as equal
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def strain(v: float, v_c: float, wave_speed: float) -> float:
     return (v - v_c) / wave_speed
 
 
-def after(v1: float, v2: float, alpha1: float, e: float = 1.0) -> float:
+def velocity_after(v1: float, v2: float, alpha1: float, e: float = 1.0) -> float:
     """Velocity of a diaphragm after the collision, Eqs 12, 13 and 19 [L/T].
 
     `alpha1` is its influence coefficient: of the theory chosen with ``e = 1``, or the lumped one with a
@@ -94,9 +94,9 @@ class Pair:
 
     @cached_property
     def _ordered(self) -> tuple[Diaphragm, Diaphragm]:
-        """Bars 1 and 2 of the theory; of equal periods it is all the same."""
-        one, two = sorted((self.first, self.second), key=lambda d: (d.period, d.impedance))
-        return one, two
+        """Bars 1 and 2 of the theory; with equal periods either may be bar 1."""
+        bar1, bar2 = sorted((self.first, self.second), key=lambda d: (d.period, d.impedance))
+        return bar1, bar2
 
     def _in_order(self, one: float, two: float) -> tuple[float, float]:
         return (one, two) if self._ordered[0] is self.first else (two, one)
@@ -113,11 +113,11 @@ class Pair:
 
     @property
     def paper_holds(self) -> bool:
-        """Whether the bars part at the shorter period, as Eqs 7, 8 and 14 to 17 assume; like bars, whose
-        impedances differ by rounding, do.
+        """Whether the bars part at the shorter period, as Eqs 7, 8 and 14 to 17 assume; equal bars,
+        whose impedances differ by rounding, do.
         """
-        one, two = self._ordered
-        return one.impedance <= two.impedance * (1.0 + ROUNDING)
+        bar1, bar2 = self._ordered
+        return bar1.impedance <= bar2.impedance * (1.0 + ROUNDING)
 
     @property
     def alpha_lumped(self) -> tuple[float, float]:
@@ -127,54 +127,54 @@ class Pair:
     @property
     def alpha_paper(self) -> tuple[float, float]:
         """Influence coefficients of distributed masses, Table III [-]."""
-        one, two = self._ordered
-        alpha = 1.0 / (1.0 + one.impedance / two.impedance)
-        return self._in_order(alpha, alpha * one.mass / two.mass)
+        bar1, bar2 = self._ordered
+        alpha = 1.0 / (1.0 + bar1.impedance / bar2.impedance)
+        return self._in_order(alpha, alpha * bar1.mass / bar2.mass)
 
     @property
     def e_paper(self) -> float:
         """Effective restitution, Eq 14; may be negative where the equation does not hold [-]."""
-        one, two = self._ordered
-        return 2.0 * (1.0 + one.mass / two.mass) / (1.0 + one.impedance / two.impedance) - 1.0
+        bar1, bar2 = self._ordered
+        return 2.0 * (1.0 + bar1.mass / bar2.mass) / (1.0 + bar1.impedance / bar2.impedance) - 1.0
 
     @property
     def reflection(self) -> float:
         """Ratio rho of the contact forces in successive intervals of the shorter period [-]."""
-        one, two = self._ordered
-        return self.force * (1.0 / two.impedance - 1.0 / one.impedance)
+        bar1, bar2 = self._ordered
+        return self.force * (1.0 / bar2.impedance - 1.0 / bar1.impedance)
 
     @property
     def duration(self) -> float:
-        """How long the contact lasts [T]."""
-        one, two = self._ordered
-        return one.period if self.paper_holds else two.period
+        """Duration of the contact [T]."""
+        bar1, bar2 = self._ordered
+        return bar1.period if self.paper_holds else bar2.period
 
     def force_at(self, t: float) -> float:
         """Contact force at time `t` after the touch [F T/L]."""
         if not 0.0 <= t < self.duration:
             return 0.0
-        one, two = self._ordered
-        if one.period == 0.0:
-            return two.impedance * math.exp(-two.impedance * t / one.mass)
-        return self.force * self.reflection ** math.floor(t / one.period)
+        bar1, bar2 = self._ordered
+        if bar1.period == 0.0:
+            return bar2.impedance * math.exp(-bar2.impedance * t / bar1.mass)
+        return self.force * self.reflection ** math.floor(t / bar1.period)
 
     @property
-    def _kept(self) -> float:
+    def _kappa(self) -> float:
         """Mean velocity of bar 1 after the collision over the approach speed, bar 2 being at rest
         before.
         """
-        one, two = self._ordered
-        if one.period == 0.0:
-            return math.exp(-2.0 * two.mass / one.mass)
-        whole, rest = divmod(self.duration / one.period if not self.paper_holds else 1.0, 1.0)
+        bar1, bar2 = self._ordered
+        if bar1.period == 0.0:
+            return math.exp(-2.0 * bar2.mass / bar1.mass)
+        n, s = divmod(self.duration / bar1.period if not self.paper_holds else 1.0, 1.0)
         rho = self.reflection
-        share: float = rho**whole * (1.0 - rest * (1.0 - rho))
-        return share
+        kappa: float = rho**n * (1.0 - s * (1.0 - rho))
+        return kappa
 
     @property
     def impulse(self) -> float:
         """Integral of the contact force [F T^2/L]."""
-        return self._ordered[0].mass * (1.0 - self._kept)
+        return self._ordered[0].mass * (1.0 - self._kappa)
 
     @property
     def centroid(self) -> float:
@@ -182,18 +182,18 @@ class Pair:
 
         Unlike `duration` it is continuous where the impedances or the periods of the bars become equal.
         """
-        one, two = self._ordered
+        bar1, bar2 = self._ordered
         if self.paper_holds:
-            return 0.5 * one.period
-        if one.period == 0.0:  # exp(-a t/T2) until T2
-            a = 2.0 * two.mass / one.mass
-            return two.period * (1.0 / a - 1.0 / math.expm1(a))
-        whole, rest = divmod(two.period / one.period, 1.0)
-        lost = 2.0 * self.force / one.impedance  # 1 - rho, without its rounding
-        left = math.exp(whole * math.log1p(-lost))
-        steps = (1.0 - left) / lost
-        mean = 0.5 + (1.0 - lost) / lost - whole * left / (1.0 - left)
-        return one.period * (steps * mean + rest * left * (whole + 0.5 * rest)) / (steps + rest * left)
+            return 0.5 * bar1.period
+        if bar1.period == 0.0:  # exp(-a t/T2) until T2
+            a = 2.0 * bar2.mass / bar1.mass
+            return bar2.period * (1.0 / a - 1.0 / math.expm1(a))
+        n, s = divmod(bar2.period / bar1.period, 1.0)
+        drop = 2.0 * self.force / bar1.impedance  # 1 - rho, without its rounding
+        rho_n = math.exp(n * math.log1p(-drop))
+        impulse = (1.0 - rho_n) / drop  # of n whole intervals, over F0 T1; its centroid over T1
+        centroid = 0.5 + (1.0 - drop) / drop - n * rho_n / (1.0 - rho_n)
+        return bar1.period * (impulse * centroid + s * rho_n * (n + 0.5 * s)) / (impulse + s * rho_n)
 
     @property
     def alpha(self) -> tuple[float, float]:

@@ -5,8 +5,10 @@ Pressed for the first time the force follows :math:`K_1` up to the overlap :math
 
 .. math:: f = K_2\delta + (K_1 - K_2)(\delta - \delta_p), \qquad 0 \le \delta - \delta_p \le \delta_y
 
-Pressed again before they have parted, the bodies go up along :math:`K_1` to the upper line.  The
-constants stand for Hertz' force :math:`k_h\delta^n` at one largest overlap :math:`\delta_m`, with
+If the bodies are pressed again before they have parted, the force rises along :math:`K_1` to the upper
+line.
+
+The constants stand for Hertz' force :math:`k_h\delta^n` at one largest overlap :math:`\delta_m`, with
 :math:`K = k_h\delta_m^{n-1}`, :math:`\delta_y = a\delta_m`:
 
 .. math:: a K_1 + (1-a) K_2 = K
@@ -52,6 +54,8 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
 OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
+DY = 3  #: place of the overlap where K2 begins, in the parameters K1, K2, gap and this
+SLIDER = 0  #: internal variable: position of the slider, delta_p
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -60,7 +64,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure; the internal variable is the position of the slider."""
+    """Deformation is the closure, overlap = closure - gap."""
     k1, k2, gap, dy = p[:4]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
@@ -68,12 +72,13 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(k2, (k1 - k2) * dy - k2 * gap, REVERSAL_DOWN)
     if at == BACK:
         return linear(k2, -k2 * gap, REVERSAL_UP, below(gap))
-    return linear(k1, -k1 * gap - (k1 - k2) * m[0], above(gap + m[0] + dy), below(gap + m[0]))
+    zero = gap + m[SLIDER]
+    return linear(k1, -k1 * gap - (k1 - k2) * m[SLIDER], above(zero + dy), below(zero))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, slide, reverse, or part."""
-    dy, overlap = p[3], d - p[GAP]
+    dy, overlap = p[DY], d - p[GAP]
     if at == OPEN:
         return STIFF, (0.0,)
     if at == SOFT:
@@ -82,16 +87,16 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return (STIFF, (max(overlap, 0.0),)) if event == 0 else (OPEN, (0.0,))
     if event == 0:
         return SOFT, m
-    return (BACK, m) if m[0] > 0.0 else (OPEN, (0.0,))
+    return (BACK, m) if m[SLIDER] > 0.0 else (OPEN, (0.0,))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Area below the unloading path."""
-    k2, gap, dy = p[1:4]
+    _, k2, gap, dy = p[:4]
     if at == OPEN:
         return 0.0
     overlap = d - gap
-    corner = overlap if at == BACK else overlap - dy if at == SOFT else m[0]
+    corner = overlap if at == BACK else overlap - dy if at == SOFT else m[SLIDER]
     return 0.5 * (k2 * corner * corner + (k2 * corner + f) * (overlap - corner))
 
 
@@ -114,15 +119,15 @@ def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:
     beyond = overlap - dy
     if beyond <= 0.0:
         return 1.0
-    brought = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
-    return math.sqrt(1.0 - (k1 - k2) * dy * beyond / brought)
+    energy = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
+    return math.sqrt(1.0 - (k1 - k2) * dy * beyond / energy)
 
 
 def speed(k1: float, k2: float, dy: float, overlap: float, mass: float) -> float:
     """Approach [L/T] of a reduced mass that reaches `overlap` [L], beyond dy."""
     beyond = overlap - dy
-    brought = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
-    return math.sqrt(2.0 * brought / mass) if mass else math.inf
+    energy = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
+    return math.sqrt(2.0 * energy / mass) if mass else math.inf
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
@@ -140,15 +145,15 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     ValueError
         Neither or both of the sets are given, or constants that no loop has.
     """
-    plain = [name for name in ("K1", "K2", "DY") if values[name] is not None]
+    by_slopes = [name for name in ("K1", "K2", "DY") if values[name] is not None]
     by_e = [name for name in ("KH", "E", "DM") if values[name] is not None]
-    if (len(plain), len(by_e)) not in ((3, 0), (0, 3)):
+    if (len(by_slopes), len(by_e)) not in ((3, 0), (0, 3)):
         raise ValueError(
             "give either K1, K2 and DY, or KH, E and DM"
-            + (f", not {', '.join(plain + by_e)}" if plain or by_e else "")
+            + (f", not {', '.join(by_slopes + by_e)}" if by_slopes or by_e else "")
         )
-    if plain:
-        k1, k2, dy = (values[name] for name in plain)
+    if by_slopes:
+        k1, k2, dy = (values[name] for name in by_slopes)
         if k2 > k1:
             raise ItemError(f"K2 {k2:g} is above K1 {k1:g}: the second stiffness is the lower one", "K2")
         required = resulting = math.nan

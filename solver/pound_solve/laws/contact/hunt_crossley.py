@@ -15,7 +15,7 @@ overlap,
 
 if that is larger, on a branch of its own: no free impact gets there, so that none is changed and no
 smallest speed has to be chosen.  The damping then is
-:math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, as of
+:math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, like that of
 POWER_LAW_DAMPED.  Where the bodies are pulled apart faster than :math:`v_0/d` the force is zero: it never
 pulls.
 """
@@ -30,6 +30,7 @@ from pound_deck.schema import Spec
 from pound_solve.laws.automaton import (
     GAP,
     BranchKind,
+    K,
     Law,
     Numbers,
     PowersNumbers,
@@ -41,6 +42,7 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, Built
 from pound_solve.laws.contact.power import (
+    EXPONENT,
     drag,
     drag_slope,
     power_fields,
@@ -49,6 +51,7 @@ from pound_solve.laws.contact.power import (
     stiffness_unit,
 )
 
+V0 = 0  #: internal variable: approach speed, zero where there was none
 BEYOND = 2  #: branch of overlaps that no free impact reaches
 
 
@@ -57,19 +60,19 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     return (BEYOND if p[GAP] < 0.0 else OPEN), (0.0,)
 
 
-def reach(p: Numbers, m: Numbers) -> float:
+def free_reach(p: Numbers, m: Numbers) -> float:
     """Overlap that a free impact reaches; up to there the damping for slow touches is the larger one."""
     k, n, _, constant, slow = p[:5]
-    return (slow * m[0] / (constant * k)) ** (2.0 / (n + 1.0)) if constant > 0.0 else math.inf
+    return (slow * m[V0] / (constant * k)) ** (2.0 / (n + 1.0)) if constant > 0.0 else math.inf
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     if at == OPEN:
         return linear(0.0, 0.0, above(p[GAP]))
-    if m[0] == 0.0:  # all overlaps are beyond
+    if m[V0] == 0.0:  # a free impact reaches no overlap
         return linear(0.0, 0.0, below(p[GAP]))
-    far = p[GAP] + reach(p, m)
+    far = p[GAP] + free_reach(p, m)
     if far == math.inf:
         return linear(0.0, 0.0, below(p[GAP]))
     return linear(0.0, 0.0, below(p[GAP]), above(far) if at == PRESSED else below(far))
@@ -86,7 +89,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[GAP])
+    return 0.0 if at == OPEN else spring_energy(p[K], p[EXPONENT], d - p[GAP])
 
 
 def curve(
@@ -100,7 +103,7 @@ def curve(
     work = spring_energy(k, n, x) - spring_energy(k, n, d0 - gap)
     spring = spring_force(k, n, x)
     if at == PRESSED:
-        c = constant * spring / m[0]
+        c = constant * spring / m[V0]
         slope = n * c * v / x if x > 0.0 else 0.0
     else:
         c = drag(slow, n, x)
@@ -116,7 +119,7 @@ def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     k, n, _, constant, slow = p[:5]
     if at == OPEN:
         return 0.0, n, 0.0, n, 0.0, 0.0
-    c, q = (constant * k / m[0], n) if at == PRESSED else (slow, 0.5 * (n - 1.0))
+    c, q = (constant * k / m[V0], n) if at == PRESSED else (slow, 0.5 * (n - 1.0))
     return k, n, c, q, 0.0, 0.0
 
 
@@ -135,7 +138,7 @@ RULE = Rule(
 
 def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:
     """Law with the damping constant `d`; the mass is that of the colliding pair [F T^2/L]."""
-    slow = d * math.sqrt((n + 1.0) * restitution.share(d) * k * mass)
+    slow = d * math.sqrt((n + 1.0) * restitution.phi(d) * k * mass)
     return Law(RULE, (k, n, gap, d, slow, mass))
 
 

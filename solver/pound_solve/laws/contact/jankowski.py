@@ -23,6 +23,7 @@ from pound_solve.laws.automaton import (
     GAP,
     REVERSAL_DOWN,
     REVERSAL_UP,
+    K,
     Law,
     Numbers,
     PowersNumbers,
@@ -35,6 +36,7 @@ from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import Built, start
 from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, transition
 from pound_solve.laws.contact.power import (
+    EXPONENT,
     drag,
     drag_slope,
     power_fields,
@@ -56,7 +58,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[GAP])
+    return 0.0 if at == OPEN else spring_energy(p[K], p[EXPONENT], d - p[GAP])
 
 
 def curve(

@@ -21,11 +21,12 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import GAP, BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import GAP, BranchKind, K, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 
 OPEN, PRESSED, RELEASED = 0, 1, 2
+C, PULLS = 1, 3  #: parameters of a law beside K and GAP: dashpot; whether it may pull
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -48,14 +49,14 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Touch, release, or part."""
     if at == OPEN or (at == RELEASED and event == 0):
         return PRESSED, m
-    return (OPEN if at == RELEASED or p[3] != 0.0 or p[1] == 0.0 else RELEASED), m
+    return (OPEN if at == RELEASED or p[PULLS] != 0.0 or p[C] == 0.0 else RELEASED), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring; after a release it is lost within the contact as the overlap
     vanishes.
     """
-    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[GAP]) ** 2
+    return 0.0 if at == OPEN else 0.5 * p[K] * (d - p[GAP]) ** 2
 
 
 RULE = Rule(

@@ -22,6 +22,7 @@ from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
+    K,
     Law,
     Numbers,
     Rule,
@@ -56,7 +57,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[GAP]) ** 2
+    return 0.0 if at == OPEN else 0.5 * p[K] * (d - p[GAP]) ** 2
 
 
 RULE = Rule(BRANCHES, start, branch, transition, recoverable, parameters=3, variables=0)

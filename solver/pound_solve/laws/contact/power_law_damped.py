@@ -23,6 +23,7 @@ from pound_deck.schema import Spec
 from pound_solve.laws.automaton import (
     GAP,
     BranchKind,
+    K,
     Law,
     Numbers,
     PowersNumbers,
@@ -34,6 +35,7 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, TENSION, Built
 from pound_solve.laws.contact.power import (
+    EXPONENT,
     drag,
     drag_slope,
     power_fields,
@@ -60,7 +62,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[GAP])
+    return 0.0 if at == OPEN else spring_energy(p[K], p[EXPONENT], d - p[GAP])
 
 
 def curve(

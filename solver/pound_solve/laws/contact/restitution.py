@@ -61,10 +61,11 @@ def sticky_ratio(e: float) -> float:
 
 def no_tension_time(xi: float) -> float:
     """Time of release at zero force for damping ratio `xi`, times the undamped frequency [-]."""
-    off = xi - 1.0
-    if abs(off) < 1e-6:
-        # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 share the series 1 - off/3 + 2 off^2/15
-        return 2.0 * (1.0 - off / 3.0 + 2.0 * off * off / 15.0)
+    above_1 = xi - 1.0
+    if abs(above_1) < 1e-6:
+        # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 share the series
+        # 1 - above_1/3 + 2 above_1^2/15
+        return 2.0 * (1.0 - above_1 / 3.0 + 2.0 * above_1 * above_1 / 15.0)
     if xi < 1.0:
         return 2.0 * math.acos(xi) / math.sqrt((1.0 - xi) * (1.0 + xi))
     return 2.0 * math.acosh(xi) / math.sqrt((xi - 1.0) * (xi + 1.0))
@@ -101,7 +102,7 @@ def one_sided_ratio(e: float) -> float:
     return no_tension_ratio(e * e)
 
 
-def share(x: float) -> float:
+def phi(x: float) -> float:
     """Return ``(x - ln(1 + x)) / x^2``, 1/2 at zero; it falls, from infinity at -1."""
     if x <= -1.0:
         return math.inf
@@ -114,37 +115,37 @@ def throughout(d: float) -> float:
     """Restitution [-] for the constant `d` [-] of damping that grows with the spring's force."""
     if d == 0.0:
         return 1.0
-    return _root(lambda e: share(d) - e * e * share(-d * e), 0.0, min(1.0, 1.0 / d))
+    return _root(lambda e: phi(d) - e * e * phi(-d * e), 0.0, min(1.0, 1.0 / d))
 
 
 def throughout_constant(e: float) -> float:
     """Constant [-] of damping that grows with the spring's force, for restitution `e` in (0, 1]."""
     if e == 1.0:
         return 0.0
-    return _root(lambda d: share(d) - e * e * share(-d * e), 0.0, 1.0 / e)
+    return _root(lambda d: phi(d) - e * e * phi(-d * e), 0.0, 1.0 / e)
 
 
 def in_restitution(d: float) -> float:
     """Restitution [-] for the constant `d` [-] of such damping in restitution only."""
     if d == 0.0:
         return 1.0
-    return _root(lambda e: 0.5 - e * e * share(-d * e), 0.0, min(1.0, 1.0 / d))
+    return _root(lambda e: 0.5 - e * e * phi(-d * e), 0.0, min(1.0, 1.0 / d))
 
 
 def in_restitution_constant(e: float) -> float:
     """Constant [-] of such damping in restitution only, for restitution `e` in (0, 1]."""
     if e == 1.0:
         return 0.0
-    return _root(lambda d: 0.5 - e * e * share(-d * e), 0.0, 1.0 / e)
+    return _root(lambda d: 0.5 - e * e * phi(-d * e), 0.0, 1.0 / e)
 
 
-def _root(of: Callable[[float], float], low: float, high: float) -> float:
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
     """Root of a falling function, by bisection to the last bit."""
     while True:
         middle = 0.5 * (low + high)
         if middle in (low, high):
             return middle
-        if of(middle) > 0.0:
+        if function(middle) > 0.0:
             low = middle
         else:
             high = middle

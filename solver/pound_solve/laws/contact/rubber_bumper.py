@@ -14,8 +14,8 @@ one, to 0.016 in e from 0.2 on.  For a real bumper give its own numbers.
 That the damping acts on the stiff branch too is our choice: the force is continuous, and the restitution is
 as required for any overlap.
 
-Against a damping beyond all bounds after a slow touch :math:`v_0` is never taken smaller than the speed
-from which a free impact comes as far as the motion turned, :math:`\sqrt{2\int F\,d\delta/m}`.
+After a slow touch the damping would be beyond all bounds.  So :math:`v_0` is never less than the speed from
+which a free impact comes to the overlap at which the motion reversed, :math:`\sqrt{2\int F\,d\delta/m}`.
 """
 
 from __future__ import annotations
@@ -44,18 +44,21 @@ from pound_solve.laws.contact.power import power_fields, spring_energy, spring_f
 from pound_solve.laws.refusal import ItemError
 
 OPEN, APPROACH, PARTING, STIFF_APPROACH, STIFF_PARTING = range(5)  #: stiff: the rubber is used up
+# parameters of a law beside K, EXPONENT and GAP: limit, stiffness beyond it, damping constant d, mass
+LIMIT, K_BEYOND, D, MASS = 3, 4, 5, 6
+V0 = 0  #: internal variable: the speed v0
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative; the internal variable is the speed v0."""
     if p[GAP] >= 0.0:
         return OPEN, (0.0,)
-    return (APPROACH if -p[GAP] <= p[3] else STIFF_APPROACH), (0.0,)
+    return (APPROACH if -p[GAP] <= p[LIMIT] else STIFF_APPROACH), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
-    gap, limit = p[GAP], p[3]
+    gap, limit = p[GAP], p[LIMIT]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
     if at == STIFF_APPROACH:
@@ -77,8 +80,9 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return APPROACH, (max(v, 0.0),)
     approaching = at in (APPROACH, STIFF_APPROACH)
     if approaching and event == 0:
-        turned = max(m[0], math.sqrt(2.0 * spring(p, d - p[GAP])[2] / p[6]))
-        return (PARTING if at == APPROACH else STIFF_PARTING), (turned,)
+        _, _, energy = spring(p, d - p[GAP])
+        v0 = max(m[V0], math.sqrt(2.0 * energy / p[MASS]))
+        return (PARTING if at == APPROACH else STIFF_PARTING), (v0,)
     if approaching:
         return (STIFF_APPROACH, m) if event == 2 else (OPEN, (0.0,))
     if event == 1:
@@ -88,14 +92,15 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def spring(p: Numbers, x: float) -> tuple[float, float, float]:
     """Force of the bumper without damping, its stiffness, and its energy."""
-    k, n, _, limit, stiff = p[:5]
+    k, n, _, limit, k_beyond = p[:D]
     if x <= 0.0:
         return 0.0, 0.0, 0.0
     if x <= limit:
         force = spring_force(k, n, x)
         return force, n * force / x, spring_energy(k, n, x)
-    force, more = spring_force(k, n, limit), x - limit
-    return force + stiff * more, stiff, spring_energy(k, n, limit) + (force + 0.5 * stiff * more) * more
+    force, beyond = spring_force(k, n, limit), x - limit
+    energy = spring_energy(k, n, limit) + (force + 0.5 * k_beyond * beyond) * beyond
+    return force + k_beyond * beyond, k_beyond, energy
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -111,9 +116,9 @@ def curve(
         return 0.0, 0.0, 0.0, 0.0
     force, stiffness, energy = spring(p, d - p[GAP])
     work = energy - spring(p, d0 - p[GAP])[2]
-    if at in (APPROACH, STIFF_APPROACH) or m[0] == 0.0:
+    if at in (APPROACH, STIFF_APPROACH) or m[V0] == 0.0:
         return force, stiffness, 0.0, work
-    c, slope = p[5] * force / m[0], p[5] * stiffness / m[0]
+    c, slope = p[D] * force / m[V0], p[D] * stiffness / m[V0]
     if force + c * v <= 0.0:
         return 0.0, 0.0, 0.0, work
     return force + c * v, stiffness + slope * v, c, work
@@ -121,13 +126,14 @@ def curve(
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Force as powers of the overlap, see `Rule`."""
-    k, n, _, limit, stiff, constant = p[:6]
+    k, n, _, limit, k_beyond, constant = p[:MASS]
     if at == OPEN:
         return 0.0, n, 0.0, n, 0.0, 0.0
-    share = constant / m[0] if at in (PARTING, STIFF_PARTING) and m[0] > 0.0 else 0.0
+    by_rate = constant / m[V0] if at in (PARTING, STIFF_PARTING) and m[V0] > 0.0 else 0.0
     if at in (APPROACH, PARTING):
-        return k, n, share * k, n, 0.0, 0.0
-    return stiff, 1.0, share * stiff, 1.0, 0.0, limit - spring_force(k, n, limit) / stiff
+        return k, n, by_rate * k, n, 0.0, 0.0
+    shift = limit - spring_force(k, n, limit) / k_beyond
+    return k_beyond, 1.0, by_rate * k_beyond, 1.0, 0.0, shift
 
 
 RULE = Rule(

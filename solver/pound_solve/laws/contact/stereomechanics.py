@@ -27,6 +27,7 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
 OPEN, PRESSED = 0, 1
+FORCE = 0  #: internal variable: force in a static state; a history has forces of its own
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -35,11 +36,8 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Open up to the gap; pressed until the force falls below zero.
-
-    The internal variable is the force in a static state; a history has forces of its own.
-    """
-    return linear(0.0, m[0], above(p[GAP]) if at == OPEN else below(0.0))
+    """Open up to the gap; pressed until the force falls below zero."""
+    return linear(0.0, m[FORCE], above(p[GAP]) if at == OPEN else below(0.0))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:

@@ -25,6 +25,7 @@ from typing import Any
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     GAP,
+    NEVER,
     REVERSAL_DOWN,
     BranchKind,
     Law,
@@ -39,7 +40,9 @@ from pound_solve.laws.refusal import ItemError
 
 OPEN, MOST = 0, 8  #: segments of the table are branches 1 to MOST
 UNLOADING = MOST + 1
-POINTS = 4  #: place of the points in the parameters, after the first slope, KU, the gap, their number
+# parameters of a law: the first slope, KU (0: it does not crush), GAP, number of the points, the points
+KU, COUNT, POINTS = 1, 3, 4
+RESIDUAL, LARGEST, SEGMENT = range(3)  #: internal variables: residual depth; largest overlap; segment at it
 
 
 def point(p: Numbers, i: int) -> tuple[float, float]:
@@ -53,25 +56,25 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """The internal variables: residual depth, largest overlap, and the segment of the table at that."""
-    ku, gap, count = p[1], p[GAP], int(p[3])
+    """Open, along the line of unloading, or along a segment of the table."""
+    ku, gap, count = p[KU], p[GAP], int(p[COUNT])
     if at == OPEN:
-        return linear(0.0, 0.0, above(gap + m[0]))
+        return linear(0.0, 0.0, above(gap + m[RESIDUAL]))
     if at == UNLOADING:
-        return linear(ku, -ku * (gap + m[0]), above(gap + m[1]), below(gap + m[0]))
+        return linear(ku, -ku * (gap + m[RESIDUAL]), above(gap + m[LARGEST]), below(gap + m[RESIDUAL]))
     (d0, f0), (d1, f1) = point(p, at - 1), point(p, at)
     k = (f1 - f0) / (d1 - d0)
-    further = above(gap + d1) if at < count else (0.0, 0.0, -1.0)
+    further = above(gap + d1) if at < count else NEVER
     return linear(k, f0 - k * (gap + d0), further, below(gap + d0) if ku == 0.0 else REVERSAL_DOWN)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, go to the next segment of the table or back, unload, or part."""
-    ku, gap = p[1], p[GAP]
+    ku, gap = p[KU], p[GAP]
     if at == OPEN:
-        return (1 if m[1] == 0.0 else UNLOADING), m
+        return (1 if m[LARGEST] == 0.0 else UNLOADING), m
     if at == UNLOADING:
-        return (int(m[2]) if event == 0 else OPEN), m
+        return (int(m[SEGMENT]) if event == 0 else OPEN), m
     if event == 0:
         return at + 1, m
     if ku == 0.0:
@@ -79,15 +82,15 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     d0, f0 = point(p, at - 1)
     d1, f1 = point(p, at)
     force = f0 + (f1 - f0) / (d1 - d0) * (d - gap - d0)
-    return UNLOADING, (max(d - gap - force / ku, m[0]), d - gap, float(at))
+    return UNLOADING, (max(d - gap - force / ku, m[RESIDUAL]), d - gap, float(at))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Area below the table, or below the line of unloading."""
     if at == OPEN:
         return 0.0
-    if p[1] != 0.0:
-        return 0.5 * f * f / p[1]
+    if p[KU] != 0.0:
+        return 0.5 * f * f / p[KU]
     area = 0.0
     for i in range(1, at):
         (d0, f0), (d1, f1) = point(p, i - 1), point(p, i)
@@ -98,8 +101,8 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 def steepest(p: Numbers) -> float:
     """Slope of the steepest segment, or KU, which is not below it."""
-    ends = [point(p, i) for i in range(int(p[3]) + 1)]
-    return max(p[1], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
+    ends = [point(p, i) for i in range(int(p[COUNT]) + 1)]
+    return max(p[KU], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
 
 
 SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MOST + 1))
@@ -156,12 +159,12 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         if ku < max(slopes):
             raise ItemError(f"KU {ku:g} is below the steepest slope of the table, {max(slopes):g}", "KU")
         resulting = math.nan
-        brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
-        back = 0.5 * forces[-1] ** 2 / ku
-        at = math.sqrt(2.0 * brought / reduced_mass) if reduced_mass else math.inf
+        energy_in = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
+        energy_back = 0.5 * forces[-1] ** 2 / ku
+        at = math.sqrt(2.0 * energy_in / reduced_mass) if reduced_mass else math.inf
         note = (
-            f"e depends on the speed: {math.sqrt(back / brought):.4g} at {at:.4g}, which reaches the last "
-            "of DEPTHS for the first time"
+            f"e depends on the speed: {math.sqrt(energy_back / energy_in):.4g} at {at:.4g}, which reaches the "
+            "last of DEPTHS for the first time"
         )
     return Built(law, steepest(law.p), 0.0, 0.0, math.nan, resulting, note, limit=depths[-1])
 

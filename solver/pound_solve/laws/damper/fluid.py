@@ -43,12 +43,13 @@ from pound_solve.laws.mirror import inward, pair, side
 # parameters of a law, after a stiffness of zero: dashpot and exponent; for both directions the largest
 # forces, the rates at which they are reached, and the ends of the play
 C, ALPHA, MOST, MOST_MINUS, FAST, FAST_MINUS, FROM, FROM_MINUS = range(1, 9)
+PLAY_SIDE = 0  #: internal variable: side of the play on which it is (1 or -1; 0: there is none)
 PLAY, MOVING, LIMITED = 0, 1, 3  #: branches of an extending damper; those of a shortening one are one more
 CORE = 1e-12  #: rate up to which the force is straight, as a share of the rate one, at which it is C
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """In the play, or without one; the internal variable is the side of the play."""
+    """In the play, or moving where there is none."""
     return (PLAY if p[FROM] > p[FROM_MINUS] else MOVING), (0.0,)
 
 
@@ -58,7 +59,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(0.0, 0.0, above(p[FROM]), below(p[FROM_MINUS]))
     s = side(at)
     fast = p[FAST] if s > 0.0 else p[FAST_MINUS]
-    play = inward(m[0], p[FROM] if m[0] > 0.0 else -p[FROM_MINUS]) if m[0] != 0.0 else NEVER
+    play = NEVER
+    if m[PLAY_SIDE] != 0.0:
+        play = inward(m[PLAY_SIDE], p[FROM] if m[PLAY_SIDE] > 0.0 else -p[FROM_MINUS])
     if at >= LIMITED:
         return linear(0.0, s * (p[MOST] if s > 0.0 else p[MOST_MINUS]), (0.0, -s, fast), play)
     return linear(0.0, 0.0, (0.0, -s, -CORE), (0.0, s, -fast) if fast < math.inf else NEVER, play)
@@ -83,16 +86,14 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Nothing: all is dissipated."""
+    """Zero: all of the work is dissipated."""
     return 0.0
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force and its slope; `p` holds 0 (no stiffness), C, alpha, then of both directions the limits, the
-    rates where they are reached, and the ends of the play.
-    """
+    """Force and its slope."""
     if at == PLAY:
         return 0.0, 0.0, 0.0, 0.0
     s = side(at)

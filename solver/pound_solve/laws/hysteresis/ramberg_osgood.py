@@ -138,9 +138,8 @@ def closing_point(p: Numbers, m: Numbers) -> tuple[float, float]:
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Events: a reversal, or the loop closes."""
     s = 1.0 if at == LOADING else -1.0
-    return linear(
-        p[K], 0.0, turns_inward(s), outward(s, s * closing_point(p, m)[0]) if m[OPEN] > 0.0 else NEVER
-    )
+    closes = outward(s, s * closing_point(p, m)[0]) if m[OPEN] > 0.0 else NEVER
+    return linear(p[K], 0.0, turns_inward(s), closes)
 
 
 def curve(

@@ -238,9 +238,8 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
         on_line = f
     else:
         on_line = s * min((f0 + slope * s * (d - f / ku)) / (1.0 - slope / ku), 0.0)
-    return 0.5 * (f * f - on_line * on_line) / ku + (
-        0.5 * on_line * on_line / slope if on_line != 0.0 else 0.0
-    )
+    along_line = 0.5 * on_line * on_line / slope if on_line != 0.0 else 0.0
+    return 0.5 * (f * f - on_line * on_line) / ku + along_line
 
 
 RULE = Rule(
