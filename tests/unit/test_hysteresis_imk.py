@@ -305,10 +305,10 @@ def test_opensees_aims_at_a_local_peak_that_the_backbone_has_left(monkeypatch: p
     assert got[5] == pytest.approx(-21.534454, abs=1.1e-6)
 
     def anyway(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
-        (d1, f1), (d2, f2) = imk_pinching.local(s, m), imk_pinching.peak(p, s, m)
+        (d1, f1), (d2, f2) = imk_pinching.local_peak(s, m), imk_pinching.peak(p, s, m)
         return d < d1 < d2 and f < f1 < f2 and (f1 - f) * (d2 - d) > (f2 - f) * (d1 - d)
 
-    monkeypatch.setattr(imk_pinching, "by_local", anyway)
+    monkeypatch.setattr(imk_pinching, "passes_local_peak", anyway)
     assert forces(law, path) == pytest.approx(frozen, abs=1.1e-6)
 
 

@@ -22,8 +22,8 @@ EVENTS = 3  #: most event functions of a branch
 K = 0  #: place of the (initial) stiffness among the parameters of a law
 FY, FY_MINUS = 1, 2  #: places of the yield forces (the negative one signed) in most hysteresis rules
 GAP = 2  #: place of the gap among the parameters of a contact
-PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule counts as zero
-AT_END = 1e-9  #: share of a deformation by which a law must pass the end of a line to have gone on
+PAST = 1e-12  #: fraction of its scale up to which the variable of a smooth rule counts as zero
+AT_END = 1e-9  #: a law has left a line once it is beyond the end by this fraction of the deformation
 PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
 
 Numbers = tuple[float, ...]
@@ -61,7 +61,8 @@ def passes(x: float, end: float, size: float) -> bool:
     that `size`.
 
     Where a spring in series has the same strength and yields, a law rests at the end of its line until the
-    motion reverses.  Its internal variables must not depend on the last digit then: it has not gone on.
+    motion reverses.  Its internal variables must not depend on the last digit then: it has not left the
+    line.
     """
     return x - end > AT_END * size
 

@@ -29,7 +29,7 @@ from pound_solve.numerics.jit import Function
 
 STEEP = 0.99  #: largest g k: by the remaining deformation a branch is at most a hundred times as steep
 
-# given to every copy of the functions below
+# `bound` gives each copy of the functions below its own
 rule_branch: Any = missing
 rule_transition: Any = missing
 rule_recoverable: Any = missing

@@ -1,8 +1,8 @@
 """The functions of the rules of a run, gathered so that kernels call them by number.
 
-Compiled code calls functions by number where all have the same types.  A rule's parameters and internal
-variables have lengths of its own: here they are tuples of the lengths of the longest, and every function
-is given the first of them.
+Compiled code can call functions by number only if all have the same types.  The numbers of parameters and
+of internal variables differ from rule to rule.  Here both are tuples as long as those of the longest rule,
+and each function gets the first ones.
 """
 
 from __future__ import annotations
@@ -139,8 +139,8 @@ def not_smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNum
 
 
 def missing(*_: Any) -> Any:
-    """Stand in for a function of a rule; what calls it is a template, whose copies `bound` gives the
-    rule's function instead.
+    """Stand in for a function of a rule in the templates below; `bound` makes copies of these with the
+    function of the rule in its place.
     """
     raise NotImplementedError
 
@@ -154,17 +154,17 @@ def bound(template: Function, name: str, **values: Any) -> Function:
 
 # ---------------------------------------------------------------------- rows of arrays as tuples
 
-first: RowPart = missing  # given to every copy of the functions below
+first: RowPart = missing  # `bound` gives each copy of the functions below its own
 second: RowPart = missing
 half = 0
 
 
-def one(a: Array, i: int, j: int) -> Numbers:
+def single_number(a: Array, i: int, j: int) -> Numbers:
     """Number `j` of row `i` of an array, as a tuple of one."""
     return (a[i, j],)
 
 
-def both(a: Array, i: int, j: int) -> Numbers:
+def joined_halves(a: Array, i: int, j: int) -> Numbers:
     """Numbers in row `i` of an array, from `j` on, as a tuple."""
     return first(a, i, j) + second(a, i, j + half)
 
@@ -173,10 +173,10 @@ def both(a: Array, i: int, j: int) -> Numbers:
 def from_place(length: int) -> RowPart:
     """Function ``numbers(a, i, j)``: so many numbers in row `i` of an array, from `j` on, as a tuple."""
     if length == 1:
-        return one
+        return single_number
     left = length // 2
     values = {"first": from_place(left), "second": from_place(length - left), "half": left}
-    return bound(both, str(length), **values)
+    return bound(joined_halves, str(length), **values)
 
 
 def start_of_row(a: Array, i: int) -> Numbers:
@@ -191,7 +191,7 @@ def row(length: int) -> Callable[[Array, int], Numbers]:
 
 # ---------------------------------------------------------------------- functions of rules
 
-function_of_rule = missing  # given to every copy of the functions below, with its lengths
+function_of_rule = missing  # `bound` gives each copy of the functions below its own, with its lengths
 parameters = variables = 0
 
 
@@ -203,8 +203,8 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Transition of a rule."""
-    to, now = function_of_rule(p[:parameters], at, m[:variables], event, d, v)
-    return to, now + m[variables:]
+    at_after, m_after = function_of_rule(p[:parameters], at, m[:variables], event, d, v)
+    return at_after, m_after + m[variables:]
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -292,7 +292,7 @@ def functions(rule: Rule) -> tuple[Function, ...]:
 def tables(rules: Sequence[Rule]) -> Tables:
     """Functions of the rules, ready to be called by number.
 
-    The last rule fills the tables up to a length that hardly a deck exceeds: numba compiles the kernels
+    The last rule fills the tables up to a length that few decks exceed, because numba compiles the kernels
     anew for every length.
     """
     by_rule = [functions(r) for r in rules]

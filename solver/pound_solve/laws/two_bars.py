@@ -5,8 +5,8 @@ A diaphragm of mass :math:`m` and axial stiffness :math:`k_D` has the collision 
 Index 1 is the diaphragm of the shorter period; :math:`\Delta v = v_1 - v_2` is the approach speed.
 
 Cole, Dhakal, Carr and Bull (2011), Earthquake Engng Struct. Dyn. 40: 641-659, let the bars part at
-:math:`T_1` (Eqs 3-22).  That is right for :math:`Z_1 \le Z_2`.  Else the wave that comes back from the far
-end of bar 1 does not turn its motion: contact lasts to :math:`T_2` with the force
+:math:`T_1` (Eqs 3-22).  That is right for :math:`Z_1 \le Z_2`.  Else the wave that returns from the far end
+of bar 1 does not reverse its motion: contact lasts to :math:`T_2` with the force
 
 .. math:: F_j = F_0 \rho^j,\quad jT_1 < t < (j+1)T_1,\qquad
           F_0 = \frac{Z_1 Z_2}{Z_1 + Z_2}\Delta v,\quad \rho = \frac{Z_1 - Z_2}{Z_1 + Z_2}

@@ -44,7 +44,9 @@ def fields(name: str, doc: str, published: str) -> tuple[Field, Field, Field]:
     )
 
 
-def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: float, free: str = "") -> str:
+def damping_item(
+    values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: float, free: str = ""
+) -> str:
     """Name of the one item of several that the card gives; all but `free` need masses.
 
     Raises
@@ -66,7 +68,7 @@ def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: floa
 
 
 def constant(
-    values: Mapping[str, Any], name: str, given_back: Relation, exact: Relation, published: Relation
+    values: Mapping[str, Any], name: str, restitution_of: Relation, exact: Relation, published: Relation
 ) -> Constant:
     """Constant `name` of a law, from itself or from E.
 
@@ -74,16 +76,16 @@ def constant(
     ----------
     values : mapping
         Holds `name`, E and RELATION.
-    given_back : callable
+    restitution_of : callable
         Restitution that a constant gives.
     exact, published : callable
         Constant for a restitution.
     """
     if (value := values[name]) is not None:
-        return Constant(value, math.nan, given_back(value), f"{name} given")
+        return Constant(value, math.nan, restitution_of(value), f"{name} given")
     e, word = values["E"], values["RELATION"]
     value = (published if word == "PUBLISHED" else exact)(e)
-    return Constant(value, e, given_back(value), f"{word.lower()} relation of E to {name}")
+    return Constant(value, e, restitution_of(value), f"{word.lower()} relation of E to {name}")
 
 
 class Dashpot(NamedTuple):
@@ -99,7 +101,7 @@ class Dashpot(NamedTuple):
 def dashpot(
     values: Mapping[str, Any],
     reduced_mass: float,
-    given_back: Relation,
+    restitution_of: Relation,
     exact: Relation,
     published: Relation,
 ) -> Dashpot:
@@ -110,12 +112,12 @@ def dashpot(
     ValueError
         None or several of C, XI, E; or XI or E where there is no mass.
     """
-    root = 2.0 * math.sqrt(values["K"] * reduced_mass)
-    if chosen(values, ("C", "XI", "E"), reduced_mass, "C") == "C":
-        xi = values["C"] / root if root else math.inf
-        return Dashpot(values["C"], xi, math.nan, given_back(xi) if root else math.nan, "C given")
-    ratio = constant(values, "XI", given_back, exact, published)
-    return Dashpot(ratio.value * root, *ratio)
+    critical = 2.0 * math.sqrt(values["K"] * reduced_mass)
+    if damping_item(values, ("C", "XI", "E"), reduced_mass, "C") == "C":
+        xi = values["C"] / critical if critical else math.inf
+        return Dashpot(values["C"], xi, math.nan, restitution_of(xi) if critical else math.nan, "C given")
+    ratio = constant(values, "XI", restitution_of, exact, published)
+    return Dashpot(ratio.value * critical, *ratio)
 
 
 def linear_fields(published: str) -> tuple[Field, ...]:

@@ -6,14 +6,14 @@ with the approach speed :math:`v_0` at the instant of touch, which is located (H
 Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42(2): 440-445).  The force
 begins and ends at zero.  RELATION=PUBLISHED is theirs, :math:`d = 3(1 - e)/2`, good for small losses.
 
-A contact that is touched slowly and then driven together, or closed from the start, would have a damping
-beyond all bounds.  There :math:`v_0` is replaced by the speed from which a free impact reaches the present
+For a contact that is touched slowly and then driven together, or closed from the start, the damping would
+be unbounded.  There :math:`v_0` is replaced by the speed from which a free impact reaches the present
 overlap,
 
 .. math:: v(\delta) = \sqrt{\frac{k\delta^{n+1}}{(n+1)\,m\,\varphi(d)}}, \qquad
           \varphi(d) = \frac{d - \ln(1 + d)}{d^2},
 
-if that is larger, on a branch of its own: no free impact gets there, so that none is changed and no
+if that is larger, on a separate branch.  No free impact reaches that branch, so that none is changed and no
 smallest speed has to be chosen.  The damping then is
 :math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, like that of
 POWER_LAW_DAMPED.  Where the bodies are pulled apart faster than :math:`v_0/d` the force is zero: it never
@@ -152,7 +152,7 @@ def build_with(
     ValueError
         Both or none of D, E; or no mass.
     """
-    constants.chosen(values, ("D", "E"), reduced_mass)
+    constants.damping_item(values, ("D", "E"), reduced_mass)
     damping = constants.constant(
         values, "D", restitution.throughout, restitution.throughout_constant, published
     )

@@ -103,7 +103,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         Both or none of XI, E; or no mass; or the published relation with another exponent than its own.
     """
     k, n = values["K"], values["N"]
-    constants.chosen(values, ("XI", "E"), reduced_mass)
+    constants.damping_item(values, ("XI", "E"), reduced_mass)
     if values["RELATION"] == "PUBLISHED" and n != 1.5:
         raise ItemError(
             "the published relation of E to XI is for N=1.5: RELATION=EXACT holds for any N", "N"

@@ -122,12 +122,12 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         None or several of C, XI, E; or XI or E where there is no mass.
     """
     tension = values["TENSION"] == "YES"
-    given_back, exact = (
+    restitution_of, exact = (
         (restitution.sticky, restitution.sticky_ratio)
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
     )
-    damper = dashpot(values, reduced_mass, given_back, exact, restitution.sticky_ratio)
+    damper = dashpot(values, reduced_mass, restitution_of, exact, restitution.sticky_ratio)
     p = (values["K"], damper.c, values["GAP"], float(tension))
     return Built(Law(RULE, p), values["K"], *damper)
 

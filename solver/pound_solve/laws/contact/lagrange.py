@@ -3,7 +3,7 @@ r"""Lagrange multiplier: bodies that touch stay together for as long as the mult
 At touch the two nodes take up one velocity, with the momentum that they had; while they are together
 :math:`b^T u` stays at the gap, and the multiplier :math:`\lambda` of that condition is the contact force;
 they part, without a jump, when it would pull.  The restitution of such a collision comes from the bodies
-behind the nodes: divided into elements they send off waves, whose return ends the contact.
+behind the nodes: divided into elements they emit waves, whose return ends the contact.
 
 This is the idea of Papadrakakis M, Mouzakis H, Plevris N, Bitzarakis S (1991), Earthquake Engng Struct.
 Dyn. 20: 981-998, whose details are not followed; the impact conditions of lumped nodes are those of Hughes

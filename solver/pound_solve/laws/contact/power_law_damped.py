@@ -111,9 +111,9 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         Both or none of ALPHA, E; or no mass.
     """
     k, n, tension = values["K"], values["N"], values["TENSION"] == "YES"
-    constants.chosen(values, ("ALPHA", "E"), reduced_mass)
+    constants.damping_item(values, ("ALPHA", "E"), reduced_mass)
     scale = math.sqrt(2.0 * (n + 1.0))  # from the damping ratio of the linear law with the same path
-    given_back, exact = (
+    restitution_of, exact = (
         (restitution.sticky, restitution.sticky_ratio)
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
@@ -121,7 +121,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     damping = constants.constant(
         values,
         "ALPHA",
-        lambda alpha: given_back(alpha / scale),
+        lambda alpha: restitution_of(alpha / scale),
         lambda e: exact(e) * scale,
         lambda e: restitution.sticky_ratio(e) * scale,
     )

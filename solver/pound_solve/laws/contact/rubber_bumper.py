@@ -14,7 +14,7 @@ one, to 0.016 in e from 0.2 on.  For a real bumper give its own numbers.
 That the damping acts on the stiff branch too is our choice: the force is continuous, and the restitution is
 as required for any overlap.
 
-After a slow touch the damping would be beyond all bounds.  So :math:`v_0` is never less than the speed from
+After a slow touch the damping would be unbounded.  So :math:`v_0` is never less than the speed from
 which a free impact comes to the overlap at which the motion reversed, :math:`\sqrt{2\int F\,d\delta/m}`.
 """
 
@@ -172,7 +172,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             "THICKNESS and KU, the stiffness beyond its limit, go together",
             "KU" if thickness is None else "THICKNESS",
         )
-    constants.chosen(values, ("D", "E"), reduced_mass)
+    constants.damping_item(values, ("D", "E"), reduced_mass)
     damping = constants.constant(
         values, "D", restitution.in_restitution, restitution.in_restitution_constant, published
     )

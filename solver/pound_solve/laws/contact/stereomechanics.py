@@ -11,8 +11,8 @@ With the contact's row b in a structure of mass M this is the impulse
 
 .. math:: J = (1+e)\,\frac{b^T v}{b^T M^{-1} b}, \qquad v' = v - M^{-1} b\,J
 
-An impact without rebound closes the contact: from then on it holds its deformation by the force that this
-takes, and it opens when the force would pull (:mod:`~pound_solve.integrate.rigid.contacts`).
+An impact without rebound closes the contact: from then on it holds its deformation by the force that
+this requires, and it opens when the force would pull (:mod:`~pound_solve.integrate.rigid.contacts`).
 """
 
 from __future__ import annotations

@@ -163,8 +163,8 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         energy_back = 0.5 * forces[-1] ** 2 / ku
         at = math.sqrt(2.0 * energy_in / reduced_mass) if reduced_mass else math.inf
         note = (
-            f"e depends on the speed: {math.sqrt(energy_back / energy_in):.4g} at {at:.4g}, which reaches the "
-            "last of DEPTHS for the first time"
+            f"e depends on the speed: {math.sqrt(energy_back / energy_in):.4g} at {at:.4g}, which reaches "
+            "the last of DEPTHS for the first time"
         )
     return Built(law, steepest(law.p), 0.0, 0.0, math.nan, resulting, note, limit=depths[-1])
 

@@ -54,7 +54,7 @@ LEAST = 0.01  #: share of the yield force that is left in the end
 # parameters of a law after K, FY, FY_MINUS: r, alpha; of the loss D1, D2, phi_R, its form, D3 (0: none) and
 # the loss by a cycle
 R, ALPHA, D1, D2, PHI_R, FORM, D3, BY_CYCLE = range(3, 11)
-PARAMETERS = 11  #: number of them all; a rule adds its own behind
+PARAMETERS = 11  #: number of them all; a rule's own parameters follow
 # internal variables: largest ductilities of both sides; the point (d, f); changes of the yielding side,
 # with the sign of the last one
 MU, MU_MINUS, D, F, CHANGES = range(5)
@@ -153,20 +153,20 @@ def _loss(values: Mapping[str, Any]) -> Numbers:
     if not loses_strength(values):
         return 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
     form = FORMS[values["ILOS"]]
-    begin, end, left, gone, by_cycle = (values[name] for name in _ITEMS)
-    if None in (begin, end, left):
+    d1, d2, phi_r, d3, by_cycle = (values[name] for name in _ITEMS)
+    if None in (d1, d2, phi_r):
         raise ItemError("ILOS needs DUCT1, DUCT2 and RDUCT", "ILOS")
-    if begin >= end:
+    if d1 >= d2:
         raise ItemError("DUCT2 must be larger than DUCT1", "DUCT2")
-    if gone is not None and gone <= end:
+    if d3 is not None and d3 <= d2:
         raise ItemError("DUCT3 must be larger than DUCT2", "DUCT3")
-    if gone is not None and left <= LEAST:
+    if d3 is not None and phi_r <= LEAST:
         raise ItemError(f"RDUCT must be larger than {LEAST:g}, which is left at DUCT3", "RDUCT")
-    if gone is None and form in (_EACH_SUDDEN, _LARGEST_SUDDEN):
+    if d3 is None and form in (_EACH_SUDDEN, _LARGEST_SUDDEN):
         raise ItemError("a SUDDEN loss needs DUCT3, where it happens", "ILOS")
     if (by_cycle is None) is (form >= _COUNTING):
         raise ValueError("RCYC goes with the forms of ILOS that end in RCYC or SUDDEN, and these need it")
-    return begin, end, left, float(form), gone or 0.0, (by_cycle or 0.0) / 100.0
+    return d1, d2, phi_r, float(form), d3 or 0.0, (by_cycle or 0.0) / 100.0
 
 
 def yield_force(p: Numbers, s: float) -> float:
@@ -198,14 +198,14 @@ def strength_by_ductility(p: Numbers, x: float) -> float:
     return 1.0 if p[FORM] == _CYCLES else phi(p, x)
 
 
-def is_largest(p: Numbers) -> bool:
-    """Whether the larger ductility of both sides counts."""
+def counts_larger_side(p: Numbers) -> bool:
+    """Whether the larger ductility of both sides determines the loss."""
     return bool(p[FORM] == _LARGEST or p[FORM] >= _LARGEST_RCYC)
 
 
 def governing_ductility(p: Numbers, m: Numbers, s: float) -> float:
     """Largest ductility so far that determines the loss of strength of a side."""
-    return max(m[MU], m[MU_MINUS]) if is_largest(p) else largest_ductility(m, s)
+    return max(m[MU], m[MU_MINUS]) if counts_larger_side(p) else largest_ductility(m, s)
 
 
 def inelastic_cycles(m: Numbers, s: float) -> float:
@@ -228,16 +228,16 @@ def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]
     so far: slope, value at zero, and the ductility where it ends (0: it does not).
     """
     d1, d2, phi_r, d3 = p[D1], p[D2], p[PHI_R], p[D3]
-    driven = max(mu, d1)
+    flat_to = max(mu, d1)  # up to there no more strength is lost
     if p[FORM] == 0.0 or p[FORM] == _CYCLES:
         return 0.0, 1.0, 0.0
-    if d3 > 0.0 and max(x, driven) >= d3:
+    if d3 > 0.0 and max(x, flat_to) >= d3:
         return 0.0, LEAST, 0.0
     sudden = p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN
-    if max(x, driven) >= d2 and (d3 == 0.0 or sudden):
+    if max(x, flat_to) >= d2 and (d3 == 0.0 or sudden):
         return 0.0, phi_r, d3
-    if x < driven:
-        return 0.0, phi(p, driven), driven
+    if x < flat_to:
+        return 0.0, phi(p, flat_to), flat_to
     if x < d2:
         slope = -(1.0 - phi_r) / (d2 - d1)
         return slope, 1.0 - slope * d1, d2
@@ -258,7 +258,7 @@ def unloading(p: Numbers, x: float) -> float:
     return stiffness
 
 
-def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
+def ductilities_with(m: Numbers, s: float, x: float) -> tuple[float, float]:
     """Largest ductilities when side `s` has reached `x`."""
     return (max(m[MU], x), m[MU_MINUS]) if s > 0.0 else (m[MU], max(m[MU_MINUS], x))
 
@@ -267,13 +267,13 @@ def changes_at(m: Numbers, s: float, x: float) -> float:
     """Changes of the yielding side, as counted when side `s` has followed the backbone to the ductility
     `x`.
     """
-    stays = not passes(x, m[MET], max(m[MU], m[MU_MINUS]))
-    return m[CHANGES] if stays or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
+    yields = passes(x, m[MET], max(m[MU], m[MU_MINUS]))
+    return m[CHANGES] if not yields or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
 
 
 def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of side `s`, met at ductility `x`."""
-    plus, minus = grown(m, s, x)
+    plus, minus = ductilities_with(m, s, x)
     m = (plus, minus, x, 0.0, m[CHANGES])
     slope, _, _ = strength_line(p, governing_ductility(p, m, s), x)
     return pair(WEAKENING if slope < 0.0 else YIELDING, s), m
@@ -311,7 +311,7 @@ def reversed_at(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
     s = side(at)
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[K] / yield_force(p, s)
-    plus, minus = grown(m, s, x)
+    plus, minus = ductilities_with(m, s, x)
     return (plus, minus, d, slope * d + s * f0, changes_at(m, s, x))
 
 

@@ -61,7 +61,7 @@ LOADING, UNLOADING = 0, 1
 R, N, BETA, C_U, C_W, SCALE = range(3, 9)
 # internal variables at the last reversal: position along the present direction, deformation, integral of z
 POSITION, REVERSAL, INTEGRAL = range(3)
-SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit
+SATURATED = 40.0  #: -log(1 - y^n) beyond which y is 1 to the last digit
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -143,10 +143,10 @@ def inward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
     n, scale = p[N], p[SCALE]
     if scale == 0.0:
         return u, 1.0, 0.5 * u * u
-    far, w1 = inverse_inward_curve(p, 1.0)
-    if u >= far:
+    u1, w1 = inverse_inward_curve(p, 1.0)
+    if u >= u1:
         slope = 1.0 + scale**n
-        return 1.0 + slope * (u - far), slope, w1 + (u - far) * (1.0 + 0.5 * slope * (u - far))
+        return 1.0 + slope * (u - u1), slope, w1 + (u - u1) * (1.0 + 0.5 * slope * (u - u1))
     x = scale * u
     y = x
     for _ in range(50):

@@ -26,7 +26,7 @@ ELASTIC, CRACKED, YIELDING = 0, 1, 3
 # parameters of a law after K, FY, FY_MINUS, R, ALPHA: ratios of both sides, of the crack force to the yield
 # force, and of the secant stiffness at the yield point to K
 FCR, FCR_MINUS, RHO, RHO_MINUS = range(5, 9)
-PARAMETERS = 9  #: number of them all; a rule adds its own behind
+PARAMETERS = 9  #: number of them all; a rule's own parameters follow
 MOST, MOST_MINUS = 0, 1  #: internal variables: largest deformations of both sides, mirrored
 
 Point = tuple[float, float]  #: deformation and force, mirrored
@@ -102,7 +102,7 @@ def largest_deformation(m: Numbers, s: float) -> float:
     return m[MOST] if s > 0.0 else m[MOST_MINUS]
 
 
-def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
+def deformations_with(m: Numbers, s: float, x: float) -> tuple[float, float]:
     """Largest deformations when side `s` has reached `x`."""
     return (max(m[MOST], x), m[MOST_MINUS]) if s > 0.0 else (m[MOST], max(m[MOST_MINUS], x))
 

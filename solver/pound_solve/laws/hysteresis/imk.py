@@ -55,7 +55,7 @@ BRANCHES = BranchKind.OPEN.named(STRENGTHLESS)
 # and reloading; exponent c
 R, THETA_P, THETA_P_MINUS, THETA_PC, THETA_PC_MINUS, LAMBDA, THETA_U, THETA_U_MINUS = range(3, 11)
 ET_STRENGTH, ET_CAP, ET_UNLOADING, ET_RELOADING, C = range(11, 16)
-PARAMETERS = 16  #: number of them all; a rule adds its own behind
+PARAMETERS = 16  #: number of them all; a rule's own parameters follow
 
 # internal variables: SIDE numbers of each side, then the unloading stiffness now and at the start of the
 # excursion, where it started, the energy of the finished excursions, and of the present one up to the
@@ -93,19 +93,22 @@ def ultimate(p: Numbers, s: float) -> float:
 
 def residual(p: Numbers, s: float) -> float:
     """Residual strength of a side."""
-    return p[LAMBDA] * virgin(p, s)[0]
+    fy0, _, _, _ = virgin(p, s)
+    return p[LAMBDA] * fy0
 
 
 def hardening(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
     """Slope and force at zero deformation of the hardening line."""
+    fy0, _, _, _ = virgin(p, s)
     fy = variables_of_side(m, s)[FY_NOW]
-    slope = p[R] * p[K] * fy / virgin(p, s)[0]
+    slope = p[R] * p[K] * fy / fy0
     return slope, fy - slope * fy / p[K]
 
 
 def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
     """Slope and force at zero deformation of the falling line."""
-    return virgin(p, s)[3], variables_of_side(m, s)[F_REF]
+    _, _, _, kc = virgin(p, s)
+    return kc, variables_of_side(m, s)[F_REF]
 
 
 def deterioration(energy: float, before: float, capacity: float, c: float) -> float:

@@ -120,8 +120,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         )
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
-    to = min(next_line(p, s, m, kind)[1], last)
-    return linear(k, s * f0, turns_inward(s), outward(s, to) if to < FAR else NEVER)
+    _, end = next_line(p, s, m, kind)
+    end = min(end, last)
+    return linear(k, s * f0, turns_inward(s), outward(s, end) if end < FAR else NEVER)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:

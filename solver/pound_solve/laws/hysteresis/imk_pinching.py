@@ -92,7 +92,7 @@ def peak(p: Numbers, s: float, m: Numbers) -> Point:
     return d, backbone(p, s, m, d)
 
 
-def local(s: float, m: Numbers) -> Point:
+def local_peak(s: float, m: Numbers) -> Point:
     """Last turning point of a side."""
     of_side = variables_of_side(m, s)
     return of_side[LOCAL_D], of_side[LOCAL_F]
@@ -103,29 +103,29 @@ def break_point(p: Numbers, s: float, m: Numbers) -> tuple[bool, Point]:
     kappa_f, kappa_d = p[KAPPA_F], p[KAPPA_D]
     d, f = peak(p, s, m)
     foot = s * m[FOOT]
-    where = (1.0 - kappa_d) * (d - f / m[KU_BEFORE])
-    if kappa_f == 1.0 or foot >= where:
+    d_break = (1.0 - kappa_d) * (d - f / m[KU_BEFORE])
+    if kappa_f == 1.0 or foot >= d_break:
         return False, (0.0, 0.0)
-    return True, (where, kappa_f * f * (where - foot) / (d - foot))
+    return True, (d_break, kappa_f * f * (d_break - foot) / (d - foot))
 
 
 def reloading_ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
     """End points of a reloading branch."""
-    first, last = (s * m[FOOT], 0.0), peak(p, s, m)
+    begin, end = (s * m[FOOT], 0.0), peak(p, s, m)
     if kind >= LOCAL_BREAK:
-        first = local(s, m)
+        begin = local_peak(s, m)
     elif kind >= BREAK_LOCAL:
-        first = break_point(p, s, m)[1]
+        _, begin = break_point(p, s, m)
     if kind in (FOOT_BREAK, LOCAL_BREAK):
-        last = break_point(p, s, m)[1]
+        _, end = break_point(p, s, m)
     elif kind in (FOOT_LOCAL, BREAK_LOCAL):
-        last = local(s, m)
-    return first, last
+        end = local_peak(s, m)
+    return begin, end
 
 
-def by_local(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
+def passes_local_peak(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
     """Whether the path from a point to the peak goes through the last turning point of that side."""
-    (d1, f1), (d2, f2) = local(s, m), peak(p, s, m)
+    (d1, f1), (d2, f2) = local_peak(s, m), peak(p, s, m)
     inside = d < d1 < d2 and f < f1 < f2 and f1 <= backbone(p, s, m, d1)
     return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)
 
@@ -162,14 +162,14 @@ def next_branch(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float
     if kind == RESIDUAL:
         return RESIDUAL, FAR
     if kind == UNLOADING:
-        d, f = local(s, m)
+        d, f = local_peak(s, m)
         pinched, (d1, f1) = break_point(p, s, m)
         if d >= peak(p, s, m)[0]:
             return on_backbone(p, s, m, d), d
         return (LOCAL_BREAK if pinched and d < d1 and f < f1 else LOCAL_PEAK), d
-    d, f = reloading_ends(p, s, m, kind)[1]
+    _, (d, f) = reloading_ends(p, s, m, kind)
     if kind in (FOOT_BREAK, LOCAL_BREAK):
-        return (BREAK_LOCAL if by_local(p, s, m, d, f) else BREAK_PEAK), d
+        return (BREAK_LOCAL if passes_local_peak(p, s, m, d, f) else BREAK_PEAK), d
     if kind in (FOOT_LOCAL, BREAK_LOCAL):
         return LOCAL_PEAK, d
     return on_backbone(p, s, m, d), d
@@ -186,7 +186,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
     if kind == RESIDUAL:
         return 0.0, residual(p, s)
     if kind == UNLOADING:
-        d, f = local(s, m)
+        d, f = local_peak(s, m)
         return m[KU], f - m[KU] * d
     (d1, f1), (d2, f2) = reloading_ends(p, s, m, kind)
     k = (f2 - f1) / (d2 - d1) if d2 > d1 else 0.0
@@ -200,11 +200,11 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     s = side(at)
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
-    to = next_branch(p, s, m, kind)[1]
+    _, end = next_branch(p, s, m, kind)
     if ultimate(p, s) > 0.0:
-        to = min(to, ultimate(p, s))
+        end = min(end, ultimate(p, s))
     back = inward(s, -f0 / k) if kind in (ELASTIC, UNLOADING) else turns_inward(s)
-    return linear(k, s * f0, back, outward(s, to) if to < FAR else NEVER)
+    return linear(k, s * f0, back, outward(s, end) if end < FAR else NEVER)
 
 
 def enter_side(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
@@ -212,18 +212,18 @@ def enter_side(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers
     m, beta, fails = end_excursion(p, m, s, d)
     of_side = variables_of_side(m, s)
     m = replace_side(m, s, (*of_side[:PEAK], of_side[PEAK] * (1.0 + beta), *of_side[LOCAL_D:]))
-    to, f = peak(p, s, m)
+    d_peak, f = peak(p, s, m)
     k, foot = p[K], s * d
-    if f > k * (to - foot):
+    if f > k * (d_peak - foot):
         (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
-        to = min((f1 + k * foot) / (k - k1), (f2 + k * foot) / (k - k2))
-        to = max(to, foot + residual(p, s) / k)
-        m = replace_side(m, s, (*of_side[:PEAK], to, *of_side[LOCAL_D:]))
+        d_peak = min((f1 + k * foot) / (k - k1), (f2 + k * foot) / (k - k2))
+        d_peak = max(d_peak, foot + residual(p, s) / k)
+        m = replace_side(m, s, (*of_side[:PEAK], d_peak, *of_side[LOCAL_D:]))
     if fails or peak(p, s, m)[1] <= 0.0:
         return FAILED, m
     if break_point(p, s, m)[0]:
         return pair(FOOT_BREAK, s), m
-    return pair(FOOT_LOCAL if by_local(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
+    return pair(FOOT_LOCAL if passes_local_peak(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:

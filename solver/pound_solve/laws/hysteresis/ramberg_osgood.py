@@ -7,7 +7,7 @@ With :math:`u = f/F_y`, :math:`x = d/d_y`, :math:`d_y = F_y/k`, :math:`\sigma(u)
 
 A branch ends where it meets the curve that it came from: at the reversal before the last one its loop is
 closed and the branch from the one before that goes on; a branch that began on the skeleton comes back to it
-at the mirrored point.  Whatever the amplitudes, no force passes the skeleton's or overshoots a closed loop.
+at the mirrored point.  At any amplitude no force exceeds that of the skeleton or overshoots a closed loop.
 
 Work along a curve scaled by :math:`c` (1 or 2) from its origin, :math:`w = (u - u_0)/c`:
 
@@ -75,8 +75,8 @@ def energy(p: Numbers, w: float) -> float:
     return area
 
 
-def skeleton_force(p: Numbers, x: float) -> float:
-    """Force of the curve: w with sigma(w) = x, by Newton's iteration.
+def inverse_sigma(p: Numbers, x: float) -> float:
+    """Force of the curve, w with sigma(w) = x, by Newton's iteration.
 
     It starts above the root of a convex function, so that it comes down to it monotonically.
     """
@@ -126,10 +126,10 @@ def closing_point(p: Numbers, m: Numbers) -> tuple[float, float]:
     s = 1.0 if outer > inner else -1.0
     while True:
         d = 0.5 * (inner + outer)
-        f = m[F1] + 2.0 * fy * skeleton_force(p, (d - m[D1]) * scale)
+        f = m[F1] + 2.0 * fy * inverse_sigma(p, (d - m[D1]) * scale)
         if d in (inner, outer):  # neighbouring numbers
             return d, f
-        if s * (f - f0 - 2.0 * fy * skeleton_force(p, (d - d0) * scale)) < 0.0:
+        if s * (f - f0 - 2.0 * fy * inverse_sigma(p, (d - d0) * scale)) < 0.0:
             inner = d
         else:
             outer = d
@@ -149,7 +149,7 @@ def curve(
     k, fy, n, alpha = p[K], p[FY], p[N], p[ALPHA]
     dy = fy / k
     c, d1, f1 = origin(m)
-    w, w0 = skeleton_force(p, (d - d1) / (c * dy)), skeleton_force(p, (d0 - d1) / (c * dy))
+    w, w0 = inverse_sigma(p, (d - d1) / (c * dy)), inverse_sigma(p, (d0 - d1) / (c * dy))
     work = f1 * (d - d0) + c * c * fy * dy * (energy(p, w) - energy(p, w0))
     return f1 + c * fy * w, k / (1.0 + alpha * n * abs(w) ** (n - 1.0)), 0.0, work
 

@@ -51,9 +51,9 @@ from pound_solve.laws.hysteresis.cracking import (
     backbone,
     backbone_branch,
     crack_point,
+    deformations_with,
     enter_backbone,
     first_yield,
-    grown,
     has_yielded,
     largest_deformation,
     parameters,
@@ -105,7 +105,7 @@ def before_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
     return f < fp
 
 
-def by_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
+def passes_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
     """Whether the path from a point to the peak goes through the pinch point."""
     (xp, fp), (xt, ft) = pinch(p, s, m), peak(p, s, m)
     flatter = (fp - f) * (xt - x) < (ft - f) * (xp - x)
@@ -114,10 +114,10 @@ def by_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
 
 def loading_branch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
     """Line that a side follows from a point on as it is loaded: to the pinch point or to the peak."""
-    return pair(TO_PINCH if by_pinch(p, s, m, x, f) else TO_PEAK, s)
+    return pair(TO_PINCH if passes_pinch(p, s, m, x, f) else TO_PEAK, s)
 
 
-def end(p: Numbers, m: Numbers, at: int) -> Point:
+def loading_end(p: Numbers, m: Numbers, at: int) -> Point:
     """Point at which a loading line ends."""
     s = side(at)
     if at < TO_PINCH:
@@ -135,10 +135,10 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     return ELASTIC, (crack_point(p, 1.0)[0], crack_point(p, -1.0)[0], *NO_POINTS)
 
 
-def line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
+def loading_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
     """Slope of a loading line, and its force at zero deformation, mirrored."""
     x0, f0 = m[X_ORIGIN], m[F_ORIGIN]
-    x1, f1 = end(p, m, at)
+    x1, f1 = loading_end(p, m, at)
     slope = (f1 - f0) / (x1 - x0) if x1 > x0 else 0.0
     return slope, f1 - slope * x1
 
@@ -151,11 +151,11 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at < TO_CORNER:
         x, f, k = m[X_REVERSAL], m[F_REVERSAL], unloading_of_side(p, s, m)
         return linear(k, s * (f - k * x), outward(s, x), inward(s, x - f / k))
-    slope, f = line(p, at, m)
-    return linear(slope, s * f, turns_inward(s), outward(s, end(p, m, at)[0]))
+    slope, f = loading_line(p, at, m)
+    return linear(slope, s * f, turns_inward(s), outward(s, loading_end(p, m, at)[0]))
 
 
-def load(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
+def begin_loading(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State at zero force, where a side begins to be loaded."""
     m = with_origin(m, x, 0.0)
     xc, fc = corner(s, m)
@@ -169,7 +169,7 @@ def reversed_at(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
     s = side(at)
     plus, minus, inner = m[:X_CORNER]
     if at < UNLOADING:
-        plus, minus = grown(m, s, x)
+        plus, minus = deformations_with(m, s, x)
     x_corner, f_corner = corner(s, m)
     if at < TO_CORNER or at >= TO_PINCH:
         x_corner, f_corner = x, f
@@ -189,13 +189,13 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if UNLOADING <= at < TO_CORNER:
         if event == 0:
             return int(m[LEFT]), m
-        return load(p, m, -s, -(m[X_REVERSAL] - m[F_REVERSAL] / unloading_of_side(p, s, m)))
+        return begin_loading(p, m, -s, -(m[X_REVERSAL] - m[F_REVERSAL] / unloading_of_side(p, s, m)))
     k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
         return pair(UNLOADING, s), reversed_at(p, at, m, s * d, s * (k * d + f0))
     if at < YIELDING:
         return pair(YIELDING, s), m
-    x, f = end(p, m, at)
+    x, f = loading_end(p, m, at)
     if x >= peak(p, s, m)[0]:
         return enter_backbone(p, m, s, x)
     return loading_branch(p, s, m, x, f) if at < TO_PINCH else pair(TO_PEAK, s), with_origin(m, x, f)

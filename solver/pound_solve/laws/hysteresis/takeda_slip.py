@@ -56,9 +56,9 @@ from pound_solve.laws.hysteresis.cracking import (
     backbone,
     backbone_branch,
     crack_point,
+    deformations_with,
     enter_backbone,
     first_yield,
-    grown,
     has_yielded,
     largest_deformation,
     parameters,
@@ -99,7 +99,7 @@ def slips(p: Numbers, s: float, m: Numbers) -> bool:
     return m[ZERO] < 0.0 and has_yielded(p, s, m) and slip_stiffness(p, s, m) * (x - m[ZERO]) < f
 
 
-def end(p: Numbers, m: Numbers, at: int) -> float:
+def loading_end(p: Numbers, m: Numbers, at: int) -> float:
     """Deformation at which a loading line ends, mirrored."""
     s = side(at)
     x, f = peak(p, s, m)
@@ -109,7 +109,7 @@ def end(p: Numbers, m: Numbers, at: int) -> float:
     return -k * m[ZERO] / (f / x - k)
 
 
-def line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
+def loading_line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
     """Slope of a loading line, and its force at zero deformation, mirrored."""
     s = side(at)
     if at < TO_PEAK:
@@ -123,7 +123,7 @@ def line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
 def inner_stiffness(p: Numbers, m: Numbers, at: int, x: float, f: float) -> float:
     """Stiffness of unloading from a point of a loading line."""
     s = side(at)
-    k = max(p[INNER] * unloading(p, s, largest_deformation(m, s)), line(p, m, at)[0])
+    k = max(p[INNER] * unloading(p, s, largest_deformation(m, s)), loading_line(p, m, at)[0])
     if x > m[ZERO]:
         k = max(k, f / (x - m[ZERO]))
     return min(k, p[K])
@@ -138,8 +138,8 @@ def end_of_unloading(p: Numbers, m: Numbers, s: float) -> float:
     """Deformation at which the unloading line of a side ends: at zero force or, before the other side has
     cracked, at its crack force; mirrored.
     """
-    beyond = crack_point(p, -s)[1] if largest_deformation(m, -s) == 0.0 else 0.0
-    return m[X_REVERSAL] - (m[F_REVERSAL] + beyond) / m[SLOPE]
+    f_crack = crack_point(p, -s)[1] if largest_deformation(m, -s) == 0.0 else 0.0
+    return m[X_REVERSAL] - (m[F_REVERSAL] + f_crack) / m[SLOPE]
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -150,17 +150,17 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at < SLIPPING:
         x, f, k = m[X_REVERSAL], m[F_REVERSAL], m[SLOPE]
         return linear(k, s * (f - k * x), outward(s, x), inward(s, end_of_unloading(p, m, s)))
-    k, f = line(p, m, at)
-    return linear(k, s * f, turns_inward(s), outward(s, end(p, m, at)))
+    k, f = loading_line(p, m, at)
+    return linear(k, s * f, turns_inward(s), outward(s, loading_end(p, m, at)))
 
 
-def crack(p: Numbers, m: Numbers, s: float) -> tuple[int, Numbers]:
+def enter_at_crack(p: Numbers, m: Numbers, s: float) -> tuple[int, Numbers]:
     """State on the backbone of a side at its crack point."""
     x, _ = crack_point(p, s)
-    return enter_backbone(p, (*grown(m, s, x), *m[ZERO:]), s, x)
+    return enter_backbone(p, (*deformations_with(m, s, x), *m[ZERO:]), s, x)
 
 
-def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tuple[int, Numbers]:
+def begin_loading(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tuple[int, Numbers]:
     """State in which loading of a side begins: at zero force, or at its crack force after a line of slope
     `k`.
     """
@@ -169,7 +169,7 @@ def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tupl
     plus, minus = m[:ZERO]
     most = largest_deformation(m, s)
     if most < xy and (f > 0.0 or fy * (most - zero) > peak(p, s, m)[1] * (xy - zero)):
-        plus, minus = grown(m, s, xy)
+        plus, minus = deformations_with(m, s, xy)
     m = (plus, minus, zero, x, f, *m[X_REVERSAL:])
     return pair(SLIPPING if slips(p, s, m) else TO_PEAK, s), m
 
@@ -180,28 +180,28 @@ def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
     most = largest_deformation(m, s)
     if at >= UNLOADING and (at < TO_PEAK or passes(most, x, most)):
         return (*m[:X_REVERSAL], x, f, inner_stiffness(p, m, at, x, f), float(at))
-    return (*grown(m, s, x), *m[ZERO:X_REVERSAL], x, f, unloading(p, s, x), float(at))
+    return (*deformations_with(m, s, x), *m[ZERO:X_REVERSAL], x, f, unloading(p, s, x), float(at))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Crack, yield, reverse, return, come to zero force, or to the end of a line."""
     if at == ELASTIC:
-        return crack(p, m, 1.0 if event == 0 else -1.0)
+        return enter_at_crack(p, m, 1.0 if event == 0 else -1.0)
     s = side(at)
     if UNLOADING <= at < SLIPPING:
         if event == 0:
             return int(m[LEFT]), m
         if largest_deformation(m, -s) > 0.0:
-            return load(p, m, -s, -end_of_unloading(p, m, s), 0.0, m[SLOPE])
+            return begin_loading(p, m, -s, -end_of_unloading(p, m, s), 0.0, m[SLOPE])
         if not has_yielded(p, s, m):
-            return crack(p, m, -s)
-        return load(p, m, -s, -end_of_unloading(p, m, s), crack_point(p, -s)[1], m[SLOPE])
+            return enter_at_crack(p, m, -s)
+        return begin_loading(p, m, -s, -end_of_unloading(p, m, s), crack_point(p, -s)[1], m[SLOPE])
     k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
         return pair(UNLOADING, s), reversed_at(p, m, at, s * d, s * (k * d + f0))
     if at < YIELDING:
         return pair(YIELDING, s), m
-    x = end(p, m, at)
+    x = loading_end(p, m, at)
     if at >= TO_PEAK:
         return enter_backbone(p, m, s, x)
     return pair(TO_PEAK, s), (*m[:X_ORIGIN], x, slip_stiffness(p, s, m) * (x - m[ZERO]), *m[X_REVERSAL:])

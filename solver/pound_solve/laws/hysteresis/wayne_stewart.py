@@ -97,7 +97,8 @@ def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
 
 def first_yield(p: Numbers) -> tuple[float, float]:
     """Deformations at yield."""
-    return backbone(p, 1.0)[1], -backbone(p, -1.0)[1]
+    (_, dy, *_), (_, dy_minus, *_) = backbone(p, 1.0), backbone(p, -1.0)
+    return dy, -dy_minus
 
 
 def pinched(p: Numbers) -> Line:
@@ -137,7 +138,7 @@ def pinch_end(p: Numbers, s: float, m: Numbers) -> tuple[bool, float]:
     target, k, f = reloading(p, s, m)
     if k * target + f > slope * target + f0:
         return True, (f0 - f) / (k - slope)
-    k2, f2 = backbone(p, s)[4]
+    _, _, _, _, (k2, f2) = backbone(p, s)
     return False, (f2 - f0) / (slope - k2)
 
 
@@ -153,7 +154,7 @@ def upper_end(p: Numbers, s: float, m: Numbers, foot: float) -> tuple[float, flo
         _, k, f = reloading(p, s, m)
         # parallel only if the two coincide
         return float(pair(RELOADING, s)), (f + ku * foot) / (ku - k) if ku > k * (1.0 + 1e-9) else meets
-    k2, f2 = backbone(p, s)[4]
+    _, _, _, _, (k2, f2) = backbone(p, s)
     return float(pair(BEYOND, s)), (f2 + ku * foot) / (ku - k2)
 
 
@@ -206,7 +207,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return (pair(YIELDING, s) if event == 0 else back), m
     if at < PINCHED:
         if event == 0:
-            most = s * d - backbone(p, s)[0]
+            gap, _, _, _, _ = backbone(p, s)
+            most = s * d - gap
             if s > 0.0:
                 m = (max(most, m[MOST]), m[MOST_MINUS], 0.0, 0.0, 0.0, 0.0, 0.0)
             else:
@@ -217,8 +219,10 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
             return FAILED, m
     elif event == 1:
         if at < RELOADING:
-            return pair(RELOADING if pinch_end(p, s, m)[0] else BEYOND, s), m
-        return pair(YIELDING if reloading(p, s, m)[0] < backbone(p, s)[2] else BEYOND, s), m
+            onto_line, _ = pinch_end(p, s, m)
+            return pair(RELOADING if onto_line else BEYOND, s), m
+        (target, _, _), (_, _, du, _, _) = reloading(p, s, m), backbone(p, s)
+        return pair(YIELDING if target < du else BEYOND, s), m
     k, _, f0 = branch(p, at, m)[:3]
     return unload(p, at, m, s, d, k * d + f0)
 
