@@ -383,11 +383,11 @@ def event_place(event: EventFunction, at: float, d1: float, direction: float, v:
     occur.  A reversal occurs at once, where the path runs against the branch.
     """
     a, b, c = event
-    now, slope = a * at + b * v + c, a * direction
+    g, slope = a * at + b * v + c, a * direction
     if b and not a and not c:
         return at if b * direction > 0 else None
-    if now >= 0 and (slope > 0 or (slope == 0 and now > 0)):
+    if g >= 0 and (slope > 0 or (slope == 0 and g > 0)):
         return at
     if slope > 0 and a * d1 + b * v + c > 0:
-        return at - now / slope * direction
+        return at - g / slope * direction
     return None

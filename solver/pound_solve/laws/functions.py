@@ -174,8 +174,8 @@ def from_place(length: int) -> RowPart:
     """Function ``numbers(a, i, j)``: so many numbers in row `i` of an array, from `j` on, as a tuple."""
     if length == 1:
         return single_number
-    left = length // 2
-    values = {"first": from_place(left), "second": from_place(length - left), "half": left}
+    n = length // 2
+    values = {"first": from_place(n), "second": from_place(length - n), "half": n}
     return bound(joined_halves, str(length), **values)
 
 

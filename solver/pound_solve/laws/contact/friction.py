@@ -55,8 +55,8 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at == OPEN:
         return linear(0.0, 0.0)
     if at == STICKING:
-        pull, limit = kt * m[ANCHOR], mu * m[PUSH]
-        return linear(kt, -pull, (kt, 0.0, -pull - limit), (-kt, 0.0, pull - limit))
+        pull, stick_limit = kt * m[ANCHOR], mu * m[PUSH]
+        return linear(kt, -pull, (kt, 0.0, -pull - stick_limit), (-kt, 0.0, pull - stick_limit))
     return linear(0.0, side(at) * mud * m[PUSH], (0.0, -side(at), mud * m[PUSH_RATE] / kt))
 
 

@@ -166,8 +166,8 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     ValueError
         Both or none of D, E; or of THICKNESS and KU only one; or no mass.
     """
-    k, n, thickness, beyond = (values[x] for x in ("K", "N", "THICKNESS", "KU"))
-    if (thickness is None) != (beyond is None):
+    k, n, thickness, ku = (values[x] for x in ("K", "N", "THICKNESS", "KU"))
+    if (thickness is None) != (ku is None):
         raise ItemError(
             "THICKNESS and KU, the stiffness beyond its limit, go together",
             "KU" if thickness is None else "THICKNESS",
@@ -177,7 +177,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         values, "D", restitution.in_restitution, restitution.in_restitution_constant, published
     )
     limit = math.inf if thickness is None else values["LIMIT"] * thickness
-    law = Law(RULE, (k, n, values["GAP"], limit, beyond or 0.0, damping.value, reduced_mass))
+    law = Law(RULE, (k, n, values["GAP"], limit, ku or 0.0, damping.value, reduced_mass))
     end = math.inf if thickness is None else thickness
     return Built(law, k, math.nan, *damping, unit=stiffness_unit(n), limit=end)
 

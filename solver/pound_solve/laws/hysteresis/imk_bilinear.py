@@ -73,38 +73,38 @@ def next_line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
     """Line of the bound after `kind`, and (mirrored) deformation where it begins."""
     least, limit = residual(p, s), variables_of_side(m, s)[LIMIT]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
-    end = (least - f2) / k2
-    falls = max((f2 - f1) / (k1 - k2), (limit - f2) / k2)
+    d_residual = (least - f2) / k2
+    d_falling = max((f2 - f1) / (k1 - k2), (limit - f2) / k2)
     if kind == LEAST:
-        rises = (least - f1) / k1 if k1 > 0.0 else -FAR
-        return (HARDENING, rises) if rises < end else (RESIDUAL, end)
+        d_hardening = (least - f1) / k1 if k1 > 0.0 else -FAR
+        return (HARDENING, d_hardening) if d_hardening < d_residual else (RESIDUAL, d_residual)
     if kind == HARDENING:
         if k1 > 0.0:
-            stops = (limit - f1) / k1
+            d_limited = (limit - f1) / k1
         else:
-            stops = FAR if f1 <= limit else -FAR
-        return (LIMITED, stops) if stops < falls else (FALLING, falls)
+            d_limited = FAR if f1 <= limit else -FAR
+        return (LIMITED, d_limited) if d_limited < d_falling else (FALLING, d_falling)
     if kind == LIMITED and limit > least:
-        return FALLING, falls
-    return RESIDUAL, (FAR if kind == RESIDUAL else end)
+        return FALLING, d_falling
+    return RESIDUAL, (FAR if kind == RESIDUAL else d_residual)
 
 
 def bound_met(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
     """Line of the bound that the elastic line from its foot meets, and where (mirrored)."""
     ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), variables_of_side(m, s)[LIMIT]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
-    lowest = foot + least / ku
-    if k2 * lowest + f2 <= least:
-        return RESIDUAL, lowest
+    d_least = foot + least / ku
+    if k2 * d_least + f2 <= least:
+        return RESIDUAL, d_least
     if limit <= least:
-        return LIMITED, lowest
-    if k1 * lowest + f1 < least:
-        return LEAST, lowest
-    hardens = (f1 + ku * foot) / (ku - k1) if ku > k1 else FAR
-    stops = foot + limit / ku
-    falls = (f2 + ku * foot) / (ku - k2)
-    meets = min(hardens, min(stops, falls))
-    return (HARDENING if meets == hardens else LIMITED if meets == stops else FALLING), meets
+        return LIMITED, d_least
+    if k1 * d_least + f1 < least:
+        return LEAST, d_least
+    d_hardening = (f1 + ku * foot) / (ku - k1) if ku > k1 else FAR
+    d_limited = foot + limit / ku
+    d_falling = (f2 + ku * foot) / (ku - k2)
+    d_met = min(d_hardening, min(d_limited, d_falling))
+    return (HARDENING if d_met == d_hardening else LIMITED if d_met == d_limited else FALLING), d_met
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -134,13 +134,13 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     of_side = variables_of_side(m, s)
     if kind == ELASTIC and event == 1:
         m, _, fails = end_excursion(p, m, -s, d)
-        onto, where = bound_met(p, -s, m)
-        m = replace_side(m, -s, (*variables_of_side(m, -s)[:MEETS], where, float(onto)))
+        onto, d_met = bound_met(p, -s, m)
+        m = replace_side(m, -s, (*variables_of_side(m, -s)[:MEETS], d_met, float(onto)))
         return (FAILED if fails else pair(ELASTIC, -s)), m
     if kind == ELASTIC:
-        then, where = int(of_side[ONTO]), of_side[MEETS]
+        following, d_next = int(of_side[ONTO]), of_side[MEETS]
     elif event == 1:
-        then, where = next_line(p, s, m, kind)
+        following, d_next = next_line(p, s, m, kind)
     else:
         k, _, f0 = present[:3]
         f = s * (k * d + f0)
@@ -148,10 +148,10 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         limit = min(of_side[LIMIT], f) if kind >= FALLING else of_side[LIMIT]
         m = replace_side(m, s, (*of_side[:LIMIT], limit, s * d, float(kind)))
         return pair(ELASTIC, s), (*m[:KU], ku, m[KU_BEFORE], d - s * f / ku, *m[DONE:])
-    lost = then == RESIDUAL and residual(p, s) == 0.0
-    if lost or 0.0 < ultimate(p, s) < where:
+    no_strength = following == RESIDUAL and residual(p, s) == 0.0
+    if no_strength or 0.0 < ultimate(p, s) < d_next:
         return FAILED, m
-    return pair(then, s), m
+    return pair(following, s), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

@@ -233,11 +233,11 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     present = branch(p, at, m)
     m = add_work(present, m, d)
     if event == 1:
-        then, where = next_branch(p, s, m, kind)
-        lost = then == RESIDUAL and residual(p, s) == 0.0
-        if lost or 0.0 < ultimate(p, s) < where:
+        following, d_next = next_branch(p, s, m, kind)
+        no_strength = following == RESIDUAL and residual(p, s) == 0.0
+        if no_strength or 0.0 < ultimate(p, s) < d_next:
             return FAILED, m
-        return pair(then, s), m
+        return pair(following, s), m
     if kind == ELASTIC:
         return pair(ELASTIC, -s), m
     if kind == UNLOADING:

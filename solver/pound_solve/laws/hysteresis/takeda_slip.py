@@ -167,8 +167,8 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float
     zero = x - f / k
     xy, fy = yield_point(p, s)
     plus, minus = m[:ZERO]
-    most = largest_deformation(m, s)
-    if most < xy and (f > 0.0 or fy * (most - zero) > peak(p, s, m)[1] * (xy - zero)):
+    x_largest = largest_deformation(m, s)
+    if x_largest < xy and (f > 0.0 or fy * (x_largest - zero) > peak(p, s, m)[1] * (xy - zero)):
         plus, minus = deformations_with(m, s, xy)
     m = (plus, minus, zero, x, f, *m[X_REVERSAL:])
     return pair(SLIPPING if slips(p, s, m) else TO_PEAK, s), m
@@ -177,8 +177,8 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float
 def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
     """Internal variables after a reversal."""
     s = side(at)
-    most = largest_deformation(m, s)
-    if at >= UNLOADING and (at < TO_PEAK or passes(most, x, most)):
+    x_largest = largest_deformation(m, s)
+    if at >= UNLOADING and (at < TO_PEAK or passes(x_largest, x, x_largest)):
         return (*m[:X_REVERSAL], x, f, inner_stiffness(p, m, at, x, f), float(at))
     return (*deformations_with(m, s, x), *m[ZERO:X_REVERSAL], x, f, unloading(p, s, x), float(at))
 
