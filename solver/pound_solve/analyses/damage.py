@@ -23,7 +23,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from pound_solve.laws.automaton import Law, State, transitions
+from pound_solve.laws.automaton import K, Law, State, transitions
 
 Sides = tuple[float, float]  #: positive and negative side
 
@@ -106,7 +106,7 @@ def residual(law: Law, state: State, d: float) -> float:
     force = law.force(state, d)[0]
     if force == 0.0:
         return d
-    end = d - math.copysign(FAR * (abs(d) + abs(force) / law.p[0]), force)
+    end = d - math.copysign(FAR * (abs(d) + abs(force) / law.p[K]), force)
     for at, after in [*transitions(law, state, d, end), (end, state)]:
         if force * law.force(state, at)[0] <= 0.0:
             while (middle := 0.5 * (d + at)) not in (d, at):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pound_solve.integrate.protocol import Start
-from pound_solve.laws.automaton import Law, State, consistent, drive
+from pound_solve.laws.automaton import GAP, Law, State, consistent, drive
 from pound_solve.numerics.matrices import least_squares, used_columns, used_rows, weighted
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array
@@ -60,7 +60,7 @@ def begin(
 def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
     """State of a law that is driven from deformation `d0` to `d1`, where it has the rate given."""
     if law.rigid:  # it stays closed unless pulled open, and its force follows from the motion
-        closed = law.branch(state).held and d1 - law.p[2] >= -GAP_ROUNDING * max(abs(d0), law.p[2])
+        closed = law.branch(state).held and d1 - law.p[GAP] >= -GAP_ROUNDING * max(abs(d0), law.p[GAP])
         return law.transition(law.start(), 0, d1) if closed else law.start()
     return consistent(law, drive(law, state, d0, d1) if d0 != d1 else state, d1, rate)
 

@@ -39,7 +39,7 @@ import numpy as np
 
 from pound_solve.analyses.tangent_solution import InstabilityError, solve_under_control, solve_under_load
 from pound_solve.analyses.ties import Ties
-from pound_solve.laws.automaton import Law, State
+from pound_solve.laws.automaton import K, Law, State
 from pound_solve.numerics.matrices import Matrix, by_rows, dense, gathered
 from pound_solve.numerics.modes import scaling
 from pound_solve.numerics.types import Array
@@ -236,7 +236,7 @@ class EquilibriumPath:
         if law.rigid:  # it opens without force
             self.ties = self._closed()
         elif abs(released) > FORCE_JUMP * (
-            abs(held) + abs(law.p[0]) * float(self._deformation_terms(self.u)[i])
+            abs(held) + abs(law.p[K]) * float(self._deformation_terms(self.u)[i])
         ):
             self._released = self._released + released * self.rows[i]
         self.changes += 1

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from pound_solve.integrate.protocol import LawValues, Start
-from pound_solve.laws.automaton import State
+from pound_solve.laws.automaton import K, State
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
@@ -97,7 +97,7 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
             for x, s, *pair in zip(laws, states, d.tolist(), still.tolist())
         ]
     )
-    size = np.array([[x.p[0]] for x in laws]) * np.maximum(np.abs(d), np.abs(begin)) ** 2
+    size = np.array([[x.p[K]] for x in laws]) * np.maximum(np.abs(d), np.abs(begin)) ** 2
     lost = done - stored
     beside = [s.branch(x).damping - s.law.branch(x).damping for s, x in zip(system.structure.laws, states)]
     drag = np.array(beside)[:, None] * rate

@@ -10,7 +10,7 @@ import numpy as np
 
 from pound_solve.check import Check, Subject, at_most, beyond, looked
 from pound_solve.integrate.tracker import Peaks
-from pound_solve.laws.automaton import State
+from pound_solve.laws.automaton import K, State
 from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
@@ -355,7 +355,7 @@ def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = EVENT
     worst, place = MAX_ROUNDING, None
     for s, d, f in zip(laws, peaks.deformation, peaks.force):
         force = max(abs(f.high), abs(f.low))
-        off = still * s.law.p[0] * max(abs(d.high), abs(d.low))
+        off = still * s.law.p[K] * max(abs(d.high), abs(d.low))
         if not s.role.collides and off > worst * force > 0.0:
             worst, place = off / force, s.element
     if place is None:

@@ -27,7 +27,7 @@ import math
 import numpy as np
 
 from pound_solve.check import Check, Subject, beyond
-from pound_solve.laws.automaton import BranchKind, drive
+from pound_solve.laws.automaton import BranchKind, K, drive
 from pound_solve.numerics.matrices import dense, diagonal, scaled, used_columns, used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
@@ -61,7 +61,7 @@ def remembers_yield(spring: LawSpring) -> bool:
                 state, d = drive(law, state, d, goal), goal
                 forces.append(law.force(state, d)[0])
         apart = np.abs(np.subtract(*np.reshape(forces, (2, -1))))
-        if (apart > MAX_DIFFERENCE * abs(law.p[0] * near)).any():
+        if (apart > MAX_DIFFERENCE * abs(law.p[K] * near)).any():
             return True
     return False
 

@@ -22,6 +22,7 @@ EVENTS = 3  #: most event functions of a branch
 K = 0  #: place of the (initial) stiffness among the parameters of a law
 FY, FY_MINUS = 1, 2  #: places of the yield forces (the negative one signed) in most hysteresis rules
 GAP = 2  #: place of the gap among the parameters of a contact
+RESTITUTION = 1  #: place of the restitution among those of a rigid contact
 PAST = 1e-12  #: fraction of its scale up to which the variable of a smooth rule counts as zero
 AT_END = 1e-9  #: a law has left a line once it is beyond the end by this fraction of the deformation
 PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
@@ -141,7 +142,7 @@ class Rule:
     branches : tuple of BranchType
         Names and kinds; ``at`` counts them from 0.  A rigid contact has one branch of the kind HELD, on
         which the deformation stays at ``p[GAP]``; its event functions are those of the force instead of the
-        deformation, and its entry is an impact with the restitution ``p[1]``.
+        deformation, and its entry is an impact with the restitution ``p[RESTITUTION]``.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable

@@ -28,7 +28,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from pound_solve.laws.automaton import Branch
+from pound_solve.laws.automaton import RESTITUTION, Branch
 from pound_solve.numerics.matrices import dense, least_squares
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
@@ -94,7 +94,7 @@ class RigidContacts:
         self.velocity_change[with_mass] = least_squares(mass, self.rows[:, with_mass].T)
         self.delassus = self.rows @ self.velocity_change
         self.gap = np.array([laws[i].gap for i in self.laws])
-        self.restitution = np.array([laws[i].law.p[1] for i in self.laws])
+        self.restitution = np.array([laws[i].law.p[RESTITUTION] for i in self.laws])
 
     def plastic_impulses(self, rates: Array, chosen: Flags) -> Array:
         """Return the impulses, shape (n_rigid,), of an impact without rebound of the `chosen` contacts.

@@ -7,7 +7,7 @@ from collections import defaultdict
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
-from pound_solve.laws.automaton import drive
+from pound_solve.laws.automaton import K, drive
 from pound_solve.numerics.matrices import entries, used_rows
 from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import LawSpring
@@ -66,7 +66,7 @@ def _flat_strength(spring: LawSpring, side: int) -> float:
     if not math.isfinite(at_yield):
         return 0.0
     stiffness = law.branch(drive(law, law.start(), 0.0, BEYOND * at_yield)).stiffness
-    return abs(strength) if stiffness <= FLAT * law.p[0] else 0.0
+    return abs(strength) if stiffness <= FLAT * law.p[K] else 0.0
 
 
 def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:

@@ -9,7 +9,7 @@ without a jump.
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import Law, State
+from pound_solve.laws.automaton import K, Law, State
 
 
 class SecantLaw(Law):
@@ -20,7 +20,7 @@ class SecantLaw(Law):
     def start(self) -> State:
         """Return the virgin state at zero deformation."""
         at, d0, work, m = super().start()
-        return at, d0, work, (*m, 0.0, self.p[0])
+        return at, d0, work, (*m, 0.0, self.p[K])
 
     def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
         """Return the state after that event of the branch, at deformation `d` and rate `v`."""
