@@ -17,7 +17,7 @@ import numpy as np
 from pound_solve.numerics.crests import SAMPLES_BESIDE, Doubts
 from pound_solve.numerics.types import Array, Flags, Index
 
-#: places in a cell, excluding its end, at which a quantity may jump
+#: places in a cell, the last one just before its end, where a quantity may jump
 NODES = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 0.99])
 GRID = 8  #: subdivisions of a cell at which its polynomial is evaluated
 EXCESS = 0.05  #: margin for values between these points, as a share of the polynomial's range

@@ -1,4 +1,4 @@
-"""The recorder of a history: takes samples from a method, passes them on in blocks and keeps envelopes."""
+"""The recorder of a history: receives a method's samples, passes them on in blocks, keeps envelopes."""
 
 from __future__ import annotations
 

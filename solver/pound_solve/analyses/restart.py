@@ -36,7 +36,7 @@ class Saved:
         Displacements and velocities of the structure's unknowns.
     states : tuple of State
     works : ndarray, shape (3,)
-        See `integrate.base.HistoryRecorder`.
+        See `analyses.recorder.HistoryRecorder`.
     first : ndarray, shape (6,)
         Energies at the start of the whole history.
     """

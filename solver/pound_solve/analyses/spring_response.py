@@ -105,7 +105,7 @@ def _response(
 ) -> SpringResponse:
     spring, peaks, loss = structure.laws[i], outcome.peaks, recorder.losses[i]
     d, f = peaks.deformation[i], peaks.force[i]
-    # not at the largest force, which may occur earlier if the force falls as the deformation grows
+    # pairs the largest deformation and force, which coincide unless the force falls under deformation
     largest = spring.whole(d.high, f.high), spring.whole(d.low, f.low)
     plastic = None
     if spring.role.viscous:

@@ -1,4 +1,4 @@
-"""Results files: what they hold, their writer and their reader."""
+"""Results files: contents, writer and reader."""
 
 from pound_solve.results.form import ResultsError
 from pound_solve.results.reader import Results, is_hdf5

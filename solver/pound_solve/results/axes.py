@@ -1,7 +1,7 @@
-"""Axes of a history's row, with a label for each place along them.
+"""Axes of a history's row, with a label for each position.
 
-A row of nodes has two axes, ``node`` and ``component``.  A row of members has one, because not every member
-has every component: its places are pairs, named by coordinates along it, ``member`` and ``component``.
+A row of nodes has two axes, ``node`` and ``component``. A row of members has one axis of pairs, because not
+every member has every component; the coordinates ``member`` and ``component`` label the pairs.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pound_solve.results.contents import HISTORIES
 
 
 class Axis(NamedTuple):
-    """One axis of a row: its name, a label for each place, further coordinates of the places by name."""
+    """One axis of a row: its name, a label for each position, and further coordinates by name."""
 
     name: str
     labels: Sequence[Any]
@@ -22,7 +22,7 @@ class Axis(NamedTuple):
 
     @property
     def named(self) -> Mapping[str, Sequence[Any]]:
-        """Labels that select a place, by their names: the coordinates, or else those of the axis."""
+        """Labels that select a position, keyed by name: the coordinates, or else the axis labels."""
         return self.coordinates or {self.name: self.labels}
 
 
@@ -42,7 +42,7 @@ def axes_of(name: str, attributes: Mapping[str, Any]) -> tuple[Axis, ...]:
 
 
 def coordinates(axes: Sequence[Axis]) -> dict[str, tuple[Any, ...]]:
-    """Coordinates of every number of a row in C order, by their names."""
+    """Coordinates of every value of a row in C order, keyed by name."""
     places = list(itertools.product(*(range(len(axis.labels)) for axis in axes)))
     return {
         name: tuple(values[place[k]] for place in places)

@@ -1,4 +1,4 @@
-"""All tables, sections and histories, found by searching the modules of `tables` and `histories`."""
+"""All tables, sections and histories, discovered in the modules of `tables` and `histories`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FOLDERS: Final = tuple(map(import_module, dict.fromkeys(m.__package__ or "" for
 
 
 def _found(kind: type, modules: Iterable[ModuleType]) -> list[tuple[ModuleType, Any]]:
-    """Objects of a kind at the top of modules, by place, with the first module that holds each."""
+    """Module-level objects of a kind, ordered by place, with the first module that defines each."""
     objects: dict[int, tuple[ModuleType, Any]] = {}
     for module in modules:
         for x in vars(module).values():
@@ -36,7 +36,7 @@ _PARTS: Final[tuple[tuple[Section, tuple[Table[Any], ...]], ...]] = tuple(
     for folder, section in _found(Section, _FOLDERS)
 )
 
-#: Sections of the report: heading, names of the tables.  The number of a section is its place here.
+#: Sections of the report: heading, names of the tables. A section's number is its position here.
 SECTIONS: Final = tuple((section.heading, tuple(t.name for t in tables)) for section, tables in _PARTS)
 
 #: Every table by name, in the order of the report.
@@ -59,7 +59,7 @@ def tables_at(stage: Stage) -> Iterator[Table[Any]]:
 
 
 def layout_of(items: RecordedItems) -> Layout:
-    """Layout of all histories but ``time`` for the items that are recorded."""
+    """Layout of all histories except ``time`` for the recorded items."""
     return {name: h.layout(items) for name, h in HISTORIES.items() if name != "time"}
 
 

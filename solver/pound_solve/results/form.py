@@ -14,19 +14,19 @@ from pound_solve.user_error import UserError
 
 FILETYPE: Final = "pound-solve results"
 FORMAT_VERSION: Final = (2, 0)  #: major: old readers fail; minor: something was added
-#: version since which a complete file is sealed, see `seal`, and its digest knows its head
+#: version from which complete files are sealed (see `seal`) and their digest covers the head
 SEALED_SINCE: Final = (2, 0)
-#: attributes of the file that its digest knows
+#: file attributes that the digest covers
 HEAD: Final = ("filetype", "format_version", "program_version", "title", "units", "status", "message")
-DIGEST: Final = "digest"  #: name of the attribute by which a part is known to be as it was written
-DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same of what differs between two runs of a deck
-#: name of the text in the group of the saved state that says what it belongs to
+DIGEST: Final = "digest"  #: attribute that verifies that a part is unchanged
+DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same for parts that differ between two runs of a deck
+#: text in the group of the saved state that identifies its run
 IDENTITY: Final = "identity"
-#: attributes that other programs need to see the axes of a history; they repeat what its own attributes say
+#: attributes from which other programs read the axes of a history; they repeat its own attributes
 FOR_OTHERS: Final = frozenset(
     ("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "coordinates", "units", "long_name")
 )
-STATUSES: Final = ("done", "stopped")  #: how a run ends; before that its file says "running"
+STATUSES: Final = ("done", "stopped")  #: final states of a run; until then its file says "running"
 
 
 class ResultsError(UserError):
@@ -36,19 +36,19 @@ class ResultsError(UserError):
 
 
 def storable(text: str) -> str:
-    """Text made fit for HDF5: without NUL and what UTF-8 cannot hold (undecodable bytes in file names)."""
+    """Text fit for HDF5: without NUL and characters that UTF-8 lacks (undecodable bytes in file names)."""
     if text.isascii() and "\0" not in text:
         return text
     return text.replace("\0", "\N{REPLACEMENT CHARACTER}").encode("utf-8", "replace").decode("utf-8")
 
 
 def escape(name: str) -> str:
-    """Name of one HDF5 link for a path, which may hold slashes and dots."""
+    """Name of one HDF5 link for a path, which may contain slashes and dots."""
     return storable(name).replace("%", "%25").replace("/", "%2F").replace(".", "%2E")
 
 
 def unescape(key: str) -> str:
-    """The path that `escape` turned into that name."""
+    """Inverse of `escape`: the path."""
     return key.replace("%2E", ".").replace("%2F", "/").replace("%25", "%")
 
 
@@ -60,7 +60,7 @@ def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = N
     attributes : mapping
         Texts, numbers, and arrays of them.
     data : ndarray or str, optional
-        Left out: that of the attributes, to be updated with the bytes of numbers.
+        If omitted, the result covers the attributes and can be updated with the bytes of numbers.
     """
     texts = {
         key: [v.decode() if isinstance(v, bytes) else str(v) for v in np.atleast_1d(attributes[key])]
@@ -75,7 +75,7 @@ def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = N
     return digest
 
 
-#: digest of a part that differs between two runs of a deck: of the whole file it is one by being there
+#: digest of a part that differs between two runs of a deck: the file's digest covers only its presence
 THERE: Final = digest_of({})
 
 

@@ -1,4 +1,4 @@
-"""Tables and histories as objects of pandas and xarray (extra ``data``), imported when one is asked for."""
+"""Tables and histories as objects of pandas and xarray (extra ``data``), which are imported on demand."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def library(name: str) -> Any:
     Raises
     ------
     ImportError
-        It is not installed; the message names the cure.
+        It is not installed; the message names the remedy.
     """
     try:
         return import_module(name)
@@ -47,8 +47,7 @@ def labelled(
 ) -> xarray.DataArray:
     """A history with its coordinates, shape (nt, \\*row).
 
-    A row whose places are pairs (member and component) gets an axis for each; NaN stands where there is no
-    such pair.
+    A row whose places are pairs (member and component) gets an axis for each; missing pairs are NaN.
 
     Parameters
     ----------
@@ -78,7 +77,7 @@ def labelled(
 
 
 def _dense(values: Array, pairs: Sequence[tuple[Any, Any]]) -> tuple[Array, tuple[Any, Any]]:
-    """Columns labelled by pairs as an array with an axis for each label, and the labels of both axes."""
+    """Columns labelled by pairs as an array with two label axes, and the labels of both axes."""
     first, second = (list(dict.fromkeys(labels)) for labels in zip(*pairs))
     grid = np.full((len(values), len(first), len(second)), np.nan)
     grid[:, [first.index(a) for a, _ in pairs], [second.index(b) for _, b in pairs]] = values
@@ -86,5 +85,5 @@ def _dense(values: Array, pairs: Sequence[tuple[Any, Any]]) -> tuple[Array, tupl
 
 
 def _plain(labels: Sequence[Any]) -> NDArray[Any]:
-    """Labels as an array of numbers or of texts of one length, which xarray writes to any file."""
+    """Labels as an array of numbers or fixed-length texts, which xarray can write to any file."""
     return np.asarray(labels)

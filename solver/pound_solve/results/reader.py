@@ -1,6 +1,6 @@
-"""The reader of results files: tables and histories are read when asked for.
+"""The reader of results files, which reads tables and histories on demand.
 
-All that a reader needs stands in the file; `pound_solve.results.contents` lists what may stand there.
+The file describes itself; `pound_solve.results.contents` lists its possible contents.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-#: what h5py and numpy raise on a file that is not as it was written
+#: exceptions of h5py and numpy on a damaged file
 DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError)
-#: what a user is told before HDF5 sees such a file
+#: message to the user before HDF5 reads such a file
 NOT_AS_WRITTEN: Final = (
     "damaged results file: its bytes are not those that were written; take a copy that is whole, or run "
     "the deck again (in Python, Results.open(path, damaged=True) reads the parts that hold)"
@@ -70,7 +70,7 @@ class NoSuchPartError(ResultsError, KeyError):
 
 
 def _sound(method: Callable[Concatenate[Results, _P], _T]) -> Callable[Concatenate[Results, _P], _T]:
-    """Decorate a method so that it raises ResultsError where the file is damaged."""
+    """Decorate a method to raise ResultsError if the file is damaged."""
 
     @wraps(method)
     def read(self: Results, /, *args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -85,31 +85,31 @@ def _sound(method: Callable[Concatenate[Results, _P], _T]) -> Callable[Concatena
 
 
 class Results:
-    """Read a results file; histories and tables are read when asked for.
+    """A results file, whose histories and tables are read on demand.
 
     Parameters
     ----------
     path : str or Path
         The file.
     damaged : bool
-        Read a file whose checksum does not hold, too.  Each part is still compared with its digest, but
-        HDF5 may end the process, or read without an end, where its own tables are damaged.
+        Also read a file with a wrong checksum.  Each part is still compared with its digest, but HDF5 may
+        crash the process or hang if its own tables are damaged.
 
     Attributes
     ----------
     changed : bool
-        Whether a program has changed the file after the run, as far as that can be told.
+        Whether a program has changed the file after the run, as far as that is detectable.
 
     Raises
     ------
     ResultsError
-        There is no such file, or it is not a results file that this version reads.  All reading raises this
-        where the file is damaged.
+        There is no such file, or this version cannot read it.  All methods raise this if the file is
+        damaged.
     """
 
     def __init__(self, path: str | Path, damaged: bool = False) -> None:
         self.path = Path(path)
-        self._read: dict[str, NDArray[Any]] = {}  # tables, which a report asks for again and again
+        self._read: dict[str, NDArray[Any]] = {}  # caches tables, which a report reads repeatedly
         if not self.path.is_file():
             raise ResultsError(f"{path}: no such file")
         try:
@@ -143,31 +143,31 @@ class Results:
         self.title: str = _plain(attrs["title"])
         force, length, time = (_plain(u) for u in attrs["units"])
         self.units = Units(force, length, time, stated=True)
-        #: ``done``, ``stopped``, ``running``, or ``killed`` where it says so but nobody writes it any more
+        #: ``done``, ``stopped``, ``running``, or ``killed`` if it says so but has no writer
         self.status: str = _plain(attrs["status"])
         if self.status == "running" and in_use(self.path) is False:
             self.status = "killed"
         self._sealed = (major, minor) >= SEALED_SINCE
         self._complete = self.status in STATUSES and self._sealed
-        # a seal that holds vouches for every byte: the parts need no digests of their own
+        # a valid seal covers every byte, so the parts need no digests
         self._whole = self._complete and sealed
         self.changed = self._complete and not sealed
-        # the digest of a complete file knows its tables by name; other versions have other columns
+        # the digest of a complete file covers its tables by name; other versions have other columns
         self._judges_columns = not self._complete and (major, minor) == FORMAT_VERSION
-        self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
-        self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
+        self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of the contents except run times
+        self.message: str = _plain(attrs["message"])  #: reason and time of an early stop, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
         histories = self._file["history"]
         histories.visititems(self._collect)
-        if "time" in histories:  # every group of histories has one more name of it
+        if "time" in histories:  # every group of histories has a link to it
             self._datasets["time"] = histories["time"]
-        # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
+        # A kill during a flush may leave histories of different lengths: the rows common to all are valid.
         self._length = min((len(d) for d in self._datasets.values()), default=0)
         if self._complete and not self._whole and self.digest != self._own_digest():
             raise self._damaged("parts are missing or not as they were written")
 
     def _own_digest(self) -> str:
-        """Digest of the file, computed from the digests that its parts hold."""
+        """Digest of the file, computed from the digests of its parts."""
         parts: dict[str, str] = {}
 
         def take(name: str, item: h5py.Dataset | h5py.Group) -> None:
@@ -225,31 +225,31 @@ class Results:
 
     @property
     def time(self) -> Array:
-        """Time axis of the histories, shape (nt,), [T]; empty where no history was computed."""
+        """Time axis of the histories, shape (nt,), [T]; empty without a history."""
         return self.history("time") if "time" in self._datasets else np.empty(0)
 
     @property
     def last_time(self) -> float:
-        """Last instant of the histories [T]; NaN where there is none."""
+        """Last instant of the histories [T]; NaN without a history."""
         return float(self._datasets["time"][self._length - 1]) if self._length else float("nan")
 
     @_sound
     def text(self, name: str) -> str:
-        """Text below ``/input``; KeyError where there is none of that name."""
+        """Text below ``/input``; raises KeyError for an unknown name."""
         dataset = self._find(self._file["input"], escape(name), "text", name, self.texts)
         return self._as_written(name, dataset, str(dataset.asstr()[()]))
 
     @_sound
     def holds(self, name: str) -> bool:
-        """Whether the history of that name has an instant, or where there is none, the table a row."""
+        """Whether the history of that name has an instant or, failing a history, the table has a row."""
         if name in self._datasets:
             return self._length > 0
         return name in self.tables and len(self._table(name)) > 0
 
     @_sound
     def table(self, name: str) -> NDArray[Any]:
-        """Table as structured array, texts as str; KeyError where the file has none of that name."""
-        dataset = self._table(name)  # of a closed file, too, an error
+        """Table as structured array, texts as str; raises KeyError for an unknown name."""
+        dataset = self._table(name)  # raises for a closed file too
         if name not in self._read:
             stored = dataset[()]
             fields = [stored.dtype[f] for f in stored.dtype.names]
@@ -265,7 +265,7 @@ class Results:
 
     @property
     def checks(self) -> list[Check]:
-        """Checks of the run; none in a file that has none, or only in sentences (format 1)."""
+        """Checks of the run; empty for a file without checks, or with checks as sentences (format 1)."""
         rows = self.table("checks") if "checks" in self.tables else None
         if rows is None or set(COLUMNS) - set(rows.dtype.names or ()):
             return []
@@ -285,24 +285,24 @@ class Results:
 
     @_sound
     def history(self, name: str, /, **at: object) -> Array:
-        """History of some of its numbers, or of all.
+        """Values of a history: a selection, or all.
 
         Parameters
         ----------
         name : str
             One of `histories`.
         **at
-            Which numbers: values of some of its `coordinates`, as ``node=12, component="X"``.
+            Selection by some of its `coordinates`, as ``node=12, component="X"``.
 
         Returns
         -------
         ndarray
-            Shape (nt, \\*row) without `at`, else (nt,) where that leaves one number and (nt, n) where more.
+            Shape (nt, \\*row) without `at`; with it (nt,) for one selected column, (nt, n) for several.
 
         Raises
         ------
         NoSuchPartError
-            The file has no history of that name, or the history no such number; a KeyError, too.
+            The file has no such history, or the history no such column; also a KeyError.
         """
         values: Array = self._dataset(name)[: self._length]
         if values.dtype != float or math.prod(values.shape[1:]) != len(self.labels(name)):
@@ -315,18 +315,18 @@ class Results:
 
     @_sound
     def coordinates(self, name: str) -> dict[str, tuple[Any, ...]]:
-        """Coordinates that select the numbers of a history's row: each (``node``, ``component``, ...)
-        with its value for every number, in the order of `labels`.
+        """Coordinates that select columns of a history: each (``node``, ``component``, ...) with its value
+        for every column, in the order of `labels`.
         """
         return coordinates(axes_of(name, self.attributes(name)))
 
     def places(self, name: str, /, **at: object) -> list[int]:
-        """Indices of the numbers with these coordinates in a history's row, in the order of `labels`.
+        """Indices of the columns of a history with these coordinates, in the order of `labels`.
 
         Raises
         ------
         NoSuchPartError
-            The file has no history of that name, or the history no such number; a KeyError, too.
+            The file has no such history, or the history no such column; also a KeyError.
         """
         coordinates = self.coordinates(name)
         left = list(range(len(self.labels(name))))
@@ -351,11 +351,11 @@ class Results:
 
     @_sound
     def closeup(self, name: str) -> tuple[Array, Array]:
-        r"""Close-ups of collisions: times that do not fall, shape (n,), and rows of a history at them,
-        shape (n, \*row); KeyError where the file has none of that name.
+        r"""Close-ups of collisions: non-decreasing times, shape (n,), and rows of a history, shape (n,
+        \*row); raises KeyError for an unknown name.
 
-        They stand at every instant of the method at which a contact was pressed, one more before and after,
-        and at the peaks of the contacts' forces.
+        They cover every instant of the method at which a contact was pressed, one more before and after,
+        and the peaks of the contact forces.
         """
         group = self._file.get("closeup", {})
         t, rows = (self._find(group, key, "close-up", name, self.closeups) for key in ("time", name))
@@ -370,11 +370,11 @@ class Results:
 
     @_sound
     def extreme(self, name: str) -> tuple[Array, Array, Array]:
-        r"""Bounds of intervals, shape (n + 1,), and the smallest and the largest values of a history within
-        them, shape (n, \*row) each; KeyError where the file has none of that name.
+        r"""Bounds of intervals, shape (n + 1,), and the smallest and largest values of a history within
+        them, shape (n, \*row) each; raises KeyError for an unknown name.
 
-        They are those of the samples and of the method's instants between them; those of the whole history
-        are the peaks in the tables.
+        They cover the samples and the method's instants between them; the tables hold the peaks of the
+        whole history.
         """
         group = self._file.get("extremes", {})
         t, rows = (self._find(group, key, "extremes", name, self.extremes) for key in ("time", name))
@@ -396,7 +396,7 @@ class Results:
 
     @_sound
     def labels(self, name: str) -> tuple[str, ...]:
-        """Label of every number of a history's row, row by row (``100 ux`` for node histories)."""
+        """Label of every column of a history (``100 ux`` for node histories)."""
         attrs = self._dataset(name).attrs
         labels = tuple(_plain(v) for v in attrs["labels"])
         if "nodes" not in attrs:
@@ -405,7 +405,7 @@ class Results:
 
     @_sound
     def history_units(self, name: str) -> tuple[str, ...]:
-        """Unit of every number of a history's row, in the deck's units; in the order of `labels`."""
+        """Unit of every column of a history, in the deck's units and the order of `labels`."""
         attrs = self._dataset(name).attrs
         return tuple(_plain(v) for v in attrs["unit"]) * (len(attrs["nodes"]) if "nodes" in attrs else 1)
 
@@ -430,8 +430,8 @@ class Results:
         return frame(self.table(table), self.table_units(table), title)
 
     def to_xarray(self, history: str | None = None) -> xarray.DataArray | xarray.DataTree:
-        """Histories with their coordinates (extra ``data``): ``time``, and for each what its numbers are
-        found by, such as ``node``, ``member``, ``component``, ``contact``, ``building``, ``storey``.
+        """Histories with their coordinates (extra ``data``): ``time``, and those of the columns, such as
+        ``node``, ``member``, ``component``, ``contact``, ``building``, ``storey``.
 
         Parameters
         ----------
@@ -441,8 +441,8 @@ class Results:
         Returns
         -------
         xarray.DataArray or xarray.DataTree
-            One history, or all of them under their paths (``tree["node/u"]``).  ``units`` is an attribute
-            of each; where components differ in it, it tells the unit of each (``X: m, R: rad``).
+            One history, or all of them under their paths (``tree["node/u"]``).  Each has the attribute
+            ``units``; if components have different units, it lists them (``X: m, R: rad``).
 
         Raises
         ------
@@ -501,7 +501,7 @@ class Results:
 
     @_sound
     def restart(self) -> dict[str, Array]:
-        """State that a later run can continue from; empty where the file has none."""
+        """State from which a later run can continue; empty if the file has none."""
         group = self._file.get("restart", {})
         return {
             name: self._as_written(name, group[name], np.asarray(group[name], float))
@@ -524,7 +524,7 @@ class Results:
     def _find(
         self, group: Mapping[str, Any], key: str, kind: str, name: str, existing: tuple[str, ...]
     ) -> h5py.Dataset:
-        """Dataset `key` of a group; raise NoSuchPartError where there is none."""
+        """Dataset `key` of a group; raises NoSuchPartError if it is missing."""
         if key not in group:
             raise NoSuchPartError(
                 f"no {kind} {name!r} in this file; it has: {', '.join(existing) or 'none'}"
@@ -537,7 +537,7 @@ class Results:
         return dataset
 
     def _as_written(self, name: str, dataset: h5py.Dataset, data: _D, ours: bool = True) -> _D:
-        """Return the data of a dataset; raise ResultsError where they do not match its digest."""
+        """Return the data of a dataset; raise ResultsError if they do not match its digest."""
         if self._whole:
             return data
         attrs = dataset.attrs
@@ -554,7 +554,7 @@ class Results:
 
 
 def is_hdf5(path: str | Path) -> bool:
-    """Whether there is an HDF5 file at the path, written by this program or not."""
+    """Whether an HDF5 file of any program exists at the path."""
     return Path(path).is_file() and bool(h5py.is_hdf5(path))
 
 

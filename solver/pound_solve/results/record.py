@@ -1,4 +1,4 @@
-"""The record of a run: what it has computed so far, from which all tables are made."""
+"""The record of a run: all results so far, from which the tables are made."""
 
 from __future__ import annotations
 
@@ -34,26 +34,26 @@ class RunRecord:
     motions : sequence of Motion
     forces : sequence of Force
     structure : Structure
-        After the static analysis with the stiffness that its axial forces give.
+        After the static analysis, with the geometric stiffness of its axial forces.
     overridden : frozenset of str
         Lower-case names of PARAMs that the command line set.
     began : float
         Reading of `time.perf_counter` when the run began.
     diaphragm_collisions : mapping
-        What meets in every contact, by the number of its law.
+        The two diaphragms of every contact, keyed by the number of its law.
     static, modal, pushover, history
         Results of the analyses; each is set when its analysis is over.
     recorded, layout
-        What the history records, and its layout in the file; set when it starts.
+        Recorded items of the history and its layout in the file; set when it starts.
     stored : callable
         Rows of a history so far, by its name (``time`` among them), shape (n_times, \\*row): for tables of
-        figures that no method tracks.  Peaks between the output times are not among them.
+        values that no method tracks.  They exclude peaks between output times.
     warnings : sequence of Diagnostic
         About the deck.
     checks : list of Check
         Of all analyses.
     solve_seconds, cpu_seconds : float
-        Time that the methods of all histories took [s].
+        Run time of the methods in all histories [s].
     """
 
     model: Model
@@ -77,5 +77,5 @@ class RunRecord:
 
     @property
     def responded(self) -> bool:
-        """Whether there is a history whose method returned its peaks."""
+        """Whether the history's method returned its peaks."""
         return hasattr(self, "history") and self.history.outcome is not None

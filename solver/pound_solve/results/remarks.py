@@ -13,7 +13,7 @@ SIGNS: Final = (
 
 
 def how_found(run: RunRecord) -> str:
-    """Sentence on whether the peaks that the method tracks are exact."""
+    """Sentence on whether the method's peaks are exact."""
     returned = run.history.returned
     if returned.one_of_several:
         return "Peaks are those of one of several motions: see the checks."
@@ -25,7 +25,7 @@ def how_found(run: RunRecord) -> str:
 
 
 def how_sampled(run: RunRecord) -> str:
-    """Sentence on the instants at which envelopes are taken, with a blank at its end."""
+    """Sentence on the instants at which envelopes are taken, with a trailing blank."""
     history, time = run.history, run.model.units.time
     envelopes = history.recorder.envelopes
     if envelopes.searched:

@@ -1,15 +1,15 @@
 """File object for HDF5 whose writes reach the disk in whole transactions, or not at all.
 
-HDF5 does not survive a write that fails: its own tables no longer agree, and closing the file ends the
-process.  Here no write of its fails.  Writes are kept in pages of memory until `SafeFile.commit`, which
-first makes room at the end of the file, where a full disk shows itself, and only then lays the pages down.
-A file whose disk is full therefore stands as the last commit left it.
+HDF5 does not survive a failed write: its own tables become inconsistent, and closing the file ends the
+process. This object never fails on a write. It buffers pages in memory until `SafeFile.commit`, which first
+reserves space at the end of the file, where a full disk is detected, and only then writes the pages.  On a
+full disk the file therefore keeps the state of the last commit.
 
-Some room stays reserved behind the data until the file is closed, so that the end of a run on a full disk
-can still be told.
+Some space stays reserved behind the data until the file is closed, so that a run on a full disk can still
+record its end.
 
-Each commit seals the file, see `seal`, so that the file of a run that was killed has a checksum, too.
-While pages are laid down it has none.
+Each commit seals the file (see `seal`), so that the file of a killed run has a checksum too.  The file is
+unsealed while pages are written.
 """
 
 from __future__ import annotations
@@ -24,36 +24,36 @@ from pound_solve.results.seal import LENGTH, PAGE, checksums, seal
 
 try:
     import fcntl
-except ImportError:  # Windows, whose open files no other program can rename or remove
+except ImportError:  # Windows, where other programs cannot rename or remove an open file
     fcntl = None  # type: ignore[assignment]
 
-RESERVE: Final = 4 * PAGE  #: room held behind the data
+RESERVE: Final = 4 * PAGE  #: space reserved behind the data
 
 
 class NoRoomError(ResultsError):
-    """Raised where the disk has no room for what is to be written; the file stays as last committed."""
+    """Raised if the disk is full; the file keeps the state of the last commit."""
 
 
 class BusyError(ResultsError):
-    """Raised where another program writes the file."""
+    """Raised if another program writes the file."""
 
 
 class SafeFile:
     """A new file that one program writes, for the driver ``fileobj`` of h5py.
 
-    The file is locked, so that a second writer is refused and readers are told that it is in use.
+    The file is locked, so that a second writer is refused and readers learn that it is in use.
 
     Parameters
     ----------
     path : Path
-        File to write; an old one that nobody writes is replaced.
+        File to write; replaces an old one that is not in use.
 
     Raises
     ------
     BusyError
         Another program writes the file.
     NoRoomError
-        The disk has no room for the reserve.
+        The disk has no space for the reserve.
     OSError
         The file cannot be created.
     """
@@ -63,7 +63,7 @@ class SafeFile:
         self._disk = _locked(path)
         self._pages: dict[int, bytearray] = {}
         self._sums: list[int] = []  # checksums of the pages on the disk
-        self._sealed = 0  # where the seal stands
+        self._sealed = 0  # position of the seal
         self._place = 0
         self._size = self._committed = self._room = 0
         self._reserve = RESERVE
@@ -75,16 +75,16 @@ class SafeFile:
             raise
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Move to a place, see `io.IOBase.seek`."""
+        """Move to a position; see `io.IOBase.seek`."""
         self._place = offset + (self._size if whence == os.SEEK_END else 0)
         return self._place
 
     def tell(self) -> int:
-        """Current place in the file."""
+        """Current position in the file."""
         return self._place
 
     def readinto(self, buffer: memoryview) -> int:
-        """Fill a buffer from the current place on, with zeros behind the end of the data."""
+        """Fill a buffer from the current position, with zeros behind the end of the data."""
         at, done = self._place, 0
         while done < len(buffer):
             number, inside = divmod(at + done, PAGE)
@@ -95,13 +95,13 @@ class SafeFile:
         return done
 
     def read(self, count: int) -> bytes:
-        """Read some bytes from the current place on."""
+        """Read some bytes from the current position."""
         buffer = bytearray(count)
         self.readinto(memoryview(buffer))
         return bytes(buffer)
 
     def write(self, data: memoryview) -> int:
-        """Keep data for the current place in memory until `commit`."""
+        """Buffer data for the current position until `commit`."""
         at, done = self._place, 0
         while done < len(data):
             number, inside = divmod(at + done, PAGE)
@@ -134,17 +134,17 @@ class SafeFile:
         return self._disk.read(PAGE).ljust(PAGE, b"\0")
 
     def commit(self) -> None:
-        """Write all kept pages to the disk.
+        """Write all buffered pages to the disk.
 
         Raises
         ------
         NoRoomError
-            The disk is full: nothing was written, and all that was kept is forgotten.
+            The disk is full: nothing was written, and the buffer is discarded.
         """
         try:
             self._make_room(self._size + self._reserve + LENGTH)
         except NoRoomError:
-            self._reserve = 0  # for the message on how the run ended
+            self._reserve = 0  # frees space for the final message of the run
             self.forget()
             raise
         self._lay(self._sealed, bytes(LENGTH))
@@ -156,7 +156,7 @@ class SafeFile:
         self._seal(self._room - LENGTH)
 
     def _seal(self, place: int) -> None:
-        """Write the seal of the data on the disk at a place, the end of the file."""
+        """Write the seal of the data on the disk at a position, the end of the file."""
         self._sealed = place
         self._lay(place, seal(self._sums, self._committed))
 
@@ -175,12 +175,12 @@ class SafeFile:
                 self._sums[number] = next(checksums(self._disk, start, min(start + PAGE, self._size)))
 
     def forget(self) -> None:
-        """Discard all that was written since the last commit."""
+        """Discard all writes since the last commit."""
         self._pages.clear()
         self._size = self._committed
 
     def _make_room(self, size: int) -> None:
-        """Reserve room on the disk up to a size; raise NoRoomError where there is none."""
+        """Reserve disk space up to a size; raise NoRoomError if the disk is full."""
         if size <= self._room:
             return
         try:
@@ -193,7 +193,7 @@ class SafeFile:
         self._room = size
 
     def end(self) -> None:
-        """Release the reserve and seal the file; from now on others may read the file, but not write it."""
+        """Release the reserve and seal the file; others may then read the file, but not write it."""
         self._seal(self._committed)
         self._disk.truncate(self._committed + LENGTH)
         self._room = self._committed + LENGTH
@@ -211,7 +211,7 @@ class SafeFile:
 
 
 def in_use(path: Path) -> bool | None:
-    """Whether a program has the file open for writing; None where there are no locks to tell."""
+    """Whether a program has the file open for writing; None on systems without locks."""
     if fcntl is None:
         return None
     with path.open("rb") as file:
@@ -223,11 +223,11 @@ def in_use(path: Path) -> bool | None:
 
 
 def _locked(path: Path) -> IO[bytes]:
-    """The file at a path, opened and locked."""
+    """Open and lock the file at a path."""
     if fcntl is None:
         return _fresh(path)
     while True:
-        disk = path.open("ab", 0)  # creates it where there is none
+        disk = path.open("ab", 0)  # creates it if missing
         disk.close()
         disk = path.open("r+b", 0)
         try:
@@ -238,7 +238,7 @@ def _locked(path: Path) -> IO[bytes]:
                 raise BusyError(
                     f"{path}: another run writes it; wait for it, or give another folder with -o"
                 ) from err
-            _give_up(path, disk)  # to its readers, who keep what they have open
+            _give_up(path, disk)  # leaves it to its readers, who keep it open
             continue
         except OSError:  # a file system without locks
             return disk
@@ -261,7 +261,7 @@ def _fresh(path: Path) -> IO[bytes]:
 
 
 def _only_read(disk: IO[bytes]) -> bool:
-    """Whether those who hold a lock on the file only read it."""
+    """Whether all lock holders only read the file."""
     try:
         fcntl.flock(disk, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except OSError:
@@ -280,7 +280,7 @@ def _give_up(path: Path, disk: IO[bytes]) -> None:
 
 
 def _allocate(disk: IO[bytes], start: int, count: int) -> None:
-    """Reserve room on the disk for `count` bytes from a place on."""
+    """Reserve disk space for `count` bytes from a position on."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(disk.fileno(), start, count)
     else:

@@ -1,7 +1,7 @@
-"""Classes by which the tables and histories of a results file are declared.
+"""Classes that declare the tables and histories of a results file.
 
 Units are dimensions of the deck's own units (``F``, ``L``, ``T``, ``rad``, ``%``; ``-`` a pure number,
-empty where units mean nothing); :meth:`pound_deck.model.Units.text` turns them into the deck's.
+empty for no unit); :meth:`pound_deck.model.Units.text` turns them into the deck's.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pound_solve.analyses.recorder import RecordedItems, SampleBlock
     from pound_solve.numerics.types import Array
 
-Record = TypeVar("Record")  #: what the rows of a table are made from
+Record = TypeVar("Record")  #: source of a table's rows
 Row: TypeAlias = tuple[Any, ...]  #: one value for each column
 
 FORMATS: Final = MappingProxyType(
@@ -30,7 +30,7 @@ FORMATS: Final = MappingProxyType(
         "short": "float64",
         "percent": "float64",
     }
-)  #: how a column is printed, and how it is stored
+)  #: print format and storage type of a column
 
 
 class Stage(Enum):
@@ -40,7 +40,7 @@ class Stage(Enum):
     STATIC = auto()  #: after a STATIC analysis
     MODAL = auto()  #: after a MODAL analysis
     PUSHOVER = auto()  #: after a PUSHOVER analysis
-    HISTORY = auto()  #: after a HISTORY, even if it stopped at once
+    HISTORY = auto()  #: after a HISTORY, even if it stopped immediately
     SAMPLES = auto()  #: after a HISTORY that has at least one sample
     PEAKS = auto()  #: after a HISTORY whose method returned its peaks
     END = auto()  #: the run is over or has stopped
@@ -57,7 +57,7 @@ class Column:
     name : str
         Field of the compound dataset.
     head : str
-        Head in the report; its line breaks are kept.  An empty head stands for the name.
+        Head in the report; its line breaks are kept.  Empty: the name.
     unit : str
         Dimensions, see the module's head.
     fmt : str
@@ -65,9 +65,9 @@ class Column:
         all the digits that the deck gives (ten at most), ``num`` five significant digits, ``short`` four,
         ``percent`` two decimals.
     doc : str
-        What the column holds, for the manual.
+        Meaning of the column, for the manual.
     zero : str
-        What the report prints for 0 in an ``int`` column in which 0 is not a number of something.
+        Replacement that the report prints for 0 in an ``int`` column where 0 is not a count.
     clip : int
         Number of characters of a text that the report prints; 0 for all.
     """
@@ -100,7 +100,7 @@ class Section:
     heading : str
         The report prints it in capitals.
     place : int
-        Sections stand in the order of their places; steps of ten leave room for new ones.
+        Sections are ordered by place; steps of ten leave room for new ones.
     of_the_day : bool
         Its tables differ between two runs of the same deck.
     """
@@ -116,14 +116,14 @@ def no_remark(record: object) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sheet:
-    """Columns with notes: what is needed to print rows that no file stores.
+    """Columns with notes, which suffice to print rows that no file stores.
 
     Parameters
     ----------
     columns : tuple of Column
         In the order of storing and printing.
     note : str
-        A sentence or two on how to read the rows.
+        A sentence or two of explanation.
     group : str
         Column by whose values the report sorts rows into blocks (order within a block is kept), each with
         number formats of its own; empty for one block.
@@ -150,9 +150,9 @@ class Table(Sheet, Generic[Record]):
     title : str
         Heading; the report prints it in capitals.
     place : int
-        Tables stand in a section in the order of their places; steps of ten leave room for new ones.
+        Tables in a section are ordered by place; steps of ten leave room for new ones.
     stages : tuple of Stage
-        When the table is written; a later one replaces an earlier one.
+        When the table is written; a later stage replaces an earlier one.
     rows : callable
         Makes the rows from the record of the run (`RunRecord`) or of the study: one value for each column,
         in units of the deck, percentages as percent.  None leaves the table out.
@@ -174,9 +174,9 @@ class Table(Sheet, Generic[Record]):
 class HistoryLayout(NamedTuple):
     """Shape of one row (one instant) of a history, and the attributes of its dataset.
 
-    ``unit`` holds dimensions (``F*L``), one for all or one for each column of the last axis; ``labels`` one
-    text for each column of the last axis; without ``labels``, ``element`` and ``quantity`` make them.
-    A row with a first axis of nodes has ``nodes``, their numbers.
+    ``unit`` gives dimensions (``F*L``), one for all or one for each column of the last axis; ``labels``
+    gives one text for each column of the last axis, by default made of ``element`` and ``quantity``.  A row
+    with a first axis of nodes has their numbers in ``nodes``.
     """
 
     shape: tuple[int, ...]
@@ -196,25 +196,25 @@ class History:
     name : str
         Path below ``/history``.
     place : int
-        Histories stand in the order of their places; steps of ten leave room for new ones.
+        Histories are ordered by place; steps of ten leave room for new ones.
     row : str
-        What one row (one instant) holds, for the manual.
+        Contents of one row (one instant), for the manual.
     doc : str
-        What the numbers are, for the manual.
+        Meaning of the numbers, for the manual.
     layout : callable
-        Makes the layout from what is recorded.  A history with an empty row is not stored.
+        Makes the layout from the recorded items.  A history with an empty row is not stored.
     values : callable
         Makes the rows, shape (n_times, \\*row), from a block of samples.
     closeup : bool
-        Whether close-ups of collisions have it, too.
+        Whether close-ups of collisions include it.
     extremes : bool
-        Whether its smallest and largest values within intervals are kept.  `values` then also gets the
+        Whether its smallest and largest values within intervals are stored.  `values` then also gets the
         extremes of nodes, laws, outputs and sums as if they were samples: it may select and order them, but
         must not add them up.
     axes : mapping of str to str
-        What a number of the row is found by (``node``, ``member``, ``component``, ...), and the attribute
-        that holds these labels.  Without them a label alone finds it.  The histories of a group share their
-        axes: an axis of one name has the same labels in all of them, and no group has the name of an axis.
+        Axes of a row (``node``, ``member``, ``component``, ...), each with the attribute that holds its
+        labels. Without axes only `labels` identify a column. The histories of a group share their axes: an
+        axis of one name has the same labels in all of them, and no group has the name of an axis.
     """
 
     name: str

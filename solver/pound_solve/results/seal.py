@@ -1,11 +1,10 @@
 """The seal of a results file: a checksum of its bytes, compared before HDF5 sees the first of them.
 
-HDF5 trusts what it reads: a damaged heap can keep it busy without an end.  The seal is the last thing in
-the file, behind all that HDF5 wrote; HDF5 takes no notice of it.  A program that changes the file by HDF5
-drops the seal, because HDF5 ends a file where its own data end; digests of the parts, see `form`, then
-tell what is as it was written.
+HDF5 trusts its input: a damaged heap can hang it.  The seal comes last in the file, behind all HDF5 data,
+and HDF5 ignores it. A program that changes the file through HDF5 drops the seal, because HDF5 truncates the
+file at the end of its own data; digests of the parts (see `form`) then show which parts are unchanged.
 
-The checksum is one of checksums of pages, so that a file that grows is sealed again at little cost.
+The checksum covers the checksums of pages, so that a growing file is resealed cheaply.
 """
 
 from __future__ import annotations
@@ -16,15 +15,15 @@ import zlib
 from collections.abc import Iterator, Sequence
 from typing import IO, Final
 
-PAGE: Final = 2**15  #: bytes with a checksum of their own
-#: a mark, the number of bytes that the seal knows, the CRC-32 of the CRC-32s of their pages
+PAGE: Final = 2**15  #: bytes per page checksum
+#: a mark, the number of sealed bytes, the CRC-32 of the CRC-32s of their pages
 _SEAL: Final = struct.Struct("<8sQI")
 _MARK: Final = b"\x93POUND\r\n"
 LENGTH: Final = _SEAL.size
 
 
 def checksums(file: IO[bytes], start: int, end: int) -> Iterator[int]:
-    """CRC-32s of the pages of a file from one that begins at `start`; the last page ends at `end`."""
+    """CRC-32s of the pages of a file from the page at `start`; the last one ends at `end`."""
     file.seek(start)
     while start < end:
         page = file.read(min(PAGE, end - start))
@@ -38,7 +37,7 @@ def seal(pages: Sequence[int], size: int) -> bytes:
 
 
 def holds(file: IO[bytes]) -> bool | None:
-    """Whether the bytes of a file are those that were sealed; None where it has no seal."""
+    """Whether the bytes of a file match its seal; None if it has no seal."""
     end = file.seek(0, os.SEEK_END) - LENGTH
     if end < 0:
         return None

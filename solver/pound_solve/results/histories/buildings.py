@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pound_solve.analyses.recorder import RecordedItems, SampleBlock
     from pound_solve.numerics.types import Array
 
-BASE = (("shear X", "F"), ("force Y", "F"), ("moment", "F*L"))  #: of a building, and their dimensions
+BASE = (("shear X", "F"), ("force Y", "F"), ("moment", "F*L"))  #: columns, with their dimensions
 
 
 def of_buildings(items: RecordedItems) -> HistoryLayout:
@@ -43,7 +43,7 @@ def of_storeys(unit: str, items: RecordedItems) -> HistoryLayout:
 
 
 def storey_layout(unit: str, places: Sequence[tuple[str, int]]) -> HistoryLayout:
-    """Layout for storeys, by the names of their buildings and their numbers."""
+    """Layout for storeys, given as building names and storey numbers."""
     return HistoryLayout(
         (len(places),),
         {

@@ -1,4 +1,4 @@
-"""``/history/drift``: the drifts that the deck names."""
+"""``/history/drift``: the drifts that the deck requests."""
 
 from __future__ import annotations
 

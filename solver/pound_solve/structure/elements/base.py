@@ -259,7 +259,7 @@ class ElementError(ItemError):
 
     @classmethod
     def of_law(cls, refusal: ValueError, item: str) -> Self:
-        """Convert a law's refusal to an error at the law's faulty item, or else at `item`."""
+        """Convert a law's refusal to an error at the law's faulty item, or at `item`, the law's name."""
         return cls(str(refusal), refusal.item if isinstance(refusal, ItemError) else item)
 
 

@@ -189,7 +189,7 @@ class _FlexiblePart:
     share: float
 
     def end_forces(self, load: Array) -> Array:
-        """Forces on the ends of the beam from loads equivalent to `load`, nodes at rest, shape (6,)."""
+        """End forces of the beam from loads equivalent to `load`, with nodes at rest, shape (6,)."""
         forces: Array = self.k @ (self.flexibility @ load) - load
         forces[self.pins] = 0.0
         return forces
