@@ -36,6 +36,7 @@ from pound_solve.laws.automaton import (
     below,
     linear,
 )
+from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.refusal import ItemError
 
 SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
@@ -157,15 +158,7 @@ SPEC = Spec(
     "BILINEAR_SLACK",
     "bilinear with slack",
     (
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="ratio of post-yield to initial stiffness",
-        ),
+        R_FIELD,
         Field(
             "SLACK",
             Kind.REAL,

@@ -53,6 +53,7 @@ from pound_solve.laws.automaton import (
     linear,
     rate_independent,
 )
+from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.mirror import need_both_sides
 
 LOADING, UNLOADING = 0, 1
@@ -283,15 +284,7 @@ SPEC = Spec(
     "BOUC_WEN",
     "smooth, from a differential equation",
     (
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="ratio of post-yield to initial stiffness",
-        ),
+        R_FIELD,
         Field("N", Kind.REAL, "-", lo=1.0, hi=100.0, doc="exponent; the larger, the sharper the knee"),
         Field(
             "BETA",

@@ -26,6 +26,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.mirror import inward, need_both_sides, outward, side, turns_inward, turns_outward
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BACK_MINUS = range(7)
@@ -109,15 +110,7 @@ SPEC = Spec(
     "FLAG_SHAPED",
     "flag-shaped, self-centring",
     (
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="ratio of post-yield to initial stiffness",
-        ),
+        R_FIELD,
         Field(
             "BETA",
             Kind.REAL,

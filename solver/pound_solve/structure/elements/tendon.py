@@ -15,6 +15,7 @@ import math
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
+from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.hysteresis.bilinear_slack import RULE
 from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, direction
 
@@ -62,15 +63,7 @@ SPEC = Spec(
         Field("E", Kind.REAL, "F/L^2", above=0, doc="modulus of elasticity"),
         Field("A", Kind.REAL, "L^2", above=0, doc="cross-section area"),
         Field("PY", Kind.REAL, "F", default=None, above=0, doc="yield force; omitted: elastic"),
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="ratio of post-yield to initial stiffness",
-        ),
+        R_FIELD,
         Field("N0", Kind.REAL, "F", default=0.0, lo=0, doc="prestress of the undeformed structure"),
         Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it becomes taut"),
     ),
