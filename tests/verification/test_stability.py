@@ -354,8 +354,6 @@ def test_a_thousand_seconds_of_record(tmp_path):
 
 BITS = """import hashlib, sys
 from pound_solve.cli.main import main
-from pound_solve.integrate.events import within_step
-from pound_solve.integrate.protocol import STILL
 assert main([sys.argv[1], "-o", sys.argv[2], "--quiet"]) == 0
 from pound_solve.results import Results
 with Results.open(sys.argv[2] + "/row.h5") as r:
