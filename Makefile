@@ -20,7 +20,7 @@ SEED ?= 0
 JOBS ?= 2
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal
-NO_RECORDS := The package of the extra "records" is not to be had: decks that name ELCENTRO_270 need the record \
+NO_RECORDS := The package of the extra "records" could not be installed: decks that name ELCENTRO_270 need the record \
 as a file (--records DIR), see manual/records.md. All else works.
 
 NO_COMPILER := There is no C compiler here, so that each process compiles what it needs, or runs it as Python.

@@ -1,4 +1,4 @@
-"""Signals as a terminal gives them to a process: what begins the tests in the background ignores some."""
+"""Default handling of signals in tests: a shell that starts them in the background has some ignored."""
 
 import os
 import signal

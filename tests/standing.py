@@ -42,7 +42,7 @@ class Standing:
         """Wait until it stands; False where it has ended."""
         return self.process.stdout.readline() == HERE
 
-    def go_on(self):
+    def resume_after_jump(self):
         """Let it go on to the next point."""
         self.process.stdin.write(b"\n")
         self.process.stdin.flush()

@@ -69,7 +69,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path, kills):
         assert sweep.stands()
         if which is not None:
             os.kill(workers(sweep.process)[which], signal.SIGKILL)
-            sweep.go_on()
+            sweep.resume_after_jump()
             assert sweep.stands()
         sweep.kill()
         assert calls <= len(noted(path)) < len(undisturbed)

@@ -41,7 +41,7 @@ def test_that_an_interval_takes_too_many_windows_is_foreseen(status, monkeypatch
     monkeypatch.setattr(exact.Exact, "_charge_window", lambda *_: windows.append(1))
     assert status(1e20) == 1
     assert "too fast to be followed" in capsys.readouterr().err
-    assert len(windows) == exact.FORESEEN
+    assert len(windows) == exact.WINDOWS_BEFORE_FORECAST
 
 
 def test_that_a_run_takes_too_many_windows_is_foreseen(status, monkeypatch, capsys):
@@ -50,7 +50,7 @@ def test_that_a_run_takes_too_many_windows_is_foreseen(status, monkeypatch, caps
     monkeypatch.setattr(exact.Exact, "_charge_window", lambda *_: windows.append(1))
     assert status(6.5e14, 40.0) == 1
     assert "too fast to be followed" in capsys.readouterr().err
-    assert len(windows) == exact.FORESEEN
+    assert len(windows) == exact.WINDOWS_BEFORE_FORECAST
 
 
 def test_an_interval_of_windows_that_suffice_is_followed(status, monkeypatch):

@@ -31,7 +31,7 @@ from pound_solve.integrate.convergence.compared import ALL, RESPONSE, tolerances
 from pound_solve.integrate.convergence.replay import Replay, Watch
 from pound_solve.integrate.convergence.step_refinement import StepRefinement
 from pound_solve.integrate.convergence.tolerance_refinement import ToleranceRefinement, UnfitError
-from pound_solve.integrate.intervals import MAX_UNKNOWNS, MIN_RADIANS, usual
+from pound_solve.integrate.intervals import MAX_UNKNOWNS, MIN_RADIANS, most_common_length
 from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
     Outcome,
@@ -77,7 +77,7 @@ def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
     """Return how many of the intervals between some `times` TAYLOR takes in modes while all springs are
     elastic and all contacts open; `rate` is that of the fastest mode [1/T].
     """
-    length = usual(times)
+    length = most_common_length(times)
     curved = any(s.law.curved or s.law.rigid for s in system.structure.laws)
     small = system.size <= MAX_UNKNOWNS and not massless(system.mass).any()
     straight = system.excitation.coefs.shape[1] <= 2

@@ -12,11 +12,11 @@ MAX_UNKNOWNS = 200  #: of a part
 MIN_RADIANS = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
 
 
-def usual(times: Array) -> float:
+def most_common_length(times: Array) -> float:
     """Length of most of the intervals between some times; 0 where few have the same.
 
-    Each is known to the rounding of the clock, and their mean far better: over thousands of periods that
-    counts.
+    Each length is exact only to the rounding of the clock; their mean removes an error that would
+    accumulate over thousands of periods.
     """
     if len(times) <= FEW_INTERVALS:
         return 0.0

@@ -222,7 +222,7 @@ def build(
     """
     n, dofs = structure.n_free, structure.dofs.free
     inputs = _inputs(structure, motions, forces, t_end)
-    live = _live(structure, inputs, start, start_rate)
+    live = _excited_unknowns(structure, inputs, start, start_rate)
     keep = np.flatnonzero(live)
     mass, damping, stiffness = (
         a[np.ix_(keep, keep)] for a in (structure.mass, structure.damping, structure.stiffness)
@@ -326,7 +326,7 @@ def _support_shares(structure: Structure, motion: Motion) -> list[float]:
     ]
 
 
-def _live(structure: Structure, inputs: Inputs, start: Array, start_rate: Array) -> Flags:
+def _excited_unknowns(structure: Structure, inputs: Inputs, start: Array, start_rate: Array) -> Flags:
     """Which unknowns can be set in motion: all that are coupled, directly or through others, to one that is
     loaded or starts in motion.
     """

@@ -147,7 +147,7 @@ class EventDrivenRun(ABC):
         return law, event_index
 
     def _look_for_rests(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Record which laws stand at the beginning of a branch as `law` reverses (see
+        """Record the laws that are at the start of a branch when `law` reverses (see
         `kernels.ties.note_rests`).
         """
         event = self.branches[law].events[event_index]
@@ -161,12 +161,12 @@ class EventDrivenRun(ABC):
                     self.uniqueness.rests(self.t, law, i, branch)
 
     def _branch_begun(self, law: int, d: float, v: float, turns: bool) -> int:
-        """Branch at whose beginning a law stands, as it `turns` or else rests; -1 for none."""
-        from pound_solve.integrate.kernels.ties import RESTS, TIED, event_near  # as above
+        """Return the branch whose start the law is at, while it reverses (`turns`) or rests; -1 if none."""
+        from pound_solve.integrate.kernels.ties import NEAR_EVENT, STATIONARY_RATE, event_near  # as above
 
         state, largest = self.states[law], self.largest[:, law].tolist()
-        entered = abs(d - state[1]) <= TIED * largest[0]
-        if not turns and (entered or abs(v) > RESTS * largest[1]):
+        entered = abs(d - state[1]) <= NEAR_EVENT * largest[0]
+        if not turns and (entered or abs(v) > STATIONARY_RATE * largest[1]):
             return -1
         for n, e in enumerate(self.branches[law].events):
             if event_near(*e, d, largest[0]):

@@ -61,9 +61,10 @@ from pound_solve.structure.reduction import Decision
 
 MAX_PIECES = 2000  #: windows within one interval of the excitation
 MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, which take many minutes
-FORESEEN = 16  #: such windows without an event between, after which the total number is predicted
+#: such windows without an event between, after which the total number is predicted
+WINDOWS_BEFORE_FORECAST = 16
 MAX_DEFERRED = 256  #: entries of work that wait
-LOST = "modes are nearly parallel: digits are lost"
+DEFECTIVE_MODES = "modes are nearly parallel: digits are lost"
 
 
 class Exact(EventDrivenRun):
@@ -262,7 +263,7 @@ class Exact(EventDrivenRun):
         self.pieces += 1
         left = MAX_PIECES - self.pieces
         slow = left < 0
-        if self.unbroken >= FORESEEN:
+        if self.unbroken >= WINDOWS_BEFORE_FORECAST:
             slow |= rest > (left + 1) * length or self.goals[-1] - self.t > MAX_WINDOWS * length
         if slow or length < 1e-15 * max(1.0, self.t):
             raise self.stop(
@@ -351,14 +352,18 @@ class Exact(EventDrivenRun):
         condition = max((x.condition for x in propagators), default=1.0)
         checks = [
             at_most(
-                Subject.ROUNDING, "residual of the modes, worst decomposition", residual, MAX_RESIDUAL, LOST
+                Subject.ROUNDING,
+                "residual of the modes, worst decomposition",
+                residual,
+                MAX_RESIDUAL,
+                DEFECTIVE_MODES,
             ),
             at_most(
                 Subject.ROUNDING,
                 "condition of the modes, worst decomposition",
                 condition,
                 MAX_CONDITION,
-                LOST,
+                DEFECTIVE_MODES,
             ),
         ]
         if defective := sum(isinstance(x, SeriesPropagator) for x in propagators):

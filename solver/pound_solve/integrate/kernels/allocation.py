@@ -148,7 +148,7 @@ def linear_system(
         damping=product(damping),
         mass=product(mass),
         inputs=np.ascontiguousarray(system.inputs[o].T),
-        pushed=np.ascontiguousarray(system.force_inputs[free]),
+        nodal_inputs=np.ascontiguousarray(system.force_inputs[free]),
         constant=system.constant[o],
         pattern=layout.pattern,
         on_pattern=np.array([at(a, lower, layout.column) for a in solved]),

@@ -99,7 +99,7 @@ class LinearSystem(NamedTuple):
     stiffness, damping, mass : Product
     inputs : ndarray, shape (n_inputs, n)
         Loads of unit inputs.
-    pushed : ndarray, shape (n, n_inputs)
+    nodal_inputs : ndarray, shape (n, n_inputs)
         The part of them that is forces on nodes.
     constant : ndarray, shape (n,)
         Constant loads.
@@ -139,7 +139,7 @@ class LinearSystem(NamedTuple):
     damping: Product
     mass: Product
     inputs: Array
-    pushed: Array
+    nodal_inputs: Array
     constant: Array
     pattern: Pattern
     on_pattern: Array

@@ -1,12 +1,12 @@
-"""Laws that come to the end of their branches at one instant: where unknowns without mass stand between
-them, which of them goes on may hang on rounding (see `integrate.uniqueness`).
+"""Laws that reach the ends of their branches at the same instant.
 
-A law may also rest where a branch begins, while another in series yields at the same force.  Whether it
-would have gone on is as open; it is looked at where one of the two turns.
+If only massless unknowns separate such laws, rounding may decide which of them changes branch (see
+`integrate.uniqueness`).  A law may also rest at the start of a branch while another one in series yields at
+the same force.  Whether it has yielded is then undecided; this is examined when either law reverses.
 
-One order is decided here.  Laws in series over a joint without mass lose their forces at one instant.  If
-one of them becomes slack then, the others stand still for as long as it is.  Those whose branches end where
-there is no force have come to their ends, as with a little mass at the joint: they go first.
+One order is decided here.  Laws in series at a joint without mass lose their forces at the same instant.
+If one of them becomes slack, the others do not deform while it is.  A law whose branch ends at zero force
+therefore changes first, as it would with a small mass at the joint.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ from pound_solve.integrate.kernels.laws import leave_branch, restore_state, save
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation
 from pound_solve.laws.functions import Tables
 
-TIED = 1e-9  #: share of its largest terms that an event function may lack of an event at the same instant
-RESTS = 1e-4  #: share of its largest rate up to which a law stands still
+#: share of its largest terms that an event function may lack of an event at the same instant
+NEAR_EVENT = 1e-9
+STATIONARY_RATE = 1e-4  #: share of its largest rate up to which a law stands still
 
 
 def event_near(a: float, b: float, c: float, d: float, largest: float) -> bool:
     """Whether the event function ``a d + b v + c`` depends on the deformation alone and is zero at `d`, to
     within a share of its terms at the `largest` deformation so far.
     """
-    return b == 0.0 and a != 0.0 and abs(a * d + c) <= TIED * (abs(a) * largest + abs(c))
+    return b == 0.0 and a != 0.0 and abs(a * d + c) <= NEAR_EVENT * (abs(a) * largest + abs(c))
 
 
 def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
@@ -81,8 +82,8 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns:
     if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
         return -1
     d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest_deformation[i]
-    entered = abs(d - laws.entry_deformation[i]) <= TIED * largest
-    if not turns and (entered or abs(v) > RESTS * laws.largest_rate[i]):
+    entered = abs(d - laws.entry_deformation[i]) <= NEAR_EVENT * largest
+    if not turns and (entered or abs(v) > STATIONARY_RATE * laws.largest_rate[i]):
         return -1
     for e in range(laws.n_events[i]):
         if event_near(laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2], d, largest):

@@ -46,7 +46,7 @@ def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
     """Force on unknown `i` by constant loads and FORCES."""
     force: float = linear.constant[i]
     for j in range(len(inputs)):
-        force += linear.pushed[i, j] * inputs[j]
+        force += linear.nodal_inputs[i, j] * inputs[j]
     return force
 
 

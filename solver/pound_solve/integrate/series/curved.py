@@ -27,7 +27,7 @@ from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.own_events import PARTS, RELEASES, TOUCHES
+from pound_solve.integrate.series.force_events import PARTS, RELEASES, TOUCHES
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Curved, Lengths, Series
 from pound_solve.laws.automaton import GAP

@@ -17,7 +17,7 @@ from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.curved import PRESSED
-from pound_solve.integrate.series.own_events import LIFT
+from pound_solve.integrate.series.force_events import LIFT
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Extent, Friction, Series
 from pound_solve.laws.automaton import PUSH, PUSH_RATE

@@ -44,10 +44,10 @@ from pound_solve.integrate.series.expansion import (
     law_at,
     next_term,
 )
+from pound_solve.integrate.series.force_events import BENDS, LIFT, TURNS
 from pound_solve.integrate.series.forces import count_largest, update_branch_forces
 from pound_solve.integrate.series.friction import is_sliding
 from pound_solve.integrate.series.modal import from_modes, take_in_modes
-from pound_solve.integrate.series.own_events import BENDS, LIFT, TURNS
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.shown import has_room, is_full, keep_step
 from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
@@ -60,10 +60,11 @@ from pound_solve.laws.functions import Tables
 MIN_SHORTENING = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
 MAX_SHORTENING = 0.9  #: this factor, at most
 MIN_PART = 0.5  #: smallest part of a step, as it was tried, that is taken
-FROM_REST = 1e-4  #: share of the time to the goal: longest implicit step in which a contact leaves its rest
+#: share of the time to the goal: longest implicit step in which a contact leaves its rest
+MAX_FIRST_STEP = 1e-4
 
 
-def count_reach(laws: Laws, series: Series, extent: Extent) -> None:
+def update_displacement_scale(laws: Laws, series: Series, extent: Extent) -> None:
     """Update the largest deformations of contacts with the displacements of their two bodies over a step:
     rounding of the deformation is a share of these, and for bodies that move alike the
     deformation is nothing but rounding.
@@ -99,8 +100,8 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
 
 
 def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
-    """Whether the contact of an event is at rest at the start of an implicit step: the first powers of its
-    motion may be below the error of the polynomial then, so that its direction is not known.
+    """Whether the contact of an event starts an implicit step at rest.  Its motion may then be smaller than
+    the error of the polynomial, so that its direction is unreliable.
     """
     at_rest = event.law >= 0 and laws.contact[event.law] and laws.now.rate[event.law] == 0.0
     return at_rest and is_implicit(series)
@@ -219,10 +220,10 @@ def step_to_goal(
         whole = end == 1.0 and h == goal - t
         lengths.next = max(h * min(fit * room, MAX_GROWTH), lengths.next if end == 1.0 else 0.0)
         searched = Extent(t, h, terms, end)
-        count_reach(laws, series, searched)
+        update_displacement_scale(laws, series, searched)
         event = first_event(laws, series, searched)
         at = event.time
-        if h > FROM_REST * (goal - t) and begins_to_move(laws, series, event):
+        if h > MAX_FIRST_STEP * (goal - t) and begins_to_move(laws, series, event):
             shorten_step(lengths, h, MIN_SHORTENING)
             pause -= 1
             continue
@@ -284,7 +285,7 @@ def take_sample(sim: Simulation, rules: Tables, series: Series, piece: Piece) ->
     store_sample(sim, rules, run.time)
 
 
-def load_times_place(sim: Simulation, series: Series, piece: Piece) -> float:
+def massless_load_work(sim: Simulation, series: Series, piece: Piece) -> float:
     """Sum over the unknowns without mass of the present load, by a piece, times displacement."""
     total, trial = 0.0, sim.step.trial
     evaluate_inputs(piece.coefs, sim.run.time - piece.begin, trial.inputs, trial.input_rates)
@@ -294,8 +295,8 @@ def load_times_place(sim: Simulation, series: Series, piece: Piece) -> float:
 
 
 def settle_after_jump(sim: Simulation, rules: Tables, series: Series, before: Piece, after: Piece) -> int:
-    """Settle the state at the beginning of another piece of the excitation: unknowns without mass jump with
-    the loads, whose work is then that of the mean load.
+    """Settle the state at the start of another piece of the excitation.  Massless unknowns jump with the
+    load; the work done is the mean load times the jump.
     """
     put = 0.0
     for sign in (-1.0, 1.0):
@@ -303,8 +304,8 @@ def settle_after_jump(sim: Simulation, rules: Tables, series: Series, before: Pi
             why = settle_state(sim, rules, series, after)
             if why != DONE:
                 return why
-        put += 0.5 * sign * load_times_place(sim, series, before)
-        put += 0.5 * sign * load_times_place(sim, series, after)
+        put += 0.5 * sign * massless_load_work(sim, series, before)
+        put += 0.5 * sign * massless_load_work(sim, series, after)
     sim.works.input += put
     sim.works.gross_input += abs(put)
     return DONE

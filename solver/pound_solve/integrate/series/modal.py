@@ -9,10 +9,10 @@ the chord between two places a time :math:`\tau` apart it departs by
 
 .. math:: |y - y_\text{chord}| \le \sum_j |\rho_j|\,|c_j| \min\bigl(2, \tfrac18|\lambda_j\tau|^2\bigr)
 
-at most, for no mode grows: :math:`|c_j e^{\lambda_j t}| \le |c_j|` bounds a mode and the ends of its chord,
-and :math:`\tau^2/8` times the second derivative its distance from that.  Where this lets an event or a peak
-lie in a cell, the power series of that quantity alone over that cell, of the terms
-:math:`\rho_j c_j (\lambda_j\tau)^k/k!`, decides as in a step by series.
+at most.  The bound holds because no mode grows: :math:`|c_j e^{\lambda_j t}| \le |c_j|` bounds a mode and
+the ends of its chord, and :math:`\tau^2/8` times the second derivative bounds its distance from the chord.
+If an event or a peak may therefore lie in a cell, the power series of that quantity over the cell, with the
+terms :math:`\rho_j c_j (\lambda_j\tau)^k/k!`, decides, as in a step by series.
 """
 
 from __future__ import annotations

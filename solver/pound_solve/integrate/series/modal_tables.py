@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate import costs
-from pound_solve.integrate.intervals import MAX_UNKNOWNS, MIN_RADIANS, usual
+from pound_solve.integrate.intervals import MAX_UNKNOWNS, MIN_RADIANS, most_common_length
 from pound_solve.integrate.protocol import MonitoredOutputs
 from pound_solve.integrate.series.state import Modal
 from pound_solve.numerics.graph import components
@@ -172,7 +172,7 @@ def allocate(
     shown : ndarray of int
         Unknowns that the envelopes look at, in that order.
     """
-    length, outputs = usual(times), dense(monitored.rows)
+    length, outputs = most_common_length(times), dense(monitored.rows)
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
     stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)

@@ -1,5 +1,5 @@
-"""Kernels of TAYLOR: what they keep of the motion for the envelopes, see `course`: of a step the series of
-unknowns and of forces of laws, of an interval in modes its start.
+"""Stored motion for the envelopes (see `course`): the series of each step, and the initial state of each
+interval in modes.
 """
 
 from __future__ import annotations

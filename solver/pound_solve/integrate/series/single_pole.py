@@ -1,4 +1,4 @@
-r"""Kernels of LAGUERRE: the motion of a step as a Laguerre series with one pole, and how far it is right.
+r"""Kernels of LAGUERRE: a Laguerre series with one pole for the motion of a step, and its error estimate.
 
 Written as :math:`E\dot y = A y + g`, :math:`y = (u, v)`, the equations of motion have in
 :math:`\theta = t/h` the solution
@@ -17,9 +17,9 @@ which :math:`L_s(1/\gamma) = 0`: the equations of motion are then met at the end
 stiff has decayed there (the method is L-stable).  Within the step the sum is a polynomial, of which powers
 of :math:`\theta` make the same series as TAYLOR's: events, peaks, works and contacts are those of TAYLOR.
 
-The rate with which the truncated sum begins is off by the terms that are left out.  Hinges that turn back
-are told by the sign of their rate, so that a polynomial is added that gives the motion its rate at the
-start, :math:`\theta(1-\theta)^{s-1}`, and leaves its end.
+The initial rate of the truncated sum is wrong by the terms left out.  Reversals of hinges are detected by
+the sign of the rate, so a polynomial that restores the exact initial rate is added,
+:math:`\theta(1-\theta)^{s-1}`; it leaves the end of the step unchanged.
 
 The length of a step is such that the last term is below a share of the motion in the norm of energy,
 :math:`v^T M v + u^T K u`; it bounds the error of the step while the terms decrease.
@@ -47,7 +47,7 @@ from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
 LAST_TERM = 6  #: number of the last term of a series
-#: number of the root of that polynomial, from the least, that 1/gamma is: so the method is A-stable
+#: index (ascending) of the root of Laguerre's polynomial used for 1/gamma; it makes the method A-stable
 ROOT = 2
 ERROR_SHARE = 0.5  #: share of the error that a step is made for
 TERM_ROUNDING = 1e-24  #: share of the energy of a state that the rounding of a term may have

@@ -30,7 +30,7 @@ from pound_solve.integrate.kernels.laws import curved_force, internal, parameter
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import FIRST_STEP, power_term, right_part
-from pound_solve.integrate.series.own_events import BENDS
+from pound_solve.integrate.series.force_events import BENDS
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Lengths, Series, Smooth
 from pound_solve.laws.automaton import PAST

@@ -18,9 +18,9 @@ from pound_solve.integrate.series.curved import (
     K,
     touch_overlap,
 )
+from pound_solve.integrate.series.force_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
-from pound_solve.integrate.series.own_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Extent, Series

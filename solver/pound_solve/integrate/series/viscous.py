@@ -26,7 +26,7 @@ from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import K, N, right_part
-from pound_solve.integrate.series.own_events import TURNS
+from pound_solve.integrate.series.force_events import TURNS
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Series, Viscous
 from pound_solve.laws.functions import Tables, powers_of

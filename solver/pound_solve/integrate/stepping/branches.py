@@ -58,7 +58,7 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     hold_friction_limits(laws)
 
 
-def leaves_with(sim: Simulation, i: int) -> bool:
+def leaves_independently(sim: Simulation, i: int) -> bool:
     """Whether a marked law leaves its branch regardless of the laws that have left at this instant.
 
     A law reverses according to its acceleration, which another law on the same mass changes; `step.marked`
@@ -86,7 +86,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
     for k in range(-1, len(laws.rule)):
         i = event.law if k < 0 else k
         room = len(sim.buffers.log) - run.logged > len(laws.coupled)
-        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_with(sim, i)):
+        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_independently(sim, i)):
             continue
         change_branch(sim, rules, scheme, h, i, laws.saved[i] - 1)
         if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
@@ -95,10 +95,10 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
             step.marked[laws.rows.columns[q]] = True
         laws.saved[i] = 0
     if run.fell < 0:
-        go_on(sim, rules)
+        resume_after_jump(sim, rules)
 
 
-def go_on(sim: Simulation, rules: Tables) -> None:
+def resume_after_jump(sim: Simulation, rules: Tables) -> None:
     """Make the state consistent after a jump, and keep the motion for the envelopes.
 
     Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant

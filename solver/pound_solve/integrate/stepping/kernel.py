@@ -42,7 +42,7 @@ from pound_solve.integrate.kernels.state import (
     piece_of,
 )
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.stepping.branches import go_on
+from pound_solve.integrate.stepping.branches import resume_after_jump
 from pound_solve.integrate.stepping.parts import step_in_parts
 from pound_solve.integrate.stepping.step import (
     MAX_UPDATES,
@@ -260,7 +260,7 @@ def take_steps(
     run = sim.run
     why, tried = NEWTON, False
     if run.rest >= 0.0:
-        go_on(sim, rules)
+        resume_after_jump(sim, rules)
         length, run.rest = run.rest, -1.0
     else:
         last = min(count - 1, run.step + most)

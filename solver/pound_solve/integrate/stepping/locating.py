@@ -11,7 +11,7 @@ from pound_solve.integrate.events.within_step import event_value, first_event, t
 from pound_solve.integrate.kernels.consistency import NEARLY_MET
 from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Piece, Scheme, Simulation
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.stepping.step import factorise_step, start_again, try_step
+from pound_solve.integrate.stepping.step import factorise_step, restore_start_tangents, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import next_trial
 
@@ -133,7 +133,8 @@ def locate_event(
         if not try_step(sim, rules, scheme, piece.coefs, begin + tau, tau, PART):
             if last:
                 return NEWTON, event
-            start_again(laws, rules)  # at `high` there was a solution: look for the event nearer to it
+            # at `high` there was a solution: look for the event nearer to it
+            restore_start_tangents(laws, rules)
             b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
             continue
         tried = tau

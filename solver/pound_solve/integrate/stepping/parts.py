@@ -26,7 +26,7 @@ from pound_solve.integrate.stepping.step import (
     MAX_UPDATES,
     accept_trial,
     factorise_step,
-    start_again,
+    restore_start_tangents,
     try_step,
 )
 from pound_solve.laws.functions import Tables
@@ -72,7 +72,7 @@ def solve_part(
         if tried or try_step(sim, rules, scheme, piece.coefs, run.time + part - piece.begin, part, at):
             return DONE, part, at
         run.updates = MAX_UPDATES + 1
-        start_again(laws, rules)
+        restore_start_tangents(laws, rules)
         part, at = 0.5 * part, PART
     return NEWTON, part, at
 
@@ -89,7 +89,7 @@ def end_part_at_event(
     if why == DONE and event.time > 1e-9 * h:
         run.same_instant = 0
     elif why == DONE and event.time == 0.0 and curved:
-        start_again(laws, rules)  # else what follows takes forces and tangents of the last trial
+        restore_start_tangents(laws, rules)  # else what follows takes forces and tangents of the last trial
     return why, event
 
 

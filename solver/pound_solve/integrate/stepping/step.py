@@ -184,7 +184,7 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
     return worst, law
 
 
-def redraw_members(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
+def update_member_tangents(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
     """Recompute the members' tangents, and factorise again; False where that fails."""
     members = sim.laws.members
     take_tangents(members, members.trial.quantities)
@@ -215,7 +215,7 @@ def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         if not error < np.inf:
             return False
         slow = error > 1.0 and error > POOR_CONVERGENCE * last
-        if slow and not redraw_members(sim, scheme, h, at):
+        if slow and not update_member_tangents(sim, scheme, h, at):
             return False
         last = error
     if worst > CONVERGED:
@@ -253,7 +253,7 @@ def try_step(
     return True
 
 
-def start_again(laws: Laws, rules: Tables) -> None:
+def restore_start_tangents(laws: Laws, rules: Tables) -> None:
     """Linearise the curved laws and the members at the start of the step."""
     linearise_laws(laws, rules)
     take_tangents(laws.members, laws.members.now.quantities)

@@ -78,7 +78,7 @@ def is_slack(p: Numbers) -> bool:
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: in the slack, or elastic."""
+    """Return the initial branch: slack if there is a slack, else elastic."""
     return (SLACK if is_slack(p) else ELASTIC), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
