@@ -1,4 +1,4 @@
-"""Solve a pound-solve model: from the checked Model to results, report and pictures."""
+"""Solve a pound-solve model: compute results, report and pictures from the checked Model."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def run(
     Parameters
     ----------
     deck : str, Path, Deck or mapping
-        Path of an input deck, or a deck that is no file: a `Deck`, or its sections as for
+        Path of an input deck, or a deck without a file: a `Deck`, or its sections as for
         `Deck.from_sections`.
     params : mapping, optional
-        PARAM values that replace the deck's, by name.
+        PARAM values that replace the deck's, keyed by name.
     out : str or Path, optional
-        Folder of ``<deck>.rpt`` and ``<deck>.h5``; the deck's own if left out.  Results of a deck that is
-        no file then stand in a temporary folder, which goes with the returned object.
+        Folder of ``<deck>.rpt`` and ``<deck>.h5``; by default the deck's own.  Results of a deck without a
+        file then go to a temporary folder, which is removed with the returned object.
     name : str, optional
-        Name of these files in place of the deck's, so that runs of one deck keep apart.
+        Name of these files instead of the deck's, to keep runs of one deck separate.
     records : sequence of str or Path, optional
-        Folders where records are looked for, after the deck's.
+        Folders to search for records, after the deck's.
     method : str, optional
         Replaces METHOD of HISTORY.
     dt : float, optional
@@ -54,15 +54,15 @@ def run(
     Returns
     -------
     Results
-        The results file, opened; ``results.status`` is ``done`` or ``stopped``.  It stays as it is when
+        The opened results file; ``results.status`` is ``done`` or ``stopped``.  It stays unchanged when
         another run writes its results under the same name.
 
     Raises
     ------
     ValueError
-        The name is none for a file.
+        The name is not a valid file name.
     DeckError
-        The deck has mistakes; the text names file, line and column of each.
+        The deck has mistakes; the message gives file, line and column of each.
     OSError
         A file cannot be read or written.
     """

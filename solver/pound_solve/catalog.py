@@ -1,7 +1,7 @@
-"""The Catalog of all Specs: every module of a family package that declares a SPEC, of its own name in
-capitals, is in it.
+"""The Catalog of all Specs: it contains every module of a family package that declares a SPEC, whose
+name is the module's in capitals.
 
-A module is imported when its Spec is first asked for: a deck without HISTORY never sees a method.
+A module is imported when its Spec is first requested: a deck without HISTORY never imports a method.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
 
 
 class Members(Mapping[str, Spec]):
-    """Specs of a family by name.
+    """Specs of a family, keyed by name.
 
-    The Spec of a name is in the module of that name, which is imported when it is asked for: a deck with
-    one contact law does not load the others.
+    The Spec of a name is in the module of that name, which is imported on demand: a deck with one contact
+    law does not load the others.
 
     Parameters
     ----------
@@ -64,28 +64,28 @@ class Members(Mapping[str, Spec]):
 
 
 class Families(Catalog):
-    """Catalog that looks up the members of a family only when they are asked for."""
+    """Catalog that looks up the members of a family on demand."""
 
     def families(self) -> tuple[str, ...]:
         """Names of the families."""
         return tuple(FAMILIES)
 
     def family(self, name: str) -> Mapping[str, Spec]:
-        """Specs of a family by name (empty when there are none)."""
+        """Specs of a family, keyed by name (empty if there are none)."""
         return members(name) if name in FAMILIES else {}
 
 
 @cache
 def members(family: str) -> Members:
-    """Return the Specs of a family, in the order of their names."""
+    """Return the Specs of a family, sorted by name."""
     return Members(f"pound_solve.{FAMILIES[family]}")
 
 
 def catalog() -> Catalog:
-    """Return the catalog of all families: the vocabulary that a deck may use."""
+    """Return the catalog of all families: the vocabulary of decks."""
     return Families(())
 
 
 def specs() -> tuple[Spec, ...]:
-    """Return the Specs of all families, in the order of `FAMILIES` and of their names."""
+    """Return the Specs of all families, in the order of `FAMILIES`, then by name."""
     return tuple(spec for family in FAMILIES for spec in members(family).values())

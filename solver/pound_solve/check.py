@@ -1,6 +1,6 @@
 """A check: a number that a run computes about itself, with its allowed range and a verdict.
 
-Methods, analyses and the driver make checks; the report, pictures and sweeps print the same objects.
+Methods, analyses and the driver make checks; the report, pictures and sweeps show the same objects.
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ COLUMNS: Final = ("subject", "check", "value", "unit", "bound", "allowed", "verd
 
 
 class Subject(StrEnum):
-    """Subject that a check is about."""
+    """Subject of a check."""
 
-    EQUILIBRIUM = "equilibrium"  #: of forces at one instant
-    ENERGY = "energy"  #: its balance over the history
-    ERROR = "error"  #: an estimate of the error in time
-    STEPS = "steps"  #: whether the steps follow the motion
-    ROUNDING = "rounding"  #: how far digits are lost
-    MAGNIFICATION = "magnification"  #: of rounding, by the motion
-    PEAKS = "peaks"  #: one peak against another source of it
-    UNIQUENESS = "uniqueness"  #: of the solution
-    STORAGE = "storage"  #: what found no room
-    RESPONSE = "response"  #: values that no engineer would believe, or that end what the model means
+    EQUILIBRIUM = "equilibrium"  #: equilibrium of forces at one instant
+    ENERGY = "energy"  #: energy balance over the history
+    ERROR = "error"  #: estimated error of the time integration
+    STEPS = "steps"  #: whether the steps resolve the motion
+    ROUNDING = "rounding"  #: loss of digits by rounding
+    MAGNIFICATION = "magnification"  #: magnification of rounding errors by the motion
+    PEAKS = "peaks"  #: a peak compared with another source
+    UNIQUENESS = "uniqueness"  #: uniqueness of the solution
+    STORAGE = "storage"  #: data that exceeded its storage
+    RESPONSE = "response"  #: implausible values, or values beyond the validity of the model
 
 
 class Verdict(StrEnum):
-    """Whether a value is good enough."""
+    """Verdict on a value: whether it is good enough."""
 
     GOOD = "good"
-    LOOK = "look"  #: the user should look at it
+    LOOK = "look"  #: the user should examine it
 
 
 class Bound(StrEnum):
@@ -42,7 +42,7 @@ class Bound(StrEnum):
 
     MOST = "at most"
     LEAST = "at least"
-    NONE = ""  #: on both: a value to know, or to look at in any case
+    NONE = ""  #: both sides: for information, or always to be examined
 
 
 @dataclass(frozen=True)
@@ -53,16 +53,16 @@ class Check:
     ----------
     subject : Subject
     name : str
-        What was checked, with the place.
+        Checked quantity, with its place.
     value : float
-        What was found.
+        Computed value.
     bound, allowed : Bound, float
-        What it may be; NaN without a bound.
+        Allowed range; NaN without a bound.
     verdict : Verdict
     remark : str
-        What to do about it, or how to read it; empty where a good value needs none.
+        Remedy or explanation; empty if a good value needs none.
     unit : str
-        Of `value` and `allowed`, in the deck's units; empty for a pure number.
+        Unit of `value` and `allowed`, in the deck's units; empty for a pure number.
     """
 
     subject: Subject
@@ -76,7 +76,7 @@ class Check:
 
     @property
     def looks(self) -> bool:
-        """Whether the user should look at the value."""
+        """Whether the user should examine the value."""
         return self.verdict is Verdict.LOOK
 
     @property
@@ -86,7 +86,7 @@ class Check:
 
     @property
     def severity(self) -> tuple[bool, float]:
-        """Sort key that is larger for the worse of two checks of one name."""
+        """Sort key, larger for the worse of two checks of one name."""
         value = -self.value if self.bound is Bound.LEAST else self.value
         return self.looks, math.inf if math.isnan(value) else value
 
@@ -101,7 +101,7 @@ class Check:
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> Self:
-        """Make a check from a row of the table `checks`, given by its columns."""
+        """Make a check from a row of the table `checks`, keyed by column."""
         subject, name, value, unit, bound, allowed, verdict, remark = (row[column] for column in COLUMNS)
         return cls(
             Subject(subject),
@@ -118,7 +118,7 @@ class Check:
 def at_most(
     subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = ""
 ) -> Check:
-    """Make a check that a value is at most `allowed`; `remark` is kept only where it is not, or is NaN."""
+    """Make a check that a value is at most `allowed`; keep `remark` only if it is larger or NaN."""
     check = Check(subject, name, float(value), Bound.MOST, float(allowed), remark=remark, unit=unit)
     return _judged(check, check.value <= check.allowed)
 
@@ -126,13 +126,13 @@ def at_most(
 def at_least(
     subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = ""
 ) -> Check:
-    """Make a check that a value is at least `allowed`; `remark` is kept only where it is not, or is NaN."""
+    """Make a check that a value is at least `allowed`; keep `remark` only if it is smaller or NaN."""
     check = Check(subject, name, float(value), Bound.LEAST, float(allowed), remark=remark, unit=unit)
     return _judged(check, check.value >= check.allowed)
 
 
 def beyond(subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = "") -> Check:
-    """Make a check to look at whatever its value: it has reached its bound, or it proves nothing."""
+    """Make a check that the user should always examine: its bound is reached, or it proves nothing."""
     check = Check(subject, name, float(value), Bound.MOST, float(allowed), remark=remark, unit=unit)
     return _judged(check, False)
 
@@ -142,7 +142,7 @@ def _judged(check: Check, good: bool) -> Check:
 
 
 def worst(checks: Iterable[Check]) -> list[Check]:
-    """Worst of all checks of one name, such as those of the parts of a history."""
+    """Worst check of each name, such as among the parts of a history."""
     by_name = dict[tuple[Subject, str], Check]()
     for check in checks:
         kept = by_name.setdefault((check.subject, check.name), check)
@@ -152,5 +152,5 @@ def worst(checks: Iterable[Check]) -> list[Check]:
 
 
 def looked(checks: Iterable[Check]) -> list[Check]:
-    """Checks that the user should look at."""
+    """Checks that the user should examine."""
     return [check for check in checks if check.looks]

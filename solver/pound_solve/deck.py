@@ -1,4 +1,4 @@
-"""A deck that is no file: its text, or its sections as a dictionary."""
+"""A deck without a file: its text, or its sections as a dictionary."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from numbers import Integral, Real
 from pathlib import PurePath
 from typing import Any, Final, Self
 
-PLACE: Final = "<text>"  #: what messages call a deck that is no file
+PLACE: Final = "<text>"  #: name of a deck without a file in messages
 
 
 @dataclass(frozen=True, slots=True)
 class Deck:
     """The text of a deck, for `pound_solve.run`.
 
-    INCLUDE and records count from the working folder.
+    Paths of INCLUDE and of records are relative to the working folder.
 
     Parameters
     ----------
     text : str
-        The lines of the deck.
+        Lines of the deck.
     name : str
         Stem of the names of its report and its results file.
     """
@@ -30,20 +30,20 @@ class Deck:
 
     @classmethod
     def from_text(cls, text: str, name: str = "deck") -> Self:
-        """Deck of a text; messages name its lines and columns under ``<text>``."""
+        """Make a deck from a text; messages give its lines and columns under ``<text>``."""
         return cls(text, name)
 
     @classmethod
     def from_sections(cls, sections: Mapping[str, Any], name: str = "deck") -> Self:
-        """Deck of a dictionary.
+        """Make a deck from a dictionary.
 
         Parameters
         ----------
         sections : mapping of str to object
-            In the order of the deck, each section or single card by its name.  A text or a number is what
-            follows the name on its line: ``{"TITLE": "Two frames"}``.  A mapping gives named items there:
-            ``{"PARAM": {"gap": 0.02}}``.  A list holds the lines of a section, and each line is a text, or
-            a list of its items, of which a mapping gives the named ones:
+            Sections and single cards by name, in the order of the deck.  A text or a number follows the
+            name on its line: ``{"TITLE": "Two frames"}``.  A mapping gives named items there:
+            ``{"PARAM": {"gap": 0.02}}``.  A list contains the lines of a section; each line is a text or a
+            list of items, in which a mapping gives the named ones:
             ``{"NODES": [(1, 0, 0, {"FIX": "XYR"}), "2 0 3"]}``.
         name : str
             Stem of the names of its report and its results file.
@@ -51,7 +51,7 @@ class Deck:
         Raises
         ------
         TypeError
-            Something in it is no text, number, list or mapping.
+            A value is not a text, number, list or mapping.
         """
         lines: list[str] = []
         for head, content in sections.items():
@@ -63,7 +63,7 @@ class Deck:
 
 
 def _line(content: object) -> str:
-    """Text of one line of a deck, made of one item, a list of items, or a mapping of named ones."""
+    """Text of one line of a deck from one item, a list of items, or a mapping of named ones."""
     if isinstance(content, Mapping):
         return " ".join(f"{key}={_item(value)}" for key, value in content.items())
     if isinstance(content, list | tuple):
@@ -72,7 +72,7 @@ def _line(content: object) -> str:
 
 
 def _item(value: object) -> str:
-    """Value as a deck writes it: several joined by commas, a path in quotes."""
+    """Value in deck syntax: several joined by commas, a path in quotes."""
     if isinstance(value, str):
         return value
     if isinstance(value, PurePath):

@@ -1,9 +1,9 @@
-"""Signals that end a run: the first ends it with its results, the second at once.
+"""Signals that end a run: the first ends it with its results, the second immediately.
 
 Ctrl-C, the request of a scheduler to end (SIGTERM) and the loss of the terminal (SIGHUP; on Windows the
-closing of the console) are answered alike.
+closing of the console) are handled alike.
 
-What must not be broken off, as a write of HDF5, stands within `undisturbed`.
+Operations that must not be interrupted, such as a write of HDF5, run within `undisturbed`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SIGNALS: Final = tuple(
 class Interruption:
     """Within this context, the first signal raises `KeyboardInterrupt` and the second ends the process.
 
-    A library that catches every exception also catches one that a signal raises within one of its calls:
+    A library that catches every exception may also catch one that a signal raises within its calls:
     `check` raises it again.  A signal that the caller ignores (``nohup``) stays ignored.
     """
 
@@ -35,7 +35,7 @@ class Interruption:
         self._before: dict[int, object] = {}
 
     def __enter__(self) -> Self:
-        if threading.current_thread() is threading.main_thread():  # Python's rule for handlers
+        if threading.current_thread() is threading.main_thread():  # Python allows handlers only there
             for number in SIGNALS:
                 if signal.getsignal(number) is not signal.SIG_IGN:
                     self._before[number] = signal.signal(number, self._take)
@@ -58,7 +58,7 @@ class Interruption:
         raise KeyboardInterrupt
 
     def check(self) -> None:
-        """Raise `KeyboardInterrupt` once if a signal has come that a library kept back."""
+        """Raise `KeyboardInterrupt` once if a library has suppressed that of a signal."""
         if self.pending:
             self.pending = False
             raise KeyboardInterrupt
@@ -66,14 +66,14 @@ class Interruption:
 
 @contextmanager
 def undisturbed() -> Iterator[Callable[[], None]]:
-    """Within this context a signal raises nothing: `KeyboardInterrupt` waits for its end, or for a call of
-    what the context yields, where the block is ready to end.
+    """Within this context a signal raises nothing: `KeyboardInterrupt` waits for the end of the context, or
+    for a call of the yielded function, with which the block offers to end.
 
-    An exception raised amid a write of HDF5 would count as a write that failed, and one amid the record of
-    a motion would count an event twice.  To block the signals of this thread would not do: the system hands
-    them to another thread, and Python answers them in this one.  The handlers themselves run at once, so
-    that a second signal still ends the process.  Where the block raises an exception of its own, that one
-    holds; `Interruption.check` tells of the signal later.
+    An exception during a write of HDF5 would count as a failed write, and one during the recording of a
+    motion would count an event twice.  Blocking the signals of this thread is not enough: the system passes
+    them to another thread, and Python handles them in this one.  The handlers themselves run immediately,
+    so that a second signal still ends the process.  If the block raises its own exception, that one
+    prevails; `Interruption.check` reports the signal later.
     """
     waiting: list[KeyboardInterrupt] = []
 
@@ -81,7 +81,7 @@ def undisturbed() -> Iterator[Callable[[], None]]:
         if waiting:
             raise waiting.pop()
 
-    if threading.current_thread() is not threading.main_thread():  # where no handler ever runs
+    if threading.current_thread() is not threading.main_thread():  # no handler ever runs there
         yield answer_now
         return
 

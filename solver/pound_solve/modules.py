@@ -1,4 +1,4 @@
-"""Modules of a package, found by their files, so that new ones need no registration."""
+"""Modules of a package, discovered by file, so that new ones need no registration."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from types import ModuleType
 
 
 def modules_below(package: ModuleType) -> list[str]:
-    """Dotted names of all modules in a package and in the folders below it, by name; none is imported."""
+    """Dotted names of all modules in a package and its subfolders, sorted; none is imported."""
     names = []
     for folder in map(Path, package.__path__):
         for path in folder.rglob("[!_]*.py"):

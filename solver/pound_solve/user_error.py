@@ -1,15 +1,15 @@
-"""The base of all errors that a user can mend."""
+"""The base class of all errors that a user can correct."""
 
 
 class UserError(Exception):
-    """What a user asked for cannot be done; the text says why, and what would help.
+    """Raised if a request cannot be fulfilled; the message gives the reason and a remedy.
 
     Attributes
     ----------
     status : int
         Exit status of the command line: 2 for mistakes, 3 for files.
     has_places : bool
-        Whether the text consists of messages with their places.
+        Whether the message consists of diagnostics with their places.
     """
 
     status, has_places = 2, False

@@ -1,3 +1,3 @@
-"""Version of the program; stands alone, so that every room may name it."""
+"""Version of the program, in its own module so that every package may import it."""
 
 __version__ = "0.2.0"

@@ -1,4 +1,4 @@
-"""Identity of a saved state: all parts of a deck that the motion depends on, as texts to be compared."""
+"""Identity of a saved state: all parts of a deck that affect the motion, as texts for comparison."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pound_deck.model import Card, Model
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
 
-MOTION = "motion"  #: first word of what another earthquake changes
+MOTION = "motion"  #: first word of the parts that another earthquake changes
 
 
 def identity(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> dict[str, str]:
-    """Structure and loading of a deck as text: for each part its name and its values with all digits."""
+    """Structure and loading of a deck as text: the name of each part and its values with all digits."""
     return dict(_parts(model, motions, forces))
 
 
@@ -39,18 +39,18 @@ def _parts(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> 
 
 
 def _values(card: Card, leave_out: str = "") -> str:
-    """Text of the kind and the values of a card."""
+    """Text of a card's kind and values."""
     values = (f"{k}={_text(v)}" for k, v in card.values.items() if k != leave_out and v is not None)
     return " ".join((card.spec.name, *values))
 
 
 def _text(value: object) -> str:
-    """A value with all its digits and without blanks."""
+    """Text of a value with all its digits and without blanks."""
     return ",".join(map(_text, value)) if isinstance(value, tuple) else str(value).replace(" ", "_")
 
 
 def differences(present: Mapping[str, str], saved: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Yield the name of every part that differs, with a text of what it is here and in the saved state."""
+    """Yield the name of every part that differs, with a text of its present and its saved value."""
     for name in dict.fromkeys((*present, *saved)):
         here, there = present.get(name, ""), saved.get(name, "")
         if here != there:

@@ -1,4 +1,4 @@
-"""Ground motions and forces in time of a deck, and the state that a history continues from."""
+"""Ground motions and time-dependent forces of a deck, and the state from which a history continues."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from pound_solve.numerics.types import Array
 from pound_solve.results import Results, ResultsError
 from pound_solve.version import __version__
 
-#: motions that are doubted; pulses and sines are those of a textbook, and may be cut
+#: motions to be checked; pulses and sines are textbook motions, which may be truncated
 EARTHQUAKES: Final = ("RECORD", "SYNTHETIC", "MATCHED")
-LEAST_ACTED: Final = 0.2  #: share of the Arias intensity of an earthquake before the end of a history
-MOST: Final = 6  #: differences from a saved run that are named
+LEAST_ACTED: Final = 0.2  #: least share of an earthquake's Arias intensity before the end of a history
+MOST: Final = 6  #: differences from a saved run in a message
 
 
 def context(model: Model, request: Request) -> LoadingContext:
@@ -39,7 +39,7 @@ def context(model: Model, request: Request) -> LoadingContext:
 
 
 def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Motion]:
-    """Ground motions of all EQUAKE cards, a wave as one for each place."""
+    """Ground motions of all EQUAKE cards; a wave gives one for each place."""
     motions: list[Motion] = []
     place = {node.id: node.x for node in model.nodes.values()}
     apart = [card for card in model.equake if card["SUPPORTS"] is not None]
@@ -66,7 +66,7 @@ def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagno
 
 
 def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]:
-    """Warn of a history that ends before the share `LEAST_ACTED` of the Arias intensity has acted."""
+    """Warn if a history ends before the share `LEAST_ACTED` of the Arias intensity has acted."""
     histories = [c for c in model.analyses if c.spec.name == "HISTORY" and not c["RESTART"]]
     for history in histories if card.spec.name in EARTHQUAKES else ():
         unit, end = model.units.time, motion.acceleration.end
@@ -81,7 +81,7 @@ def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]
 
 
 def forces(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Force]:
-    """Forces in time of all FORCES cards."""
+    """Time-dependent forces of all FORCES cards."""
     forces: list[Force] = []
     for card in model.forces:
         force: Force | None = _built(card, surroundings, diagnostics)
@@ -92,7 +92,7 @@ def forces(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnos
 
 
 def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) -> None:
-    """Warn where a card cuts off parts of its motion, and where its record contradicts its header."""
+    """Warn if a card truncates its motion, and if its record contradicts its header."""
     notes = info.get("notes", ())
     cuts = info.get("cuts", ())
     diagnostics += [
@@ -102,7 +102,7 @@ def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) ->
 
 
 def _built(card: Card, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> Any:
-    """Motion or force of a card of EQUAKE or FORCES; None, with a diagnostic, where it has a mistake."""
+    """Motion or force of a card of EQUAKE or FORCES; None, with a diagnostic, if it has a mistake."""
     try:
         return card.spec.impl(card.values, surroundings)
     except RecordError as err:
@@ -117,14 +117,14 @@ def saved_state(
     forces: Sequence[Force],
     diagnostics: list[Diagnostic],
 ) -> dict[str, Array]:
-    """State that a history with RESTART continues from, out of a results file; empty without RESTART.
+    """State in a results file from which a history with RESTART continues; empty without RESTART.
 
     Parameters
     ----------
     motions, forces : sequence
         Those of this deck.
     diagnostics : list of Diagnostic
-        Gets what keeps the state from being used.
+        Receives the reasons why the state cannot be used.
     """
     for card in model.analyses:
         if card.spec.name == "HISTORY" and card["RESTART"]:
@@ -138,7 +138,7 @@ def saved_state(
 def _taken_up(
     card: Card, path: Path, signature: Mapping[str, str], diagnostics: list[Diagnostic]
 ) -> dict[str, Array]:
-    """State of a results file, at time zero for NEW=MOTION; adds diagnostics where it does not fit."""
+    """State of a results file, at time zero for NEW=MOTION; adds diagnostics if it does not fit."""
     place, message, hint = card.place("RESTART"), "", ""
     try:
         with Results.open(path) as results:

@@ -17,15 +17,15 @@ from pound_solve.loading.records.known import find
 from pound_solve.results.form import FILETYPE
 from pound_solve.results.whole_file import partial
 
-START: Final = 2**16  #: bytes of a file in which our mark stands
-#: of our files, by their endings
+START: Final = 2**16  #: leading bytes of a file that contain our mark
+#: marks of our files, keyed by ending
 MARKS: Final = {".h5": FILETYPE.encode(), ".rpt": b"POUND-SOLVE"}
 
 
 def overwritten(model: Model, request: Request, context: LoadingContext) -> list[Diagnostic]:
-    """Diagnostics for a deck, an included file, a record or a saved state that an output would replace.
+    """Diagnostics for a deck, an included file, a record or a saved state that an output would overwrite.
 
-    Results may replace those that a RESTART goes on from: these are read before and stand until the end.
+    Results may replace those from which a RESTART continues: these are read before and kept until the end.
     """
     results, report = request.path(".h5"), request.path(".rpt")
     outputs = {path.resolve() for path in (results, report, partial(results), partial(report))}
@@ -39,7 +39,7 @@ def overwritten(model: Model, request: Request, context: LoadingContext) -> list
 
 
 def taken(request: Request) -> list[Diagnostic]:
-    """Diagnostics for files at the paths of results and report that this program has not written."""
+    """Diagnostics for files of other programs at the paths of results and report."""
     marks = {request.path(suffix): mark for suffix, mark in MARKS.items()}
     return [
         Diagnostic(
@@ -54,7 +54,7 @@ def taken(request: Request) -> list[Diagnostic]:
 
 
 def _of_others(path: Path, mark: bytes) -> bool:
-    """Whether a path is a file, not empty, without our mark, or a folder, a pipe or a device."""
+    """Whether a path is a non-empty file without our mark, a folder, a pipe or a device."""
     if not path.is_file():
         return path.exists()
     with suppress(OSError), opened(path) as file:
@@ -64,12 +64,12 @@ def _of_others(path: Path, mark: bytes) -> bool:
 
 
 def _read(model: Model, request: Request, context: LoadingContext) -> Iterator[tuple[Path, Span | None]]:
-    """Yield the files that the run reads, and the places where the deck names them."""
+    """Yield the files that the run reads, with the places where the deck names them."""
     for name in model.files:
         yield Path(name), None
     for card in (*model.equake, *model.forces):
         if card.values.get("FILE"):
-            with suppress(RecordError):  # reported where it is read
+            with suppress(RecordError):  # reported on reading
                 yield find(str(card["FILE"]), context.search_path), card.place("FILE")
     for card in model.analyses:
         path = Path(request.deck).parent / str(card.values.get("RESTART") or "")

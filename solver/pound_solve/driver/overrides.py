@@ -1,4 +1,4 @@
-"""Replacement of items of the deck by a request: METHOD, DT, TOL of every HISTORY, and the ground motion.
+"""Replacement of deck items by a request: METHOD, DT, TOL of every HISTORY, and the ground motion.
 
 ``--set`` replaces PARAMs when the deck is read.
 """
@@ -15,13 +15,13 @@ from pound_deck.schema import REQUIRED, Field, Spec, out_of_limits
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
 
-#: items of a motion that tell how it meets the structure
+#: items of a motion that define how it acts on the structure
 MEETING: Final = ("DIRECTION", "SUPPORTS", "WAVE", "ABOUT")
 
 
 def overridden(model: Model, request: Request, diagnostics: list[Diagnostic]) -> Model:
-    """The model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards and with the motion of the
-    request; mistakes go into `diagnostics`.
+    """Return the model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards and with the motion of
+    the request; add mistakes to `diagnostics`.
     """
     if request.motion is not None:
         model = with_motion(model, request.motion, diagnostics)
@@ -45,10 +45,10 @@ def overridden(model: Model, request: Request, diagnostics: list[Diagnostic]) ->
 
 
 def with_motion(model: Model, motion: Card, diagnostics: list[Diagnostic]) -> Model:
-    """Model with a motion in place of the one under EQUAKE.
+    """Return the model with another motion instead of the one under EQUAKE.
 
-    The record is the other motion's, with all that tells how it is read and scaled.  How it meets the
-    structure, the items `MEETING`, stays that of the deck's line.
+    The record and the items that define its reading and scaling are the other motion's.  The items
+    `MEETING`, which define how it acts on the structure, stay those of the deck's line.
     """
     if len(model.equake) != 1:
         message = (
@@ -65,7 +65,7 @@ def with_motion(model: Model, motion: Card, diagnostics: list[Diagnostic]) -> Mo
 def _changed(
     card: Card, name: str | None, asked: Mapping[str, float], diagnostics: list[Diagnostic]
 ) -> Card | None:
-    """HISTORY card with the requested method and items; None, with diagnostics, where they are wrong."""
+    """HISTORY card with the requested method and items; None, with diagnostics, if they are wrong."""
     method = _method(name or card["METHOD"], diagnostics)
     if method is None:
         return None
@@ -83,7 +83,7 @@ def _changed(
 
 
 def _method(name: str, diagnostics: list[Diagnostic]) -> Spec | None:
-    """Spec of a method by its name; None, with a diagnostic, where there is none."""
+    """Spec of a method by its name; None, with a diagnostic, if it does not exist."""
     methods = catalog().family("method")
     method = methods.get(name.upper())
     if method is None:
@@ -93,15 +93,15 @@ def _method(name: str, diagnostics: list[Diagnostic]) -> Spec | None:
 
 
 def option(item: str) -> Span:
-    """Place, for diagnostics, of an item of HISTORY that comes from an option of the request."""
+    """Place, for diagnostics, of a HISTORY item that an option of the request sets."""
     return Span(f"--{item.lower()}", 1, 1, 2)
 
 
 def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnostic]:
-    """Yield diagnostics for requested numbers out of limits, and warnings for items that the method lacks.
+    """Yield diagnostics for requested values out of limits, and warnings for items that the method lacks.
 
-    Limits are those of the method's items; of an item that it lacks, those of another method.  The method
-    is None for a deck without HISTORY.
+    The limits are those of the method's items, or for an item that it lacks, those of another method.  The
+    method is None for a deck without HISTORY.
     """
     for item, value in asked.items():
         field = method.field(item) if method else None
@@ -114,7 +114,7 @@ def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnosti
 
 
 def _unfit(card: Card, method: Spec, asked: Mapping[str, float]) -> Iterator[Diagnostic]:
-    """Yield diagnostics for items that the card's line gives and a requested method does not take so."""
+    """Yield diagnostics for items on the card's line that a requested method does not accept."""
     for field in method.fields:
         stated = field.name in card.spans and field.name not in asked
         if stated and (wrong := _outside(card.values[field.name], field)):
@@ -128,9 +128,9 @@ def _outside(value: Any, field: Field) -> str:
 
 
 def with_method(card: Card, method: Spec, settings: Mapping[str, Any]) -> Card:
-    """HISTORY card with another method.  Its items are those of `settings`, else those that the card's line
-    gives within the method's limits, else the method's defaults; both may differ between methods for the
-    same item.
+    """HISTORY card with another method.  Its items are those of `settings`, else those on the card's line
+    within the method's limits, else the method's defaults; limits and defaults of an item may differ
+    between methods.
     """
     items = {
         f.name: card.values[f.name]

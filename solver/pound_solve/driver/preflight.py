@@ -1,4 +1,4 @@
-"""Checks of an assembled structure before anything is computed: one function for each."""
+"""Checks of an assembled structure before the analyses: one function for each."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from pound_solve.structure.checks.weights import far, misarmed, misweighed, outs
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.structure import Structure
 
-MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
-MOST_ROWS: Final = 5 * 10**6  #: of stored histories
+MOST_STEPS: Final = 10**8  #: steps of a history: hours for a small structure
+MOST_ROWS: Final = 5 * 10**6  #: rows of stored histories
 
 
 def pressed(structure: Structure) -> list[Diagnostic]:
@@ -65,13 +65,13 @@ def too_many(structure: Structure) -> list[Diagnostic]:
 
 
 def unsteady(structure: Structure) -> list[Diagnostic]:
-    """Report buildings that are mechanisms; where there are none, those that could move as one body."""
+    """Report buildings that are mechanisms; if there are none, those that could move as a rigid body."""
     return loose(structure, standing(structure)) or adrift(structure)
 
 
 def misbuilt(structure: Structure) -> list[Diagnostic]:
-    """Report buildings that are `unsteady`, for each the first wrong one of height, period and weight, and
-    what does not fit their periods.
+    """Report buildings that are `unsteady`, for each the first implausible one of height, period and
+    weight, and values inconsistent with their periods.
     """
     parts, first = standing(structure), dict[str, Diagnostic]()
     wrong = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
@@ -84,12 +84,12 @@ def misbuilt(structure: Structure) -> list[Diagnostic]:
 
 
 def rounded_up(x: float) -> float:
-    """Round up to a number of one significant digit."""
+    """Round up to one significant digit."""
     unit = 10.0 ** floor(log10(x))
     return ceil(x / unit * (1.0 - 1e-12)) * unit
 
 
-#: those that neither ask for contacts nor for damping: they may tell why these could not be built
+#: checks that need neither contacts nor damping: they may explain why these could not be built
 FRAME_CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     massless,
     immovable,
@@ -125,7 +125,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
 
 
 def causes(structure: Structure) -> list[Diagnostic]:
-    """Diagnostics of a structure that could not be assembled with its damping and contacts."""
+    """Diagnostics of a structure whose damping and contacts could not be assembled."""
     return [diagnostic for check in (unsteady, *FRAME_CHECKS) for diagnostic in check(structure)]
 
 

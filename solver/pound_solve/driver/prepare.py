@@ -1,4 +1,4 @@
-"""From the deck to the assembled structure: all mistakes that can be told before anything is computed."""
+"""From the deck to the assembled structure, with all mistakes that are detectable before the analyses."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ LATER = "Records and the structure are checked when these mistakes are gone."
 
 
 class DeckError(UserError):
-    """Raised where the deck has mistakes: `diagnostics` are those that could be found, `files` the texts
-    that they are in, and `later` says what was not checked because of them.
+    """Raised if the deck has mistakes: `diagnostics` are those found, `files` the texts that contain them,
+    and `later` says what was not checked because of them.
     """
 
     has_places = True
@@ -45,9 +45,9 @@ class DeckError(UserError):
 
 @dataclass(frozen=True)
 class Prepared:
-    """A deck that is read and checked, its motions, its forces in time and its assembled structure.
+    """A checked deck, its motions, its time-dependent forces and its assembled structure.
 
-    `saved` is the state that its history goes on from, or empty.
+    `saved` is the state from which its history continues, or empty.
     """
 
     model: Model
@@ -61,7 +61,7 @@ class Prepared:
 
 @dataclass(frozen=True)
 class Ground:
-    """Ground motions of a deck, read without its structure, and the diagnostics."""
+    """Ground motions of a deck, without its structure, and the diagnostics."""
 
     model: Model
     motions: tuple[Motion, ...]
@@ -70,13 +70,13 @@ class Ground:
 
 
 def ground(request: Request, deck: Deck | None = None) -> Ground:
-    """Motions of the EQUAKE cards of a deck, a wave as one for each place.
+    """Motions of the EQUAKE cards of a deck; a wave gives one for each place.
 
     Parameters
     ----------
     request : Request
     deck : Deck, optional
-        In place of that which the request names.
+        Replaces the one that the request names.
 
     Raises
     ------
@@ -95,12 +95,12 @@ def ground(request: Request, deck: Deck | None = None) -> Ground:
 
 
 def prepare(request: Request) -> Prepared:
-    """Read a deck, its records, and assemble the structure.
+    """Read a deck and its records, and assemble the structure.
 
     Raises
     ------
     DeckError
-        The deck, a record or the structure has mistakes: all that can be told at once.
+        The deck, a record or the structure has mistakes; the error contains all that are detectable.
     OSError
         The deck cannot be read.
     """
@@ -115,7 +115,7 @@ def prepare(request: Request) -> Prepared:
 def assembled(
     request: Request, model: Model | None, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]
 ) -> Prepared:
-    """Read the records of a deck that was read, and assemble the structure; see `prepare`."""
+    """Read the records of a deck and assemble the structure; see `prepare`."""
     if model is None or has_errors(diagnostics):
         raise DeckError(diagnostics, files, LATER)
     remarks = list(diagnostics)
@@ -138,12 +138,12 @@ def assembled(
 
 
 def shaken(ready: Prepared, request: Request) -> Prepared:
-    """Return the prepared deck with the motion of another request, its structure unchanged.
+    """Return the prepared deck with the motion of another request and an unchanged structure.
 
     Parameters
     ----------
     ready : Prepared
-        Of a request that differs in its motion only.
+        Prepared from a request that differs only in its motion.
     request : Request
         With a motion.
 
@@ -164,7 +164,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
-    """Assemble the structure with the loads that STATIC asks for, and its damping."""
+    """Assemble the structure with the loads that STATIC requests, and its damping."""
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
     statics = [c for c in model.analyses if c.spec.name == "STATIC"]
     if any(c["GRAVITY"] == "YES" for c in statics):
@@ -188,7 +188,7 @@ def _causes(model: Model) -> list[Diagnostic]:
 
 
 def _damp_loaded(structure: Structure) -> None:
-    """Add the damping that is made of modes in the static state.
+    """Add the damping that is computed from modes in the static state.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def _damp_loaded(structure: Structure) -> None:
 
 
 def _weighed(model: Model) -> Model:
-    """Model with its nodal weights as additional loads (STATIC GRAVITY=YES)."""
+    """Return the model with its nodal weights as additional loads (STATIC GRAVITY=YES)."""
     extra = []
     for card in model.weights:
         wy = card["WX"] if card["WY"] is None else card["WY"]

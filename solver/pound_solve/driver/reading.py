@@ -1,4 +1,4 @@
-"""From a deck's file to its model, be it a deck of this program or one of Ruaumoko-2D."""
+"""From the file of a deck, of this program or of Ruaumoko-2D, to its model."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
     from pound_legacy.equake import File
     from pound_legacy.importer import Translation
 
-AS_READ: Final = " as read"  #: ends the name of the deck that was made of an old one
+AS_READ: Final = " as read"  #: suffix of the name of a deck converted from an old one
 
 
 class Deck(NamedTuple):
-    """A deck that was read.
+    """A deck as read.
 
     Attributes
     ----------
     model : Model or None
-        None where there are mistakes.
+        None if there are mistakes.
     diagnostics : list of Diagnostic
     files : dict of str to str
-        Texts by the names in spans.
+        Texts, keyed by the names in spans.
     translation : Translation or None
-        Of an old deck.
+        The translation of an old deck.
     """
 
     model: Model | None
@@ -41,14 +41,14 @@ class Deck(NamedTuple):
     translation: Translation | None = None
 
     def moved(self, diagnostics: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
-        """Diagnostics moved to lines of the user's file `name`, where that is an old deck."""
+        """Diagnostics with lines of the user's file `name`, if that is an old deck."""
         return (
             self.translation.moved(diagnostics, name + AS_READ) if self.translation else list(diagnostics)
         )
 
 
 def is_deck(name: str) -> bool:
-    """Whether a file is a deck, by its ending, or an old one, by its first lines."""
+    """Whether a file is a deck (by its ending) or an old one (by its first lines)."""
     return name.endswith(".inp") or (os.path.isfile(name) and recognised(name))
 
 
@@ -58,7 +58,7 @@ def read(request: Request) -> Deck:
     Raises
     ------
     OSError
-        It cannot be read.
+        The deck cannot be read.
     """
     name = request.deck
     if os.path.realpath(name) in request.unsaved or not recognised(name):

@@ -1,4 +1,4 @@
-"""A RECORD card that stands in no deck: its items are written as a deck has them, and read as a deck is."""
+"""A RECORD card outside any deck: its items are written and read like those of a deck."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ EQUAKE
 
 
 def read(file: str, items: Sequence[str], source: str) -> Reading:
-    """Model of a small deck in kN, m and s whose one motion is the record, see `read_text`.
+    """Return the model of a small deck in kN, m and s whose only motion is the record; see `read_text`.
 
     Parameters
     ----------
     file : str
         FILE of the card.
     items : sequence of str
-        ``NAME=value``, the other items of the card.
+        The other items of the card, ``NAME=value``.
     source : str
-        Name that the places of mistakes bear.
+        Source name in the places of mistakes.
     """
     card = " ".join([f' RECORD "{file}"', *map(_item, items)])
     return read_text(f"{_AROUND}{card}\n", catalog(), name=source)
 
 
 def _item(text: str) -> str:
-    """An item as a deck writes it: a word with a slash, as of a unit, in quotes."""
+    """An item in deck syntax: a word with a slash, such as a unit, gets quotes."""
     name, _, value = " ".join(text.split()).partition("=")
     return f'{name}="{value}"' if re.fullmatch(r"[A-Za-z]+/[A-Za-z]\w*", value) else f"{name}={value}"

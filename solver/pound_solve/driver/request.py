@@ -1,4 +1,4 @@
-"""Request for a run: the deck, and the options that the user gives."""
+"""Request for a run: the deck and the user's options."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pound_deck.model import Card
 
 @dataclass(frozen=True)
 class Request:
-    """Options of a run that the user chooses.
+    """The user's options for a run.
 
     Attributes
     ----------
@@ -22,22 +22,22 @@ class Request:
     out : Path or None
         Folder of report and results; None for the deck's.
     records : tuple of Path
-        Folders where records are looked for, after the deck's own.
+        Folders to search for records, after the deck's own.
     method, dt, tol : str or None, float or None
         Replace METHOD, DT and TOL of every HISTORY.
     explain : bool
-        Put what the run imports, compiles and holds into the results.
+        Record in the results what the run imports, compiles and stores.
     unsaved : mapping of str to str
-        Texts of an editor by real path, read in place of these files.
+        Texts of an editor, keyed by real path, which replace these files.
     name : str or None
         Name of report and results without their endings; None for the deck's.
     motion : Card or None
-        RECORD that takes the place of the deck's one line under EQUAKE, see `overrides.with_motion`.
+        RECORD that replaces the deck's only line under EQUAKE; see `overrides.with_motion`.
 
     Raises
     ------
     ValueError
-        The name is none for a file.
+        The name is not a valid file name.
     """
 
     deck: str

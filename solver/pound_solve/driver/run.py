@@ -40,7 +40,7 @@ __all__ = (
 )
 
 DONE, STOPPED, MISTAKES, FILES = range(4)  #: exit statuses
-#: messages of runs that did not come to an end of their own: interrupted, refused, without room on the disk
+#: messages of runs that did not end normally: interrupted, refused, or stopped by a full disk
 BROKEN_OFF: Final = ("A505", "A506", "A508")
 
 
@@ -50,11 +50,11 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     Returns
     -------
     status : int
-        `DONE`, or `STOPPED` when an analysis ended early (what was computed is kept), or `FILES` when the
+        `DONE`, or `STOPPED` if an analysis ended early (its results so far are kept), or `FILES` if the
         disk was full.
     results : Results
-        The results file, opened.  A run that was broken off replaces no older results; then the file has
-        the name `partial`.
+        The opened results file.  An interrupted run replaces no older results; its file is then named
+        `partial`.
     prepared : Prepared
         The model and its warnings.
 
@@ -73,14 +73,14 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     path.parent.mkdir(parents=True, exist_ok=True)
     with writer_of(ready, partial(path)) as writer:
         message = analyse(ready, writer, progress, began, request)
-        with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to break off
+        with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to interrupt
             path = put_in_place(path, report_of(partial(path)), whole=not message.startswith(BROKEN_OFF))
     status = FILES if message.startswith("A508") else STOPPED if message else DONE
     return status, Results.open(path), ready
 
 
 def in_temporary_folder(request: Request) -> Results:
-    """Run a deck into a folder that is removed with the results; see `execute`."""
+    """Run a deck in a folder that is removed with the results; see `execute`."""
     folder = Path(tempfile.mkdtemp(prefix="pound-solve-"))
     try:
         results = execute(replace(request, out=folder))[1]
@@ -92,7 +92,7 @@ def in_temporary_folder(request: Request) -> Results:
 
 
 def writer_of(ready: Prepared, path: Path) -> Writer:
-    """Writer of a results file of a prepared deck."""
+    """Writer of the results file of a prepared deck."""
     return Writer(path, title=ready.model.title, units=ready.model.units, program_version=__version__)
 
 
@@ -105,23 +105,23 @@ def analyse(
     ----------
     ready : Prepared
     writer : Writer
-        It is closed in the end.
+        Closed at the end.
     progress : callable or None
     began : float
-        Reading of `time.perf_counter` from which the total time counts.
+        Reading of `time.perf_counter` at the start of the total time.
     request : Request
-        Tells which PARAMs do not come from the deck, and whether to explain.
+        Gives the PARAMs that are not from the deck, and whether to explain.
 
     Returns
     -------
     str
-        Number and text of the message that says why the analyses stopped; empty if they did not.
+        Number and text of the message on why the analyses stopped; empty if they did not.
     """
     message = AnalysisSequence(ready, request, writer, progress, began).run()
-    with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to break off
+    with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to interrupt
         try:
             writer.finish("stopped" if message else "done", message)
-        except NoRoomError:  # what is reserved is free from now on
+        except NoRoomError:  # the reserved space is free from now on
             message = message or NO_ROOM
             writer.finish("stopped", message)
         writer.close()
@@ -131,7 +131,7 @@ def analyse(
 def solve(
     ready: Prepared, path: Path, progress: Progress | None, began: float, request: Request
 ) -> Results:
-    """Run the analyses of a prepared deck into a file, without a report; parameters as of `analyse`."""
+    """Run the analyses of a prepared deck and write their file, no report; parameters as in `analyse`."""
     with writer_of(ready, path) as writer:
         analyse(ready, writer, progress, began, request)
     return Results.open(path)

@@ -1,4 +1,4 @@
-"""The analyses of a deck, one after the other; what they find goes into the record, and tables follow."""
+"""The analyses of a deck, one after the other; their results go into the record and its tables."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from pound_solve.structure.structure import Structure
 
 NO_ROOM = "A508 no room on the disk; what was written before is kept"
 EXTREME = "of the deck that is far too large or too small"
-#: told the time reached, the time to reach, and what keeps the run waiting there, if anything
+#: receives the time reached, the final time, and the cause of a wait there, if any
 Progress: TypeAlias = Callable[[float, float, str], None]
 
 
 class RunOutput(Protocol):
-    """Receiver of the results of a run; `results.Writer` is one, which documents the calls."""
+    """Receiver of the results of a run; see `results.Writer` for the calls."""
 
     def text(self, name: str, text: str) -> None:
         """Store a text of the input."""
@@ -63,25 +63,25 @@ class RunOutput(Protocol):
         """Store the extremes of histories within intervals."""
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
-        """Store the state that a later run can continue from, and what it belongs to."""
+        """Store the state from which a later run can continue, and its identity."""
 
 
 @dataclass
 class Settled:
-    """Results that the first run of a structure leaves to later ones, which differ from it by their motion.
+    """Results of the first run of a structure that later runs, with other motions, reuse.
 
     Attributes
     ----------
     static : StaticState or None
         None before the first run.
     structure : Structure or None
-        With the stiffness that the axial forces of this state give.
+        With the geometric stiffness of this state's axial forces.
     response : StaticResponse or None
-        Of STATIC.
+        Response of STATIC.
     modal : ModalResult or None
-        Of MODAL.
+        Result of MODAL.
     items : RecordedItems or None
-        Of HISTORY, with the sums of forces that it records.
+        Recorded items of HISTORY, with its sums of forces.
     """
 
     static: static.StaticState | None = None
@@ -98,13 +98,13 @@ class AnalysisSequence:
     ----------
     ready : Prepared
     request : Request
-        Tells which PARAMs do not come from the deck, and whether to explain.
+        Gives the PARAMs that are not from the deck, and whether to explain.
     writer : RunOutput
     progress : callable or None
     began : float
-        Reading of `time.perf_counter` when the run began.
+        Reading of `time.perf_counter` at the start of the run.
     settled : Settled, optional
-        That of earlier runs with the same model but for their motion.
+        Results of earlier runs whose models differ only in their motions.
     """
 
     def __init__(
@@ -132,12 +132,12 @@ class AnalysisSequence:
         self.output = HistoryWriter(self.record, writer, progress)
 
     def run(self) -> str:
-        """Run everything the deck asks for; return the reason of a stop, or an empty text."""
+        """Run all analyses of the deck; return the reason of a stop, or an empty text."""
         try:
             try:
                 return self._analyses()
             finally:
-                with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to break off
+                with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to interrupt
                     self._write(Stage.END)
                     if self.explain:
                         self._write(Stage.EXPLAIN)
@@ -188,8 +188,8 @@ class AnalysisSequence:
         self._write(Stage.INPUT)
 
     def _static(self) -> static.StaticState:
-        """Static state, solved if anything needs it; from here on the structure has the stiffness that the
-        axial forces of that state give.
+        """Static state, solved if needed; from then on the structure has the geometric stiffness of
+        the axial forces of that state.
         """
         structure, settled = self.record.structure, self.settled
         asked = bool(self._cards("STATIC"))
@@ -244,9 +244,9 @@ class AnalysisSequence:
 
 
 class HistoryWriter:
-    """Output of a history (`history.HistoryOutput`) that puts the samples into the results file.
+    """Output of a history (`history.HistoryOutput`) that writes the samples to the results file.
 
-    With OUTPUT HISTORIES=NO the file gets their times only; the samples stay in memory until the tables
+    With OUTPUT HISTORIES=NO the file gets only their times; the samples stay in memory until the tables
     that need them are made.
 
     Parameters
@@ -283,12 +283,12 @@ class HistoryWriter:
             self.writer.closeups(self.record.layout, [closeups_of(block) for block in blocks])
 
     def extremes(self, bounds: Array, blocks: Sequence[SampleBlock]) -> None:
-        """Store the extremes within intervals, where there are any."""
+        """Store the extremes within intervals, if any."""
         if self._kept is None and len(bounds):
             self.writer.extremes(self.record.layout, bounds, *map(extremes_of, blocks))
 
     def save(self, state: Mapping[str, Array]) -> None:
-        """Store the state that a later run can continue from."""
+        """Store the state from which a later run can continue."""
         run = self.record
         self.writer.restart(state, identity(run.model, run.motions, run.forces))
 

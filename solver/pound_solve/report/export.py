@@ -16,13 +16,13 @@ from pound_solve.results import Results
 from pound_solve.results.schema import Row, Sheet
 from pound_solve.results.whole_file import whole
 
-_BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
+_BLOCK: Final = 4096  #: rows converted to Python numbers at a time
 
 
 def export_csv(results: Results, folder: str | Path) -> list[Path]:
     """Write ``<table>.csv``, ``history_<name>.csv``, ``closeup_<name>.csv``, ``extremes_<name>.csv`` files.
 
-    Heads hold the units in brackets.  Numbers have all their digits; a number that is missing is an empty
+    Heads contain the units in brackets.  Numbers have all their digits; a missing number is an empty
     cell.  Texts are UTF-8; one that a spreadsheet would take for a formula
     begins with an apostrophe.
 
@@ -31,7 +31,7 @@ def export_csv(results: Results, folder: str | Path) -> list[Path]:
     results : Results
         The file to export.
     folder : str or Path
-        Where the files go; made if it does not exist, files of the same names are replaced.
+        Folder of the files; created if missing, files of the same names are replaced.
 
     Returns
     -------
@@ -62,10 +62,10 @@ def export_columns(
     results : Results
         The file to export.
     folder : str or Path
-        Where the file goes, as for `export_csv`.
+        Folder of the file, as for `export_csv`.
     choices : sequence of (str, mapping)
-        Names of histories, each with the coordinates of the columns that are taken, as texts
-        (``{"node": "12", "component": "X"}``); none: all columns of that history.
+        Names of histories, each with the coordinates of the chosen columns, as texts
+        (``{"node": "12", "component": "X"}``); empty: all columns of that history.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def export_columns(
     Raises
     ------
     NoSuchPartError
-        The file has no history of that name, or the history no such column.
+        The file lacks that history, or the history lacks that column.
     """
     heads, columns = [_head("time", results.history_units("time")[0])], [results.time]
     for name, texts in choices:
@@ -94,7 +94,7 @@ def export_columns(
 
 
 def export_rows(path: Path, units: Units, sheet: Sheet, rows: Iterable[Row]) -> None:
-    """Write rows of a table that is not in a results file as CSV; see `export_csv`."""
+    """Write rows of a table outside any results file as CSV; see `export_csv`."""
     heads = [_head(column.name, units.text(column.unit)) for column in sheet.columns]
     _write(path, heads, ([_cell(v) for v in row] for row in rows))
 
@@ -144,7 +144,7 @@ def _head(name: str, unit: str) -> str:
 
 
 def _cell(value: Any) -> Any:
-    """Value as a cell; a text that a spreadsheet would take for a formula gets an apostrophe in front."""
+    """Value as a cell; a text that a spreadsheet would take for a formula gets a leading apostrophe."""
     if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) and not _number(value):
         return "'" + value
     return "" if isinstance(value, float) and math.isnan(value) else value

@@ -1,4 +1,4 @@
-"""What a deck may hold, as text made from the Specs, for ``pound-solve list``, editors and the manual."""
+"""Vocabulary of decks as text, made from the Specs for ``pound-solve list``, editors and the manual."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pound_solve.catalog import specs
 WIDTH: Final = 108  #: columns of the listing
 _NAMES: Final = 90  #: columns of a list of member names
 
-#: Each family in the order of the page: heading, start of its line in the deck, where it stands.
+#: Each family in the order of the page: heading, start of its line in the deck, section of that line.
 _FAMILIES: Final = {
     "section": ("Sections", "", "lines of the deck's own sections"),
     "element": ("Elements", "label {name}", "lines of PROPS"),
@@ -53,9 +53,9 @@ def listing(family: str | None = None, name: str | None = None) -> str:
     Parameters
     ----------
     family : str, optional
-        Family in any case, or a member that only one family has; all families if left out.
+        Family in upper or lower case, or a member of only one family; by default all families.
     name : str, optional
-        Member of it, by name or old code; all members if left out.
+        Its member, by name or old code; by default all members.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def listing(family: str | None = None, name: str | None = None) -> str:
     Raises
     ------
     KeyError
-        There is no such family or member; the text says what there is.
+        No such family or member exists; the message lists the existing ones.
     """
     known = vocabulary()
     if family is None:
@@ -105,7 +105,7 @@ def ordered_families(known: Catalog) -> list[str]:
 
 
 def family_in_words(name: str) -> tuple[str, str, str]:
-    """Heading of a family, start of its line in a deck, and where that line stands."""
+    """Heading of a family, start of its line in a deck, and section of that line."""
     return _FAMILIES.get(name, (name.capitalize(), "{name}", ""))
 
 
@@ -183,7 +183,7 @@ def _legend(fields: Sequence[Field]) -> str:
 
 
 def usage(spec: Spec) -> str:
-    """Usage of a card: its items in order, in brackets those that may be left out."""
+    """Usage of a card: its items in order, optional ones in brackets."""
     words = [family_in_words(spec.family)[1].format(name=spec.name)]
     for f in spec.fields:
         word = f.name if f.positional else f"{f.name}="
@@ -197,7 +197,7 @@ def item_row(f: Field) -> tuple[str, str, str, str, str]:
 
 
 def default(f: Field) -> str:
-    """Text of an item's default value; ``must`` where the item is required."""
+    """Text of an item's default value; ``must`` if the item is required."""
     if f.default is REQUIRED:
         return "must"
     values = f.default if isinstance(f.default, tuple) else (f.default,)

@@ -1,6 +1,6 @@
 """Output of ``check --json`` and ``list --json``, for editors and scripts; schemas: manual/tools.md.
 
-A name or a meaning that changes gets a new `VERSION`; an entry that is added does not.
+A changed name or meaning requires a new `VERSION`; an added entry does not.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ def mistakes(
     Parameters
     ----------
     deck : str
-        The deck's file, as the user gave it.
+        File name of the deck, as the user gave it.
     diagnostics : iterable of Diagnostic
         All mistakes and warnings, in the order of the deck.
     size : mapping of str to int or None
-        Numbers of nodes, elements and unknowns; None where the deck has mistakes.
+        Numbers of nodes, elements and unknowns; None if the deck has mistakes.
 
     Returns
     -------

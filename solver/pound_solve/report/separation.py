@@ -29,7 +29,7 @@ UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods 
 
 
 class SeparationError(UserError):
-    """Raised where a results file does not hold what the rules need."""
+    """Raised if a results file lacks data that the rules need."""
 
     status = 3
 
@@ -41,14 +41,14 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     ----------
     results : Results
     periods : sequence of two floats
-        Periods of the buildings of nodes I and J in place of the modes' [T].
+        Periods of the buildings of nodes I and J, instead of the modes' [T].
     damping : sequence of two floats
-        Their damping in place of the modes' [%].
+        Their damping, instead of the modes' [%].
 
     Raises
     ------
     SeparationError
-        There is no contact or no history in the file.
+        The file has no contact or no history.
     """
     return "\n".join(printed(results.units, TABLE, rows(results, periods, damping)))
 
@@ -59,7 +59,7 @@ def rows(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
     summary = {row["contact"]: row for row in results.table("contact_summary")}
     early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
-    met = any(row["closures"] > 0 for row in summary.values())  # that changed all displacements
+    met = any(row["closures"] > 0 for row in summary.values())  # so that all displacements changed
     note = (MET if met else FREE) + early
     separations = []
     for law in results.table("contact_laws"):
@@ -77,7 +77,7 @@ def rows(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
 
 
 def _check(results: Results) -> None:
-    """Raise a SeparationError where there is no history or no contact."""
+    """Raise a SeparationError if there is no history or no contact."""
     if math.isnan(results.last_time):
         why = f": {results.message}" if results.message else ""
         raise SeparationError(f"{results.path} holds no history{why}")
@@ -89,13 +89,13 @@ def _check(results: Results) -> None:
 def _ddc(
     u1: float, u2: float, periods: tuple[float, float], damping: tuple[float, float]
 ) -> tuple[float, str]:
-    """Double difference combination of two peaks [L]; a remark where a period or damping [%] is unknown."""
+    """Double difference combination of two peaks [L]; a remark if a period or damping [%] is unknown."""
     rho = correlation(*periods, *(xi / 100.0 for xi in damping))
     return Peaks(u1, u2, rho).difference, UNKNOWN if math.isnan(rho) and u1 and u2 else ""
 
 
 def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:
-    """Largest absolute displacement of a node; 0 of a wall, NaN where it is not stored."""
+    """Largest absolute displacement of a node; 0 for a wall, NaN if not stored."""
     if node == 0:
         return 0.0
     envelope = results.table("node_envelope")
@@ -110,7 +110,7 @@ def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:
 
 
 def _mode(results: Results, node: int, direction: tuple[float, float]) -> tuple[float, float]:
-    """Period [T] and damping [%] of the longest mode that a node takes part in; NaN without one."""
+    """Period [T] and damping [%] of the longest mode in which a node takes part; NaN without one."""
     if not {"modes", "mode_shapes"} <= set(results.tables):
         return NAN, NAN
     shapes, modes = results.table("mode_shapes"), results.table("modes")

@@ -42,7 +42,7 @@ def rows(curves: Sequence[Curve]) -> Iterator[Row]:
 
 
 def text(units: Units, curves: Sequence[Curve]) -> str:
-    """Tables of all curves, each below the name, the peak acceleration and the damping."""
+    """Tables of all curves, each headed by the name, the peak acceleration and the damping."""
     lines = []
     for curve in curves:
         spectrum = np.array(list(rows([curve])), dtype=TABLE.kinds)
@@ -57,7 +57,7 @@ def text(units: Units, curves: Sequence[Curve]) -> str:
 
 
 def write_csv(path: Path, units: Units, curves: Sequence[Curve]) -> None:
-    """Write all curves with all digits into one file, row by row as `rows` makes them.
+    """Write all curves with all digits into one file, in the rows of `rows`.
 
     Raises
     ------

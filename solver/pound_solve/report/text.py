@@ -29,12 +29,12 @@ WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
 _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
-_DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant, by format
-_WHOLE: Final = 7  #: digits before the point from which on a number takes an exponent
+_DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant digits by format
+_WHOLE: Final = 7  #: number of digits before the point from which on a number gets an exponent
 #: share of the largest value of a block of a column below which rounding prints as zero
 _DUST: Final = 1e-12
 
-_TINY: Final = 1e-300  #: prints as zero in any case
+_TINY: Final = 1e-300  #: always prints as zero
 
 #: Signs that do not decompose into ASCII, and what stands for them; Greek letters go by their names.
 _PAIRS: Final = """
@@ -52,9 +52,9 @@ def render(results: Results, *, limit: int | None = None, only: Collection[str] 
     results : Results
         The file.
     limit : int, optional
-        Rows that are printed of each table that has a limit, in place of that limit (0: all rows).
+        Rows to print of each limited table, instead of its limit (0: all rows).
     only : collection of str, optional
-        Names of the tables that are printed, for an excerpt.
+        Names of the tables to print, for an excerpt.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def _banner(results: Results) -> Iterator[str]:
 
 
 def _warning(results: Results) -> Iterator[str]:
-    """Lines of the framed warning above the report of an analysis that did not finish."""
+    """Lines of the framed warning above the report of an unfinished analysis."""
     told = incomplete(results)
     if not told:
         return
@@ -107,7 +107,7 @@ def _warning(results: Results) -> Iterator[str]:
 
 
 def incomplete(results: Results) -> tuple[str, ...]:
-    """Sentences on an analysis that did not finish: that it did not, why, and how far it came."""
+    """Sentences on an unfinished analysis: the fact, the reason, and the time reached."""
     if results.status == "done":
         return ()
     head = "THE ANALYSIS DID NOT COMPLETE"
@@ -126,7 +126,7 @@ def incomplete(results: Results) -> tuple[str, ...]:
 
 
 def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
-    """Lines of one table of the file with its notes; none when it has no rows."""
+    """Lines of one table of the file with its notes; empty if it has no rows."""
     lines = []
     for part in shown(results, table, limit):
         lines += ["", *([_INDENT + part.title, ""] if part.title else [])]
@@ -147,7 +147,7 @@ class Shown(NamedTuple):
         With the columns of the part.
     rows : ndarray, structured
     more : str
-        A line on the rows that are left out; empty for none.
+        A line on the omitted rows; empty for none.
     """
 
     title: str
@@ -157,7 +157,7 @@ class Shown(NamedTuple):
 
 
 def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]:
-    """Parts in which a report shows a table: those of its view, or as it is; `limit` as of `render`."""
+    """Parts in which a report shows a table: those of its view, or the whole; `limit` as in `render`."""
     view = view_of(table.name, whole=limit == 0)
     if view is None:
         return [Shown("", table, *_excerpt(results, table, limit))]
@@ -168,7 +168,7 @@ def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]
 
 
 def _excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[NDArray[Any], str]:
-    """First rows of a table, as many as a report shows, and a line on those left out; see `render`."""
+    """The first rows of a table, which a report shows, and a line on the omitted ones; see `render`."""
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit
     if not most or len(rows) <= most:
@@ -177,12 +177,12 @@ def _excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[ND
 
 
 def block(units: Units, sheet: Sheet, rows: NDArray[Any]) -> list[str]:
-    """Lines of rows, whose fields are the columns, with notes; none where there is nothing to show."""
+    """Lines of rows, whose fields are the columns, with notes; empty if there is nothing to show."""
     return _with_notes(_body(units, sheet, rows), sheet)
 
 
 def _with_notes(lines: list[str], sheet: Sheet, note: str = "") -> list[str]:
-    """Lines of a table, if there are any, and its notes below them."""
+    """Lines of a table, if any, followed by its notes."""
     notes = " ".join(_plain(text) for text in (sheet.note, note) if text)
     if lines and notes:
         lines = [*lines, "", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
@@ -201,9 +201,9 @@ class Formatted(NamedTuple):
     Attributes
     ----------
     columns : list of Column
-        Those that have anything to show.
+        The columns that are not empty.
     heads, cells : dict of str
-        Head with its unit, and the cells from top to bottom, of each column by its name.
+        Head with its unit, and the cells from top to bottom, of each column, keyed by name.
     blocks : list of int
         Number of rows of each group.
     """
@@ -233,7 +233,7 @@ def formatted(units: Units, sheet: Sheet, rows: NDArray[Any]) -> Formatted:
 
 
 def _body(units: Units, sheet: Sheet, rows: NDArray[Any]) -> list[str]:
-    """Lines of the heads and rows of a table; none where no column has anything to show."""
+    """Lines of the heads and rows of a table; empty if no column has anything to show."""
     columns, heads, cells, blocks = formatted(units, sheet, rows)
     if not columns:
         return []
@@ -273,7 +273,7 @@ def _wrap(columns: Sequence[Column], heads: dict[str, str], cells: dict[str, lis
 def _panels(
     columns: Sequence[Column], heads: dict[str, str], cells: dict[str, list[str]]
 ) -> Iterator[list[Column]]:
-    """Divide columns into as few panels as fit the page; each begins with the first column."""
+    """Divide columns into the fewest panels that fit the page; each begins with the first column."""
     key = columns[0]
     start = used = len(_INDENT) + _width(heads[key.name], cells[key.name])
     panel = [key]
@@ -321,7 +321,7 @@ def _width(head: str, cells: Iterable[str]) -> int:
 
 
 def _format(column: Column, values: list[Any]) -> list[str]:
-    """Texts of the cells of one column, numbers with equally many decimals; ``-`` for no value."""
+    """Texts of the cells of one column, numbers with equal numbers of decimals; ``-`` for no value."""
     if column.fmt == "text":
         plain = {v: _plain(v)[: column.clip or None] for v in set(values)}
         return [plain[v] for v in values]
@@ -345,15 +345,15 @@ def _decimals(fmt: str, values: list[float]) -> list[str]:
 
 
 def _times(values: list[float]) -> list[str]:
-    """Texts of times with as many decimals, from three to six, as any of them needs."""
+    """Texts of times with three to six decimals, as the longest needs."""
     needed = max((len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in values), default=0)
     return [_unsigned_zero(f"{v:.{max(needed, 3)}f}") for v in values]
 
 
 def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]:
-    """Texts of values to some significant digits: fixed-point where that reads well, else with exponents.
+    """Texts of values to a number of significant digits: fixed-point if readable, else with exponents.
 
-    The largest value decides on the decimals of all that are alike, unless `every` digit must show.
+    The largest value determines the decimals of all, unless `every` digit must be shown.
     """
     shapes = [_shape(v, digits) for v in values if v] or [(1, 0)]
     decimals = _fixed(shapes, digits, every)
@@ -364,7 +364,7 @@ def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]
 
 
 def _fixed(shapes: Sequence[tuple[int, int]], digits: int, every: bool) -> int | None:
-    """Number of decimals with which values read well without exponents; None where they do not."""
+    """Number of decimals with which values are readable without exponents; None if they are not."""
     highest, lowest = max(e for _, e in shapes), min(e for _, e in shapes)
     alike = highest - lowest <= 3
     exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
@@ -381,7 +381,7 @@ def _shape(value: float, digits: int) -> tuple[int, int]:
 
 
 def _unsigned_zero(text: str) -> str:
-    """Text of a number without the minus before a zero."""
+    """Text of a number without the minus sign of a zero."""
     return text[1:] if text[0] == "-" and not text.strip("-0.") else text
 
 

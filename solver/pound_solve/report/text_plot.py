@@ -1,4 +1,4 @@
-"""Drawings of a curve without a library: letters for a terminal, SVG for the manual."""
+"""Drawings of a curve without a library: characters for a terminal, SVG for the manual."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Curve = Sequence[tuple[float, float]]
 
 _WIDTH, _HEIGHT = 480, 350  #: of the SVG [px]
 _LEFT, _RIGHT, _TOP, _BOTTOM = 58, 14, 46, 46  #: its margins
-_TITLE = 66  #: characters in a line of its title
+_TITLE = 66  #: characters per line of its title
 _STYLE: Final = (
     "text{font:13px sans-serif;fill:#222}.t{font-size:11px}.g{stroke:#ddd}.a{stroke:#666}"
     ".c{fill:none;stroke:#0b4f8a;stroke-width:1.6;stroke-linejoin:round}"
@@ -21,7 +21,7 @@ _STYLE: Final = (
 
 
 def letters(curve: Curve, width: int = 68, height: int = 22) -> str:
-    """Draw a curve in letters.
+    """Draw a curve in characters.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def letters(curve: Curve, width: int = 68, height: int = 22) -> str:
     Returns
     -------
     str
-        Lines without a final line end: the field with its zero lines, the ends of the axes beside it.
+        Lines without a final line end: the field with its zero lines, labelled with the ends of the axes.
     """
     (x0, x1), (y0, y1) = (_span([p[i] for p in curve]) for i in (0, 1))
     field = [[" "] * width for _ in range(height)]
@@ -59,7 +59,7 @@ def letters(curve: Curve, width: int = 68, height: int = 22) -> str:
 
 
 def _stroke(field: list[list[str]], start: tuple[int, int], end: tuple[int, int]) -> None:
-    """Draw a straight line between two places (column, row) of the field."""
+    """Draw a straight line between two positions (column, row) of the field."""
     (ca, ra), (cb, rb) = start, end
     steps = max(abs(cb - ca), abs(rb - ra), 1)
     for n in range(steps + 1):
@@ -67,7 +67,7 @@ def _stroke(field: list[list[str]], start: tuple[int, int], end: tuple[int, int]
 
 
 def _foot(x0: float, x1: float, zero: int, width: int) -> str:
-    """Text below the x axis: both ends, and 0 at the column `zero` where there is room."""
+    """Text below the x axis: both ends, and 0 at the column `zero` if there is space."""
     low, high = f"{x0:.4g}", f"{x1:.4g}"
     foot = low + " " * (width - len(low) - len(high)) + high
     if x0 < 0.0 < x1 and len(low) < zero < width - len(high) - 1:
@@ -130,7 +130,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
 
 
 def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:
-    """Least and largest value, moved apart where equal, and by a `margin` in shares of their range."""
+    """Smallest and largest value, separated if equal and widened by `margin`, a share of their range."""
     low, high = min(values), max(values)
     if low == high:
         low, high = low - 1.0, high + 1.0
@@ -138,7 +138,7 @@ def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Round numbers between two values, four to eight of them."""
+    """Four to eight round numbers between two values."""
     rough = (high - low) / 8.0
     size = 10.0 ** math.floor(math.log10(rough))
     step = next(size * m for m in (1.0, 2.0, 5.0, 10.0) if size * m >= rough)
@@ -150,7 +150,7 @@ def _px(x: float) -> str:
 
 
 def _path(points: Curve) -> str:
-    """SVG path through points; those on the straight line between their neighbours are left out."""
+    """SVG path through points, omitting those on the straight line between their neighbours."""
     kept: list[tuple[float, float]] = []
     for p in ((round(x, 1), round(y, 1)) for x, y in points):
         if kept and p == kept[-1]:
