@@ -1,4 +1,4 @@
-"""Neighbours drawn apart: contacts touch in a picture exactly when they are closed."""
+"""Neighbours drawn apart: horizontal contacts touch in a picture exactly when they are closed."""
 
 from __future__ import annotations
 

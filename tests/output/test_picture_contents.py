@@ -23,6 +23,7 @@ from tiers import each_once
 pytest.importorskip("matplotlib")
 
 from pound_solve.report import plot
+from pound_solve.report.html.pictures import pictures as html_pictures
 from pound_solve.report.plot import PICTURES, Choice, ChoiceError, labels, members, style
 from pound_solve.report.plot.pictures import hinges, summary
 from pound_solve.results import Results
@@ -423,13 +424,17 @@ def test_between_shows_these_times_only(pair: Results) -> None:
     assert peaks(axes)[0][:, 0].tolist() == inside
 
 
+def film_in(page: str) -> Any:
+    (data,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page)
+    return json.loads(data)
+
+
 def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, tmp_path: Path) -> None:
     (path,), _ = plot.draw(pair, ["animation"], tmp_path, "html")
     text = path.read_text("utf-8")
     assert not re.findall(r"(?:src|href|url|import|fetch)\s*[=(]", text)
     assert set(re.findall(r"https?://[^\s\"']+", text)) == {"http://www.w3.org/2000/svg"}
-    (data,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', text)
-    film = json.loads(data)
+    film = film_in(text)
     u = pair.history("node/u")[:, :, :2]
     frames = np.array(film["moved"])
     assert len(frames) == len(film["captions"]) == len(film["closed"]) == len(pair.time)
@@ -442,6 +447,33 @@ def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, 
     assert sum(np.diff([0, *(c[0] for c in film["closed"])]) > 0) >= 2
     again, _ = plot.draw(pair, ["animation"], tmp_path / "again", "html")
     assert again[0].read_bytes() == path.read_bytes()
+
+
+def test_gaps_are_drawn_as_large_as_displacements_beside_rigid_arms(tmp_path: Path) -> None:
+    """Between the end of a contact's arm and node J stands the gap, in the animation and in the page."""
+    deck = tmp_path / "far.inp"
+    deck.write_text(PAIR.replace(" 4.1", " 6.1").replace(" 7.1", " 9.1"), encoding="utf-8")
+    with pound_solve.run(deck) as out:
+        gaps, t = out.history("contact/gap")[:, 0], out.time
+        (path,), _ = plot.draw(out, ["animation"], tmp_path, "html")
+        structure = next(p for p in html_pictures(out) if p.title == "Structure")
+    (data,) = re.findall(
+        r'<script id="data" type="application/json">(.*?)</script>', path.read_text("utf-8")
+    )
+    film = json.loads(data)
+    (factor,) = (float(x) for x in re.findall(r"drawn (\S+) times", film["captions"][0]))
+    nodes = np.array(film["nodes"]) + np.array(film["moved"]).reshape(len(film["moved"]), -1, 2)
+    ((i, j, *arm),) = film["contacts"]
+    assert arm[0] > 1.0
+    expected = factor * np.interp(np.linspace(t[0], t[-1], len(nodes)), t, gaps)
+    assert nodes[:, j, 0] - nodes[:, i, 0] - arm[0] == pytest.approx(expected, rel=0.01, abs=1e-4)
+
+    lines = {x["name"]: np.array([x["x"], x["y"]], float).T for x in structure.traces}
+    (time,) = (float(x) for x in re.findall(r"those at (\S+) s,", structure.note))
+    (tip, end), (start, same) = (lines[name][:2] for name in ("contacts", "rigid arms of contacts"))
+    assert same.tolist() == tip.tolist()
+    assert tip[0] - start[0] == pytest.approx(arm[0], rel=1e-4)
+    assert end[0] - tip[0] == pytest.approx(factor * np.interp(time, t, gaps), rel=0.01)
 
 
 def test_the_summary_tells_what_calls_for_a_look_alone() -> None:

@@ -353,7 +353,8 @@ def _times(values: list[float]) -> list[str]:
 def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]:
     """Texts of values to a number of significant digits: fixed-point if readable, else with exponents.
 
-    The largest value determines the decimals of all, unless `every` digit must be shown.
+    Where the largest value has at most three digits more before the point than the smallest, it determines
+    the decimals of all; otherwise, and with `every`, each value is shown to its last digit.
     """
     shapes = [_shape(v, digits) for v in values if v] or [(1, 0)]
     decimals = _fixed(shapes, digits, every)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from html import escape
-from itertools import chain
 from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.report.plot.geometry import SHARE, DrawnStructure, largest, magnified, stand_apart
+from pound_solve.report.plot.geometry import NOWHERE, DrawnStructure, apart, broken_line, displacements
 from pound_solve.results import Results
 
 MOST_POINTS: Final = 4000  #: of a curve in time; of more, the extremes of short intervals are kept
@@ -90,25 +89,24 @@ def _structure(results: Results) -> Iterator[Picture]:
     """Picture of the structure, undeformed and at the instant of its largest displacement."""
     if not results.holds("nodes"):
         return
-    s, note = DrawnStructure(results, stand_apart), ""
-    place = s.place
+    s, note, shift = DrawnStructure(results, apart()), "", dict[int, Array]()
     traces: list[Trace] = []
     if results.holds("node/u"):
-        u = results.history("node/u")[:, :, :2]
-        numbers = [int(n) for n in results.attributes("node/u")["nodes"]]
-        at, size = largest(u)
-        factor = SHARE * DrawnStructure(results).size / size if size > 0.0 else 1.0
-        s = DrawnStructure(results, magnified(factor))
-        place = {n: s.place[n] + factor * u[at, k] for k, n in enumerate(numbers) if n in s.place}
+        found = displacements(results)
+        s, shift = found.structure, found.shift(found.row)
         note = (
-            f"The displacements are those at {results.time[at]:.6g} {s.units.time}, "
-            f"when the largest is {size:.5g} {s.units.length}. "
-            f"Displacements and gaps are drawn {factor:.3g} times as large."
+            f"The displacements are those at {results.time[found.row]:.6g} {s.units.time}, "
+            f"when the largest is {found.largest:.5g} {s.units.length}. "
+            f"Displacements and gaps are drawn {found.factor:.3g} times as large."
         )
-        traces.append(_lines("displaced", s.lines(False), place, "#0b4f8a"))
-    traces.insert(0, _lines("as it stands", s.lines(False), s.place, "#b0b0b0"))
+        traces.append(_line("displaced", s.path(shift), "#0b4f8a"))
+    traces.insert(0, _line("at rest", s.path(), "#b0b0b0"))
+    ends = [s.ends(c, shift) for c in s.contacts]
     marked = {"mode": "lines+markers", "marker": {"symbol": "square-open", "size": 9, "color": "#b3301e"}}
-    traces.append(_lines("contacts", s.lines(True), place, "#b3301e") | marked)
+    traces.append(_line("contacts", broken_line((tip, end) for _, tip, end in ends), "#b3301e") | marked)
+    arms = [(start, tip) for start, tip, _ in ends if not np.array_equal(start, tip)]
+    traces.append(_line("rigid arms of contacts", broken_line(arms), "#b3301e"))
+    place = {n: xy + shift.get(n, NOWHERE) for n, xy in s.place.items()}
     traces.append(
         {
             "name": "nodes", "mode": "markers", "marker": {"size": 5, "color": "#333"},
@@ -121,10 +119,9 @@ def _structure(results: Results) -> Iterator[Picture]:
     yield Picture("Structure", note, f"X [{length}]", f"Y [{length}]", kept, equal=True)
 
 
-def _lines(name: str, ends: Sequence[tuple[int, int]], place: dict[int, Array], colour: str) -> Trace:
-    """Straight lines between nodes with known places, as one curve with gaps."""
-    segments = [(place[i], place[j]) for i, j in ends if i in place and j in place]
-    x, y = (_numbers(chain.from_iterable((i[k], j[k], math.nan) for i, j in segments)) for k in (0, 1))
+def _line(name: str, points: Array, colour: str) -> Trace:
+    """A line with gaps through points, shape (2, n)."""
+    x, y = map(_numbers, points)
     return {"name": name, "mode": "lines", "line": {"color": colour}, "x": x, "y": y, "hoverinfo": "skip"}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -72,8 +72,9 @@ class DrawnStructure:
 
     def _contacts(self, results: Results) -> Iterator[Contact]:
         """Contacts of the results."""
-        laws = results.table("contact_laws") if "contact_laws" in results.tables else ()
-        facts = {str(law["contact"]): law for law in laws}
+        if "contact_laws" not in results.tables:
+            return  # without directions and gaps there is nothing to draw
+        facts = {str(law["contact"]): law for law in results.table("contact_laws")}
         for e in self.elements[self.elements["kind"] == "CONTACT"]:
             name = contact_name(e)
             along = np.array(own_axes(float(facts[name]["angle"]))[0])
@@ -85,21 +86,29 @@ class DrawnStructure:
         self.low, self.high = xy.min(axis=0), xy.max(axis=0)
         self.size = float(max(self.high - self.low)) or 1.0
 
-    def lines(self, contacts: bool) -> list[tuple[int, int]]:
-        """Ends of all elements between two nodes: contacts, or the others."""
-        return [
-            (int(e["i"]), int(e["j"]))
-            for e in self.elements
-            if e["j"] and (e["kind"] == "CONTACT") == contacts
-        ]
+    def lines(self) -> list[tuple[int, int]]:
+        """Ends of all elements between two nodes but contacts."""
+        return [(int(e["i"]), int(e["j"])) for e in self.elements if e["j"] and e["kind"] != "CONTACT"]
 
-    def path(self, contacts: bool = False, shift: Mapping[int, Array] = STILL) -> Array:
-        """All elements between two nodes as one line with gaps (NaN), shape (2, 3 n) [L]."""
-        points = [
-            (self.place[i] + shift.get(i, NOWHERE), self.place[j] + shift.get(j, NOWHERE), NOWHERE * np.nan)
-            for i, j in self.lines(contacts)
-        ]
-        return np.array(points).reshape(-1, 2).T
+    def path(self, shift: Mapping[int, Array] = STILL) -> Array:
+        """All elements between two nodes but contacts as one line with gaps, displaced by `shift` of every
+        node, shape (2, 3 n) [L].
+        """
+        return broken_line(
+            (self.place[i] + shift.get(i, NOWHERE), self.place[j] + shift.get(j, NOWHERE))
+            for i, j in self.lines()
+        )
+
+    def arm(self, contact: Contact) -> Array:
+        """Reach of a contact from node I, shape (2,) [L]."""
+        return reach(contact, self.place, self.distances.get(contact.name, 0.0))
+
+    def ends(self, contact: Contact, shift: Mapping[int, Array] = STILL) -> tuple[Array, Array, Array]:
+        """Node I, the end of the contact's reach, and node J, displaced; a wall's J is its front."""
+        start = self.place[contact.i] + shift.get(contact.i, NOWHERE)
+        if not contact.j:
+            return start, start, self.front(contact)
+        return start, start + self.arm(contact), self.place[contact.j] + shift.get(contact.j, NOWHERE)
 
     def draw(self, axes: Any, shift: Mapping[int, Array] = STILL, **look: Any) -> Any:
         """Draw the members, displaced by `shift` of every node; return the line."""
@@ -116,13 +125,11 @@ class DrawnStructure:
         """
         look: dict[str, Any] = {"color": style.RED, "linestyle": "-", "zorder": 5}  # above the masses
         for c in self.contacts:
-            start = self.place[c.i] + shift.get(c.i, NOWHERE)
+            start, tip, end = self.ends(c, shift)
             if not c.j:
-                axes.plot(*zip(start, self.front(c)), **look, linewidth=0.8)
-                draw_wall(axes, self.front(c), c.along, WALL * self.size)
+                axes.plot(*zip(start, end), **look, linewidth=0.8)
+                draw_wall(axes, end, c.along, WALL * self.size)
                 continue
-            tip = start + reach(c, self.place, self.distances.get(c.name, 0.0))
-            end = self.place[c.j] + shift.get(c.j, NOWHERE)
             plate = PLATE * self.size * np.array([-c.along[1], c.along[0]])
             for line, width in (((start, tip), 1.5), ((tip, end), 0.8)):
                 axes.plot(*zip(*line), **look, linewidth=width)
@@ -142,7 +149,7 @@ class DrawnStructure:
     def draw_masses(self, axes: Any, width: float) -> None:
         """Draw a dot at every mass, larger for larger masses, on axes of about `width` points."""
         heaviest = max(self.mass.values(), default=0.0)
-        lengths = [np.hypot(*(self.place[j] - self.place[i])) for i, j in self.lines(contacts=False)]
+        lengths = [np.hypot(*(self.place[j] - self.place[i])) for i, j in self.lines()]
         apart = width * float(np.quantile(lengths, 0.25)) / self.size if lengths else width
         largest = min(8.0, 0.7 * apart)
         for node, mass in self.mass.items():
@@ -193,7 +200,7 @@ class DrawnStructure:
         """Number of the building of every node, from 0: a part connected other than by contacts."""
         numbers = sorted(self.place)
         at = {n: k for k, n in enumerate(numbers)}
-        pairs = [*self.lines(contacts=False)]
+        pairs = self.lines()
         pairs += [(int(n["node"]), int(n["master"])) for n in self.nodes if n["master"]]
         groups = [np.array([at[i], at[j]]) for i, j in pairs]
         joined = components(len(numbers), groups=groups)
@@ -211,32 +218,57 @@ def contact_name(element: Any) -> str:
     return str(element["name"] or element["element"])
 
 
-def stand_apart(gap: float, size: float) -> float:
-    """Distance of neighbours in a picture without displacements."""
-    return APART * size
+def apart(share: float = APART) -> Callable[[float, float], float]:
+    """Distance of neighbours as a share of the structure's size, for pictures without displacements."""
+    return lambda gap, size: share * size
 
 
-def magnified(factor: float) -> Callable[[float, float], float]:
-    """Distance of neighbours in a picture that magnifies displacements by a factor: so are the gaps."""
-    return lambda gap, size: max(factor * gap, 0.0)
+class Displacements(NamedTuple):
+    """The structure of a picture of displacements, and the displacements as they are drawn.
+
+    Attributes
+    ----------
+    structure : DrawnStructure
+        Gaps are magnified as displacements are.
+    nodes : list of int
+        Recorded nodes.
+    drawn : ndarray, shape (nt, n_nodes, 2)
+        Their displacements along X and Y, times `factor` [L].
+    factor : float
+        Magnification: the largest displacement is drawn as `SHARE` of the structure's size.
+    row : int
+        Row of the largest displacement.
+    largest : float
+        Its magnitude [L].
+    """
+
+    structure: DrawnStructure
+    nodes: list[int]
+    drawn: Array
+    factor: float
+    row: int
+    largest: float
+
+    def shift(self, row: int) -> dict[int, Array]:
+        """Drawn displacements of the recorded nodes in a row, by node number [L]."""
+        return dict(zip(self.nodes, self.drawn[row]))
 
 
-def largest(shifts: Array) -> tuple[int, float]:
-    """Row of the largest displacement in an array of shape (nt, n_nodes, 2), and its magnitude."""
-    size = np.hypot(shifts[..., 0], shifts[..., 1]).max(axis=1)
-    at = int(np.argmax(size))
-    return at, float(size[at])
+def displacements(results: Results, rows: slice = slice(None)) -> Displacements:
+    """Magnify the displacements in some rows of the history, and the gaps with them."""
+    nodes = [int(n) for n in results.attributes("node/u")["nodes"]]
+    u = results.history("node/u")[rows, :, :2]
+    sizes = np.hypot(u[..., 0], u[..., 1]).max(axis=1)
+    row = int(np.argmax(sizes))
+    largest = float(sizes[row])
+    factor = SHARE * DrawnStructure(results).size / largest if largest > 0.0 else 1.0
+    structure = DrawnStructure(results, lambda gap, size: max(factor * gap, 0.0))
+    return Displacements(structure, nodes, factor * u, factor, row, largest)
 
 
-def displacements(results: Results, rows: slice | int = slice(None)) -> tuple[list[int], Array]:
-    """Recorded nodes and their displacements along x and y, shape (nt, n_nodes, 2) [L]."""
-    numbers = [int(n) for n in results.attributes("node/u")["nodes"]]
-    return numbers, results.history("node/u")[rows, :, :2]
-
-
-def shifts(numbers: Iterable[int], moved: Array) -> dict[int, Array]:
-    """Displacements by node number."""
-    return dict(zip(numbers, moved))
+def broken_line(segments: Iterable[tuple[Array, Array]]) -> Array:
+    """Segments as one line with gaps (NaN), shape (2, 3 n)."""
+    return np.array([(i, j, NOWHERE * np.nan) for i, j in segments]).reshape(-1, 2).T
 
 
 def draw_wall(axes: Any, front: Array, across: Array, half: float) -> None:

@@ -16,11 +16,9 @@ from pound_solve.report.plot.geometry import (
     SHARE,
     WALL,
     DrawnStructure,
-    contact_name,
+    broken_line,
     displacements,
     draw_wall,
-    largest,
-    magnified,
 )
 from pound_solve.report.plot.schema import MOVING, Choice, Picture
 from pound_solve.results import Results
@@ -46,10 +44,8 @@ class Film:
         Of the frames [T].
     moved : ndarray, shape (n, n_nodes, 2)
         Displacements of the nodes, times the factor [L].
-    contacts : list of str
-        Names of the contacts.
     closed : ndarray of bool, shape (n, n_contacts)
-        Which were closed at any instant since the frame before.
+        Which contacts of the structure were closed at any instant since the frame before.
     """
 
     structure: DrawnStructure
@@ -58,27 +54,20 @@ class Film:
     nodes: list[int]
     time: Array
     moved: Array
-    contacts: list[str]
     closed: Flags
 
 
 def film(results: Results, choice: Choice) -> Film:
     """Make the frames of the animation at equal intervals, interpolated between the stored instants."""
-    size_of = DrawnStructure(results).size
-    numbers, u = displacements(results, choice.span(results))
-    t = results.time[choice.span(results)]
-    size = largest(u)[1]
-    factor = SHARE * size_of / size if size > 0.0 else 1.0
-    s = DrawnStructure(results, magnified(factor))
+    found, t = displacements(results, choice.span(results)), results.time[choice.span(results)]
     time = np.linspace(t[0], t[-1], min(FRAMES, max(2, len(t))))
-    flat = u.reshape(len(t), -1)
-    moved = np.column_stack([np.interp(time, t, column) for column in flat.T])
-    contacts = [contact_name(e) for e in s.elements if e["kind"] == "CONTACT"]
-    closed = np.array([_closed(results, name, time) for name in contacts], bool).reshape(
-        len(contacts), len(time)
-    )
-    shape = len(time), len(numbers), 2
-    return Film(s, results.title, factor, numbers, time, factor * moved.reshape(shape), contacts, closed.T)
+    columns = found.drawn.reshape(len(t), -1).T
+    moved = np.column_stack([np.interp(time, t, column) for column in columns])
+    closed = [_closed(results, c.name, time) for c in found.structure.contacts]
+    return Film(
+        found.structure, results.title, found.factor, found.nodes, time,
+        moved.reshape(len(time), len(found.nodes), 2), np.array(closed, bool).reshape(-1, len(time)).T,
+    )  # fmt: skip
 
 
 def _closed(results: Results, name: str, time: Array) -> Flags:
@@ -109,10 +98,10 @@ class Stage:
         s.draw(self.axes, color="0.85", linewidth=0.8)
         s.draw_supports(self.axes)
         self.members = s.draw(self.axes, color=style.BLUE, linewidth=1.4)
-        self.ends = [(int(e["i"]), int(e["j"])) for e in s.elements if e["kind"] == "CONTACT"]
         for c in s.contacts:
             if not c.j:
                 draw_wall(self.axes, s.front(c), c.along, WALL * s.size)
+        self.arms = self.axes.plot([], [], color=style.RED, linestyle="-", linewidth=1.4)[0]
         look = {"color": style.RED, "linestyle": ""}
         self.open = self.axes.plot([], [], marker="|", markersize=8, **look)[0]
         self.closed = self.axes.plot([], [], marker="o", markersize=10, **look)[0]
@@ -123,10 +112,9 @@ class Stage:
         film, s = self.film, self.structure
         moved = dict(zip(film.nodes, film.moved[k]))
         self.members.set_data(*s.path(shift=moved))
-        points = [
-            np.mean([s.place[n] + moved.get(n, np.zeros(2)) for n in ends if n], axis=0)
-            for ends in self.ends
-        ]
+        ends = [s.ends(c, moved) for c in s.contacts]
+        self.arms.set_data(*broken_line((start, tip) for start, tip, _ in ends))
+        points = [(tip + end) / 2 if c.j else start for c, (start, tip, end) in zip(s.contacts, ends)]
         hit = film.closed[k]
         for line, chosen in ((self.open, ~hit), (self.closed, hit)):
             line.set_data(*np.array([p for p, c in zip(points, chosen) if c]).reshape(-1, 2).T)
@@ -135,7 +123,7 @@ class Stage:
 
 def caption(scene: Film, k: int) -> str:
     """Text on a frame: its time, the magnification, and the contacts that are closed."""
-    names = [name for name, closed in zip(scene.contacts, scene.closed[k]) if closed]
+    names = [c.name for c, closed in zip(scene.structure.contacts, scene.closed[k]) if closed]
     when = (
         f"{scene.time[k]:.2f} {scene.structure.units.time}, "
         f"displacements and gaps drawn {scene.factor:.3g} times as large"
@@ -172,10 +160,9 @@ def page(scene: Film) -> str:
     digits = max(0, 5 - int(np.floor(np.log10(s.size))))
     data = {
         "nodes": [np.round(s.place[n], digits).tolist() for n in order],
-        "members": [[at[i], at[j]] for i, j in s.lines(contacts=False)],
+        "members": [[at[i], at[j]] for i, j in s.lines()],
         "contacts": [
-            [at[int(e["i"])], at[int(e["j"])] if e["j"] else at[int(e["i"])]]
-            for e in s.elements if e["kind"] == "CONTACT"
+            [at[c.i], at[c.j or c.i], *np.round(s.arm(c), digits).tolist()] for c in s.contacts
         ],
         "supports": [at[n] for n in s.place if {"X", "Y"} <= set(s.fixed[n])],
         "box": [*(s.low - 0.15 * s.size).tolist(), *(s.high + 0.15 * s.size).tolist()],

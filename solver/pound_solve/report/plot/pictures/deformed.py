@@ -11,23 +11,20 @@ from pound_solve.results import Results
 
 def deformed(results: Results, choice: Choice) -> Any:
     """Draw the displacements at an instant, by default that of the largest one."""
-    size_of = geometry.DrawnStructure(results).size
-    numbers, u = geometry.displacements(results)
-    at, size = geometry.largest(u)
-    factor = geometry.SHARE * size_of / size if size > 0.0 else 1.0
-    if choice.time is not None:
-        at = choice.instant(results)
-    s = geometry.DrawnStructure(results, geometry.magnified(factor))
+    found = geometry.displacements(results)
+    s, at = found.structure, found.row if choice.time is None else choice.instant(results)
     when = f"{results.time[at]:.4g} {s.units.time}"
     what = f"at {when}" if choice.time is not None else f"when they are largest, at {when}"
     figure = style.figure(*s.shape(), title=f"Displacements {what}")
     axes = figure.add_subplot()
-    moved = geometry.shifts(numbers, factor * u[at])
+    moved = found.shift(at)
     s.frame(axes, 0.06 + geometry.SHARE)
     s.draw(axes, color="0.8", linewidth=0.8)
     s.draw(axes, moved, color=style.BLUE, linewidth=1.3)
     s.draw_contacts(axes, moved)
-    axes.set_title(f"displacements and gaps {factor:.3g} times as large; grey: at rest; red: contacts")
+    axes.set_title(
+        f"displacements and gaps {found.factor:.3g} times as large; grey: at rest; red: contacts"
+    )
     return figure
 
 

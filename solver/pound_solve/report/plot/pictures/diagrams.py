@@ -20,7 +20,7 @@ UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 def diagrams(results: Results, choice: Choice) -> Any:
     """Draw the three beside or below each other, at an instant or as envelopes."""
-    s = geometry.DrawnStructure(results, lambda gap, size: 2.0 * SHARE * size)
+    s = structure(results, choice)
     chosen = list(lines(results, s.place, choice))
     shown = [q for q in QUANTITIES if any(q in line.low for line in chosen)]
     if not shown:
@@ -35,6 +35,19 @@ def diagrams(results: Results, choice: Choice) -> Any:
         axes = figure.add_subplot(*((1, len(shown)) if upright else (len(shown), 1)), n + 1)
         panel(axes, s, [line for line in chosen if quantity in line.low], quantity)
     return figure
+
+
+def structure(results: Results, choice: Choice) -> geometry.DrawnStructure:
+    """The structure with neighbours so far apart that their diagrams do not overlap."""
+    s = geometry.DrawnStructure(results)
+    members = list(lines(results, s.place, choice))
+    return geometry.DrawnStructure(results, geometry.apart(2.0 * _largest_drawn(s, members) / s.size))
+
+
+def _largest_drawn(s: geometry.DrawnStructure, members: list[Line]) -> float:
+    """Length that the largest value is drawn with [L]."""
+    lengths = [float(np.hypot(*(line.j - line.i))) for line in members]
+    return min(SHARE * s.size, WIDEST * float(np.median(lengths))) if lengths else SHARE * s.size
 
 
 def _title(results: Results, choice: Choice) -> str:
@@ -58,8 +71,7 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[Line], quantity: 
     low = min(float(line.low[quantity].min()) for line in members)
     high = max(float(line.high[quantity].max()) for line in members)
     top = max(abs(low), abs(high)) or 1.0
-    lengths = [float(np.hypot(*(line.j - line.i))) for line in members]
-    factor = min(SHARE * s.size, WIDEST * float(np.median(lengths))) / top
+    factor = _largest_drawn(s, members) / top
     one = all(np.array_equal(line.low[quantity], line.high[quantity]) for line in members)
     for line in members:
         both = ((line.high[quantity], style.BLUE), (line.low[quantity], style.RED))

@@ -13,7 +13,7 @@ from pound_solve.results import Results
 
 def frame(results: Results, choice: Choice) -> Any:
     """Draw the structure as it stands."""
-    s = geometry.DrawnStructure(results, geometry.stand_apart)
+    s = geometry.DrawnStructure(results, geometry.apart())
     figure = style.figure(*s.shape(), title=results.title)
     axes = figure.add_subplot()
     panel(axes, s, 500.0)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
-from pound_solve.report.plot.geometry import DrawnStructure, stand_apart
+from pound_solve.report.plot.geometry import DrawnStructure, apart
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 from pound_solve.results.tables.summary.worst_hinges import STATES
@@ -29,7 +29,7 @@ INWARDS = 0.07  #: of a hinge from the end of its member, as a share of its leng
 
 def hinges(results: Results, choice: Choice) -> Any:
     """Draw the structure with a disc at each spring and hinge, coloured by ductility and by damage."""
-    s = DrawnStructure(results, stand_apart)
+    s = DrawnStructure(results, apart())
     panels = [("ductility\n(largest deformation over yield)", "ductility", results.table("spring_envelope"),
                DUCTILITY)]  # fmt: skip
     if results.holds("damage"):

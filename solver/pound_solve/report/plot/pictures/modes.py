@@ -15,7 +15,7 @@ MOST = 8  #: modes
 
 def modes(results: Results, choice: Choice) -> Any:
     """Draw the first mode shapes with their periods."""
-    s = geometry.DrawnStructure(results, lambda gap, size: 2.0 * geometry.SHARE * size)
+    s = geometry.DrawnStructure(results, geometry.apart(2.0 * geometry.SHARE))
     shapes = results.table("mode_shapes")
     periods = {int(m["mode"]): float(m["period"]) for m in results.table("modes")}
     numbers = list(dict.fromkeys(int(n) for n in shapes["mode"]))[:MOST]

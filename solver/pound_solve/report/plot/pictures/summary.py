@@ -7,7 +7,7 @@ from typing import Any
 
 from pound_solve.check import looked
 from pound_solve.report.plot import courses, style
-from pound_solve.report.plot.geometry import DrawnStructure, stand_apart
+from pound_solve.report.plot.geometry import DrawnStructure, apart
 from pound_solve.report.plot.members import lines, members
 from pound_solve.report.plot.pictures import base_shear, capacity, diagrams, frame, storeys
 from pound_solve.report.plot.schema import Choice, Picture
@@ -66,13 +66,13 @@ def _rows(results: Results) -> list[Any]:
 
 def _moments(axes: Any, results: Results) -> None:
     """Draw the bending moments of the static state."""
-    s = DrawnStructure(results, lambda gap, size: 2.0 * diagrams.SHARE * size)
+    s = diagrams.structure(results, Choice())
     diagrams.panel(axes, s, list(lines(results, s.place, Choice())), "M")
 
 
 def _structure(axes: Any, results: Results) -> None:
     """Draw the structure with the names of its contacts."""
-    s = DrawnStructure(results, stand_apart)
+    s = DrawnStructure(results, apart())
     frame.panel(axes, s, 220.0)
     axes.set_title("structure", loc="left")
 
