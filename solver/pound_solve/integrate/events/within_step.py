@@ -20,18 +20,22 @@ REVERSE_RATE = 1e-6
 
 def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, float]:
     """Event function `e` of law `i` at deformation `d` and rate `v`, and the magnitude of its terms."""
-    on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+    coefficients, largest = laws.events.coefficients, laws.largest
+    on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
     if on_d == 0.0 and constant == 0.0:  # what hardly moves would reverse again and again
-        back = max(REVERSE_RATE * laws.largest_rate[i], EVENT_TOLERANCE * laws.largest_terms[i])
+        back = max(REVERSE_RATE * largest.rate[i], EVENT_TOLERANCE * largest.terms[i])
         constant = -abs(on_v) * back
-    size = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
+    size = abs(on_d) * largest.deformation[i] + abs(on_v) * largest.rate[i] + abs(constant)
     return on_d * d + on_v * v + constant, size
 
 
 def start_value(laws: Laws, i: int, e: int) -> float:
     """Event function `e` of law `i` at the start of the step."""
     g = event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
-    return g + laws.limits_at_start[i, e] - laws.events[i, e, 2] if laws.normal[i] >= 0 else g
+    if laws.friction.normal_law[i] < 0:
+        return g
+    at_start: float = g + laws.friction.limits_at_start[i, e] - laws.events.coefficients[i, e, 2]
+    return at_start
 
 
 def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
@@ -47,23 +51,25 @@ def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
     """Slopes of event function `e` of law `i` at both ends of the trial step, without the terms from
     accelerations and, for events of the rate alone, without the change of their limit.
     """
-    on_d = laws.events[i, e, 0]
+    friction = laws.friction
+    on_d = laws.events.coefficients[i, e, 0]
     s0, s1 = on_d * laws.now.rate[i], on_d * laws.trial.rate[i]
-    if laws.normal[i] < 0 or on_d == 0.0:
+    if friction.normal_law[i] < 0 or on_d == 0.0:
         return s0, s1
-    grows = laws.limit_rates_at_start[i, e]
+    grows = friction.limit_rates_at_start[i, e]
     even = SLOPE_ROUNDING * (abs(s0) + abs(grows))
     s0 += grows
-    return 0.0 if abs(s0) <= even else s0, s1 + laws.limit_rates[i, e]
+    return 0.0 if abs(s0) <= even else s0, s1 + friction.limit_rates[i, e]
 
 
 def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
     """Slopes of event function `e` of law `i` at both ends of the trial step, with all their terms."""
+    rows = laws.definition.rows
     s0, s1 = slopes(laws, i, e)
-    on_v = laws.events[i, e, 1]
+    on_v = laws.events.coefficients[i, e, 1]
     if on_v != 0.0:
-        s0 += on_v * row_product(laws.rows, i, step.now.acceleration)
-        s1 += on_v * row_product(laws.rows, i, step.trial.acceleration)
+        s0 += on_v * row_product(rows, i, step.now.acceleration)
+        s1 += on_v * row_product(rows, i, step.trial.acceleration)
     return s0, s1
 
 
@@ -75,15 +81,16 @@ def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
     clearly above zero before that: bodies that move alike only seem to meet in a trial step in which a
     hinge of one has yielded, and that of the other has not yet.
     """
+    definition = laws.definition
     first = none(np.inf)
-    for i in range(len(laws.rule)):
-        for e in range(0 if laws.contact[i] else laws.n_events[i]):
+    for i in range(len(definition.rule)):
+        for e in range(0 if definition.contact[i] else laws.events.n_events[i]):
             at = time_of_event(laws, step, i, e, h)
             if at < first.time:
                 first = LocatedEvent(i, e, at)
     other = first
-    for i in range(len(laws.rule)):
-        for e in range(laws.n_events[i] if laws.contact[i] else 0):
+    for i in range(len(definition.rule)):
+        for e in range(laws.events.n_events[i] if definition.contact[i] else 0):
             at = time_of_event(laws, step, i, e, h)
             if at < first.time and (other.law < 0 or is_there(laws, step, i, e, h, other.time)):
                 first = LocatedEvent(i, e, at)
@@ -108,11 +115,11 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
 
 def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     """Time of event `e` of law `i` in the trial step; infinite where there is none."""
-    on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
+    on_d, on_v = laws.events.coefficients[i, e, 0], laws.events.coefficients[i, e, 1]
     if on_d == 0.0 and on_v == 0.0:
         return np.inf
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
-    tol = EVENT_TOLERANCE * max(MOVING_ALIKE * size if laws.contact[i] else size, abs(g1))
+    tol = EVENT_TOLERANCE * max(MOVING_ALIKE * size if laws.definition.contact[i] else size, abs(g1))
     s0, s1 = slopes(laws, i, e)
     if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
         return np.inf

@@ -215,8 +215,8 @@ def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
 
 
 def law_arrays(
-    system: ReducedSystem, start: Start, layout: Layout, scheme: Scheme, rules: Sequence[Rule],
-    dashpot_losses: Array, dt: float,
+    system: ReducedSystem, start: Start, layout: Layout, rules: Sequence[Rule], dashpot_losses: Array,
+    dt: float,
 ) -> state.Laws:  # fmt: skip
     """The laws in the state of a start, for steps up to `dt`, with the losses of an accumulator; their
     branches are not entered yet.
@@ -231,7 +231,7 @@ def law_arrays(
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
     parameters, internal = _law_numbers(laws, start)
     branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
-    return state.Laws(
+    definition = state.LawDefinition(
         rows=rows,
         inputs=np.ascontiguousarray(system.law_inputs),
         pair_pointers=pointers,
@@ -242,38 +242,39 @@ def law_arrays(
         curved=_integers(s.law.curved for s in laws),
         contact=_integers(s.role.collides for s in laws),
         viscous=_integers(s.role.viscous for s in laws),
-        coupled=_integers(np.flatnonzero([s.role is Role.FRICTION for s in laws])),
-        normal=np.ascontiguousarray(normal[0]),
-        pressed_branches=np.ascontiguousarray(normal[1]),
         tangent_damping=np.array([s.beta for s in laws], float),
         secant_damping=np.array([s.secant for s in laws], float),
         parameters=parameters,
-        internal=internal,
-        branch=branch.astype(np.int64),
-        entry_deformation=entry.astype(float),
-        entry_work=work.astype(float),
-        stiffness=np.zeros(count),
-        damping=np.zeros(count),
-        offset=np.zeros(count),
+    )
+    friction = state.FrictionCoupling(
+        coupled=_integers(np.flatnonzero([s.role is Role.FRICTION for s in laws])),
+        normal_law=np.ascontiguousarray(normal[0]),
+        pressed_branches=np.ascontiguousarray(normal[1]),
+        force=np.zeros(count),
         offset_rate=np.zeros(count),
-        n_events=np.zeros(count, np.int64),
-        events=np.zeros((count, EVENTS, 3)),
         limits_at_start=np.zeros((count, EVENTS)),
         limit_rates=np.zeros((count, EVENTS)),
         limit_rates_at_start=np.zeros((count, EVENTS)),
+    )
+    return state.Laws(
+        definition=definition,
+        state=state.LawState(
+            branch.astype(np.int64), entry.astype(float), work.astype(float), internal, dashpot_losses
+        ),
+        saved=state.SavedState(np.zeros(count, bool), np.zeros((count, 3 + internal.shape[1]))),
+        tangent=state.LawTangent(np.zeros(count), np.zeros(count), np.zeros(count)),
+        events=state.BranchEvents(
+            np.zeros(count, np.int64), np.zeros((count, EVENTS, 3)), np.full(count, -1)
+        ),
+        friction=friction,
         now=state.LawMotion(d, v),
         trial=state.LawMotion(np.zeros(count), np.zeros(count)),
-        largest_deformation=np.maximum(np.abs(d), rounding / EVENT_TOLERANCE),
-        largest_rate=np.abs(v),
-        largest_terms=np.maximum(np.abs(v), rounding / dt / EVENT_TOLERANCE),
-        friction_force=np.zeros(count),
-        dashpot_loss=dashpot_losses,
-        peak_force=np.zeros(count),
-        peak_time=np.zeros(count),
-        impulse=np.zeros(count),
-        saved=np.zeros(count, np.int64),
-        saved_state=np.zeros((count, 3 + internal.shape[1])),
-        members=member_arrays(system, layout, scheme),
+        largest=state.LawExtremes(
+            deformation=np.maximum(np.abs(d), rounding / EVENT_TOLERANCE),
+            rate=np.abs(v),
+            terms=np.maximum(np.abs(v), rounding / dt / EVENT_TOLERANCE),
+        ),
+        collision=state.CollisionForces(np.zeros(count), np.zeros(count), np.zeros(count)),
     )
 
 

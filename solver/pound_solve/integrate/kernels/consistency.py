@@ -22,7 +22,7 @@ from pound_solve.integrate.kernels.corotational import (
 )
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import multiply, row_product
-from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Simulation
+from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Rows, Simulation
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
@@ -33,11 +33,11 @@ FORCE_JUMP = 10.0 * NEARLY_MET  #: share of the forces of a law above which it h
 DELAY = 1e-8  #: share of the longest C / K among massless unknowns that e is
 
 
-def touches_massless(linear: LinearSystem, laws: Laws, i: int) -> bool:
+def touches_massless(linear: LinearSystem, rows: Rows, i: int) -> bool:
     """Whether law `i` holds a massless unknown, whose velocity may jump."""
     if not linear.all_mass:
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            if not linear.has_mass[laws.rows.columns[q]]:
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            if not linear.has_mass[rows.columns[q]]:
                 return True
     return False
 
@@ -46,17 +46,19 @@ def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: 
     """Whether law `i` lost a force that had held an unknown without mass, when it left a branch of that
     `stiffness` and `offset` at the deformation `d`.
     """
-    if laws.contact[i] or laws.curved[i]:
+    definition = laws.definition
+    if definition.contact[i] or definition.curved[i]:
         return False
-    largest, now, after = laws.largest_deformation[i], laws.stiffness[i], laws.offset[i]
+    largest, now, after = laws.largest.deformation[i], laws.tangent.stiffness[i], laws.tangent.offset[i]
     size = (abs(stiffness) + abs(now)) * largest + abs(offset) + abs(after)
     lost = abs((stiffness - now) * d + offset - after) > FORCE_JUMP * size
-    return lost and touches_massless(linear, laws, i)
+    return lost and touches_massless(linear, definition.rows, i)
 
 
 def slowest_decay(sim: Simulation) -> float:
     """Longest ratio of dashpot to stiffness of a massless unknown, by their diagonals [T]."""
     linear, laws, step = sim.linear, sim.laws, sim.step
+    rows = laws.definition.rows
     stiffness, damping, slowest = step.scratch[0], step.scratch[1], 0.0
     for i in range(len(stiffness)):
         stiffness[i], damping[i] = 0.0, 0.0
@@ -64,11 +66,11 @@ def slowest_decay(sim: Simulation) -> float:
         i = linear.column[q]
         if linear.pattern.ai[q] == i and not linear.has_mass[i]:
             stiffness[i], damping[i] = linear.on_pattern[2, q], linear.on_pattern[1, q]
-    for i in range(len(laws.rule)):
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            j, square = laws.rows.columns[q], laws.rows.values[q] * laws.rows.values[q]
-            stiffness[j] += laws.stiffness[i] * square
-            damping[j] += laws.damping[i] * square
+    for i in range(len(laws.definition.rule)):
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            j, square = rows.columns[q], rows.values[q] * rows.values[q]
+            stiffness[j] += laws.tangent.stiffness[i] * square
+            damping[j] += laws.tangent.damping[i] * square
     for i in range(len(stiffness)):
         if not linear.has_mass[i] and stiffness[i] > 0.0:
             slowest = max(slowest, damping[i] / stiffness[i])
@@ -85,6 +87,7 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
         them.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
+    definition = laws.definition
     slowest = slowest_decay(sim)
     rate = max(1.0 / linear.instant, 1.0 / (DELAY * slowest) if slowest > 0.0 else 0.0)
     for q in range(len(step.matrix)):
@@ -94,13 +97,13 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
             step.matrix[q] = linear.on_pattern[2, q] + rate * linear.on_pattern[1, q]
         elif i == j:
             step.matrix[q] = 1.0
-    for i in range(len(laws.rule)):
-        change = laws.stiffness[i] + rate * laws.damping[i]
-        for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
-            at = laws.pair_places[q]
+    for i in range(len(definition.rule)):
+        change = laws.tangent.stiffness[i] + rate * laws.tangent.damping[i]
+        for q in range(definition.pair_pointers[i], definition.pair_pointers[i + 1]):
+            at = definition.pair_places[q]
             if not linear.has_mass[linear.pattern.ai[at]] and not linear.has_mass[linear.column[at]]:
-                step.matrix[at] += change * laws.pair_values[q]
-    members = laws.members
+                step.matrix[at] += change * definition.pair_values[q]
+    members = sim.members
     for c in range(len(members.parameters) * linear.massless_vary):
         quantity_stiffness(members.parameters, c, quantities, 0, members.present, c)
         add_tangent(linear, members, step, c, members.present, 1.0, True)
@@ -110,23 +113,22 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
     return rate
 
 
-def force_rates(
-    linear: LinearSystem, laws: Laws, velocity: Array, rate: Array, input_rates: Array, out: Array
-) -> None:
+def force_rates(sim: Simulation, velocity: Array, rate: Array, input_rates: Array, out: Array) -> None:
     """Rates of the forces on the massless unknowns, dashpots excluded, at some velocities and rates of the
     laws.
     """
+    linear, laws, members = sim.linear, sim.laws, sim.members
+    rows = laws.definition.rows
     multiply(linear.stiffness, velocity, out)
     for i in range(len(out)):
         change = 0.0
         for j in range(len(input_rates)):
             change += linear.inputs[j, i] * input_rates[j]
         out[i] = change - out[i]
-    for i in range(len(laws.rule)):
-        change = laws.stiffness[i] * rate[i] + laws.offset_rate[i]
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            out[laws.rows.columns[q]] -= laws.rows.values[q] * change
-    members = laws.members
+    for i in range(len(laws.definition.rule)):
+        change = laws.tangent.stiffness[i] * rate[i] + laws.friction.offset_rate[i]
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            out[rows.columns[q]] -= rows.values[q] * change
     if linear.massless_vary:
         form_quantities(members, velocity, input_rates, members.predicted)
     for c in range(len(members.parameters) * linear.massless_vary):
@@ -141,12 +143,13 @@ def force_rates(
 
 def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array) -> None:
     """Forces of the dashpots, those of the laws included, at some velocities."""
+    rows = laws.definition.rows
     multiply(linear.damping, velocity, out)
-    for i in range(len(laws.rule)):
-        if laws.damping[i] != 0.0:
-            force = laws.damping[i] * row_product(laws.rows, i, velocity)
-            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-                out[laws.rows.columns[q]] += laws.rows.values[q] * force
+    for i in range(len(laws.definition.rule)):
+        if laws.tangent.damping[i] != 0.0:
+            force = laws.tangent.damping[i] * row_product(rows, i, velocity)
+            for q in range(rows.pointers[i], rows.pointers[i + 1]):
+                out[rows.columns[q]] += rows.values[q] * force
 
 
 def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
@@ -162,47 +165,48 @@ def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     if stale:
-        factorise_massless(sim, laws.members.trial.quantities)
+        factorise_massless(sim, sim.members.trial.quantities)
     now, trial, change = step.now, step.trial, step.scratch[0]
-    force_rates(linear, laws, trial.velocity, laws.trial.rate, trial.input_rates, change)
+    force_rates(sim, trial.velocity, laws.trial.rate, trial.input_rates, change)
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
     for i in range(len(change)):
         if not linear.has_mass[i]:
             trial.velocity[i] += change[i]
             trial.acceleration[i] = (trial.velocity[i] - now.velocity[i]) / h
-    for i in range(len(laws.rule)):
-        laws.trial.rate[i] += row_product(laws.rows, i, change)
+    for i in range(len(laws.definition.rule)):
+        laws.trial.rate[i] += row_product(laws.definition.rows, i, change)
 
 
 def jump_massless_rates(sim: Simulation) -> None:
     """Set the velocities of massless unknowns to those on the present branches (see the module's head)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
+    definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     now, change, force = step.now, step.scratch[0], step.scratch[1]
     size, held = step.scratch[2], step.scratch[3]
-    rate = factorise_massless(sim, laws.members.now.quantities)
+    rate = factorise_massless(sim, sim.members.now.quantities)
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
         force[i] = now.load[i] - force[i] - now.damping_force[i]
         elastic = abs(linear.stiffness.diagonals[0, i] * now.displacement[i])
         size[i] = abs(now.load[i]) + elastic + abs(now.damping_force[i])
-    for i in range(len(laws.rule)):
+    for i in range(len(definition.rule)):
         f = (
-            laws.stiffness[i] * laws.now.deformation[i]
-            + laws.offset[i]
-            + laws.damping[i] * laws.now.rate[i]
+            tangent.stiffness[i] * laws.now.deformation[i]
+            + tangent.offset[i]
+            + tangent.damping[i] * laws.now.rate[i]
         )
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            force[laws.rows.columns[q]] -= laws.rows.values[q] * f
-            size[laws.rows.columns[q]] += abs(laws.rows.values[q] * f)
-    for c in range(len(laws.members.parameters)):
-        subtract_force(laws.members, c, laws.members.now.forces, force)
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            force[rows.columns[q]] -= rows.values[q] * f
+            size[rows.columns[q]] += abs(rows.values[q] * f)
+    for c in range(len(sim.members.parameters)):
+        subtract_force(sim.members, c, sim.members.now.forces, force)
     for i in range(len(force)):
         if linear.has_mass[i] or abs(force[i]) <= NEARLY_MET * size[i]:
             force[i] = 0.0
         force[i] *= rate
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], force)
     dashpot_forces(linear, laws, force, held)
-    force_rates(linear, laws, now.velocity, laws.now.rate, now.input_rates, change)
+    force_rates(sim, now.velocity, laws.now.rate, now.input_rates, change)
     for i in range(len(change)):
         if not linear.has_mass[i]:
             change[i] += rate * held[i]
@@ -210,27 +214,28 @@ def jump_massless_rates(sim: Simulation) -> None:
     for i in range(len(change)):
         now.velocity[i] += change[i]
     multiply(linear.damping, now.velocity, now.damping_force)
-    for i in range(len(laws.rule)):
-        laws.now.rate[i] += row_product(laws.rows, i, change)
+    for i in range(len(definition.rule)):
+        laws.now.rate[i] += row_product(rows, i, change)
 
 
 def make_consistent(sim: Simulation) -> None:
     """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
     linear, laws, step = sim.linear, sim.laws, sim.step
+    rows = laws.definition.rows
     now, residual, elastic = step.now, step.residual, step.scratch[0]
-    form_members(laws, step)
+    form_members(sim.members, step)
     if linear.implicit and not linear.all_mass:
         jump_massless_rates(sim)
     multiply(linear.stiffness, now.displacement, elastic)
     for i in range(len(residual)):
         residual[i] = now.load[i] - elastic[i] - now.damping_force[i]
-    for i in range(len(laws.rule)):
-        f = linear_force(laws, i, laws.now.deformation[i], laws.now.rate[i])
+    for i in range(len(laws.definition.rule)):
+        f = linear_force(laws.tangent, i, laws.now.deformation[i], laws.now.rate[i])
         if f != 0.0:
-            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-                residual[laws.rows.columns[q]] -= laws.rows.values[q] * f
-    for c in range(len(laws.members.parameters)):
-        subtract_force(laws.members, c, laws.members.now.forces, residual)
+            for q in range(rows.pointers[i], rows.pointers[i + 1]):
+                residual[rows.columns[q]] -= rows.values[q] * f
+    for c in range(len(sim.members.parameters)):
+        subtract_force(sim.members, c, sim.members.now.forces, residual)
     for i in range(len(residual)):
         if not linear.has_mass[i]:
             residual[i] = 0.0  # in balance, but for rounding that the alphas would take for a load

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.state import Corotational, Laws, LinearSystem, MemberState, Step
+from pound_solve.integrate.kernels.state import Corotational, LinearSystem, MemberState, Step
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import (
     ACROSS,
@@ -73,17 +73,15 @@ def add_tangent(
             step.matrix[at] += members.rows[one, j] * members.product[other, j]
 
 
-def form_members(laws: Laws, step: Step) -> None:
+def form_members(members: Corotational, step: Step) -> None:
     """Quantities and forces of the members at the start of a step."""
-    members = laws.members
     form_quantities(members, step.now.displacement, step.now.inputs, members.now.quantities)
     for c in range(len(members.parameters)):
         quantity_forces(members.parameters, c, members.now.quantities, 0, members.now.forces, 0)
 
 
-def predict_members(laws: Laws, step: Step) -> None:
+def predict_members(members: Corotational, step: Step) -> None:
     """Linearise the members' forces about the displacements that lack the acceleration at the end."""
-    members = laws.members
     form_quantities(members, step.trial.displacement, step.trial.inputs, members.predicted)
     for c in range(len(members.parameters)):
         quantity_forces(members.parameters, c, members.predicted, 0, members.at_zero, 0)
@@ -104,7 +102,7 @@ def anchor_member(members: Corotational, c: int) -> None:
     add_tangent_force(members.tangent, c, members.trial.quantities, members.at_zero, -1.0)
 
 
-def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
+def correct_members(members: Corotational, step: Step, beta_h2: float) -> float:
     """Compute the members' forces for the trial acceleration, and shift the linearised ones to agree with
     them.
 
@@ -113,9 +111,8 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
     float
         Largest distance of a force from its line, over what is allowed.
     """
-    members, worst = laws.members, 0.0
     trial, p = members.trial, members.parameters
-    size = members.largest[0]
+    size, worst = members.largest[0], 0.0
     for c in range(len(p)):
         for j in range(6):
             total = 0.0

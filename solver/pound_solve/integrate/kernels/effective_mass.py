@@ -14,16 +14,17 @@ def factorise_effective_mass(
     of the factors; return -1 or the unknown whose pivot vanishes.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
+    definition = laws.definition
     a = linear.on_pattern
     for q in range(len(step.matrix)):
         step.matrix[q] = on_mass * a[0, q] + on_damping * a[1, q] + on_stiffness * a[2, q]
-    for i in range(len(laws.rule)):
-        change = on_damping * laws.damping[i] + on_stiffness * laws.stiffness[i]
+    for i in range(len(definition.rule)):
+        change = on_damping * laws.tangent.damping[i] + on_stiffness * laws.tangent.stiffness[i]
         if change != 0.0:
-            for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
-                step.matrix[laws.pair_places[q]] += change * laws.pair_values[q]
+            for q in range(definition.pair_pointers[i], definition.pair_pointers[i + 1]):
+                step.matrix[definition.pair_places[q]] += change * definition.pair_values[q]
     if on_stiffness != 0.0:
-        members = laws.members
+        members = sim.members
         for c in range(len(members.parameters)):
             add_tangent(linear, members, step, c, members.tangent, on_stiffness, False)
     return factor(linear.pattern, step.matrix, step.factors[at], step.pivots[at], step.row)

@@ -74,7 +74,8 @@ class KernelEngine(ABC):
         self.order = layout.order
         self.linear = allocation.linear_system(system, problem.monitored, layout, scheme, dt)
         losses = self.accumulator.dashpot_losses
-        self.laws = allocation.law_arrays(system, start, layout, scheme, rules, losses, dt)
+        self.laws = allocation.law_arrays(system, start, layout, rules, losses, dt)
+        self.members = allocation.member_arrays(system, layout, scheme)
         self.step = allocation.step_arrays(system, start, layout, self.linear, self.tracker.extremes)
         self.place = layout.place
         seen = layout.place[np.flatnonzero(recorder.shown)], recorder.acting
@@ -82,12 +83,14 @@ class KernelEngine(ABC):
         self.buffers = allocation.buffers(system.size, len(self.springs), which, acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         works = self.accumulator.works
-        self.sim = Simulation(self.linear, self.laws, self.step, self.buffers, works, self.state)
+        self.sim = Simulation(
+            self.linear, self.laws, self.members, self.step, self.buffers, works, self.state
+        )
         for i in range(len(self.springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
         law_kernels.linearise_laws(self.laws, self.rules)
-        corotational.form_members(self.laws, self.step)
-        corotational.take_tangents(self.laws.members, self.laws.members.now.quantities)
+        corotational.form_members(self.members, self.step)
+        corotational.take_tangents(self.members, self.members.now.quantities)
         self.uniqueness = Uniqueness(system)
         self.speed = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(self.times[0])  # latest instant that the recorder was shown
@@ -126,13 +129,13 @@ class KernelEngine(ABC):
         """
         laws, t = self.laws, float(self.times[0])
         for i, s in enumerate(self.springs):
-            kind = s.law.rule.branches[laws.branch[i]].kind
+            kind = s.law.rule.branches[laws.state.branch[i]].kind
             if s.role.collides and kind.closed:
                 d, v = float(laws.now.deformation[i]), float(laws.now.rate[i])
                 force = law_kernels.law_force(laws, self.rules, i, d, v)
                 self.tracker.switched(i, BranchKind.OPEN, kind, t, d, v, force)
-                laws.peak_force[i] = force
-        for i in laws.coupled.tolist():
+                laws.collision.peak_force[i] = force
+        for i in laws.friction.coupled.tolist():
             law_kernels.couple_friction(laws, self.rules, self.step.now.acceleration, i)
         law_kernels.hold_friction_limits(laws)
         if told := provider().notice(advance):
@@ -222,7 +225,7 @@ class KernelEngine(ABC):
         if fault >= 0:
             s = self.springs[fault]
             place = f"element {s.element} ({s.rule})"
-            last = f"the last in {place} to {s.law.rule.branches[self.laws.branch[fault]].name!r}"
+            last = f"the last in {place} to {s.law.rule.branches[self.laws.state.branch[fault]].name!r}"
         if why == CHATTER:
             text = f"laws change branch again and again at one instant, {last}"
         elif why == CROWD:
@@ -239,7 +242,7 @@ class KernelEngine(ABC):
         At one instant its rate then has one sign on the falling branch and the other on the branches that
         a rate of that sign leads to.
         """
-        rows, has_mass = self.laws.rows, self.linear.has_mass
+        rows, has_mass = self.laws.definition.rows, self.linear.has_mass
         unknowns = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
         held = unknowns[~np.asarray(has_mass, bool)[unknowns]]
         rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.state.time]
@@ -253,7 +256,7 @@ class KernelEngine(ABC):
         light = np.flatnonzero(massless(self.system.mass))
         if self.system.structure.corotational or len(light) > MAX_DENSE:
             return True  # it takes too long to find out
-        stiffness = self.laws.stiffness.copy()
+        stiffness = self.laws.tangent.stiffness.copy()
         changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.state.time}
         for i in {change[0] for change in changes}:
             law, d, states = self.springs[i].law, float(self.laws.now.deformation[i]), [self.law_state(i)]
@@ -271,8 +274,7 @@ class KernelEngine(ABC):
         """Results of the run."""
         laws = self.laws
         for law, collision in self.tracker.open.items():
-            running = laws.peak_force[law], laws.peak_time[law], laws.impulse[law]
-            collision.count(*(float(x) for x in running))
+            collision.count(*(float(x[law]) for x in laws.collision))
         peaks = self.tracker.close(self.accumulator.dashpot_losses)
         states = tuple(self.law_state(i) for i in range(len(self.springs)))
         checks = [*self.checks(peaks), *self.uniqueness.checks()]
@@ -281,11 +283,11 @@ class KernelEngine(ABC):
     def law_state(self, i: int) -> State:
         """State of law `i`."""
         laws, spring = self.laws, self.springs[i]
-        variables = laws.internal[i, : spring.law.rule.variables].tolist()
+        variables = laws.state.internal[i, : spring.law.rule.variables].tolist()
         if spring.secant:
-            variables += laws.internal[i, -2:].tolist()
-        entry = float(laws.entry_deformation[i]), float(laws.entry_work[i])
-        return int(laws.branch[i]), *entry, tuple(variables)
+            variables += laws.state.internal[i, -2:].tolist()
+        entry = float(laws.state.entry_deformation[i]), float(laws.state.entry_work[i])
+        return int(laws.state.branch[i]), *entry, tuple(variables)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
+from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws, LawState, LawTangent
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
 from pound_solve.laws.functions import (
@@ -27,222 +27,236 @@ def curved_force(
     laws: Laws, rules: Tables, i: int, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
+    state = laws.state
     response: tuple[float, float, float, float] = curve_of(
         rules,
-        laws.rule[i],
-        parameters(laws.parameters, i),
-        laws.branch[i],
-        internal(laws.internal, i),
-        laws.entry_deformation[i],
+        laws.definition.rule[i],
+        parameters(laws.definition.parameters, i),
+        state.branch[i],
+        internal(state.internal, i),
+        state.entry_deformation[i],
         d,
         v,
     )
     return response
 
 
-def linear_force(laws: Laws, i: int, d: float, v: float) -> float:
+def linear_force(tangent: LawTangent, i: int, d: float, v: float) -> float:
     """Force of law `i` on its linear branch or tangent."""
-    force: float = laws.stiffness[i] * d + laws.damping[i] * v + laws.offset[i]
+    force: float = tangent.stiffness[i] * d + tangent.damping[i] * v + tangent.offset[i]
     return force
 
 
 def proportional_damping(laws: Laws, i: int, k: float) -> float:
     """Dashpot in proportion to the tangent stiffness `k` of law `i`, or to its secant stiffness."""
-    c: float = laws.tangent_damping[i] * max(k, 0.0) + laws.secant_damping[i] * laws.internal[i, STIFFNESS]
+    c: float = (
+        laws.definition.tangent_damping[i] * max(k, 0.0)
+        + laws.definition.secant_damping[i] * laws.state.internal[i, STIFFNESS]
+    )
     return c
 
 
 def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
     """Copy the linear branch of law `i` and its event functions into the arrays of the kernels."""
+    definition, state, tangent = laws.definition, laws.state, laws.tangent
     b = branch_of(
-        rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+        rules,
+        definition.rule[i],
+        parameters(definition.parameters, i),
+        state.branch[i],
+        internal(state.internal, i),
     )
-    laws.stiffness[i], laws.damping[i], laws.offset[i] = (
-        b[0],
-        b[1] + proportional_damping(laws, i, b[0]),
-        b[2],
-    )
-    n_events = 0
-    for e in range(laws.events.shape[1]):
+    damping = b[1] + proportional_damping(laws, i, b[0])
+    tangent.stiffness[i], tangent.damping[i], tangent.offset[i] = b[0], damping, b[2]
+    coefficients, n_events = laws.events.coefficients, 0
+    for e in range(coefficients.shape[1]):
         x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
-        laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2] = x, y, z
+        coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2] = x, y, z
         if x != 0.0 or y != 0.0:
             n_events = e + 1
-    laws.n_events[i] = n_events
+    laws.events.n_events[i] = n_events
 
 
 def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
     """Work done on law `i` so far, dashpots excluded."""
-    before: float = laws.entry_work[i]
-    if laws.curved[i]:
+    state = laws.state
+    before: float = state.entry_work[i]
+    if laws.definition.curved[i]:
         return before + curved_force(laws, rules, i, d, 0.0)[3]
-    mean = 0.5 * laws.stiffness[i] * (d + laws.entry_deformation[i]) + laws.offset[i]
-    done: float = before + mean * (d - laws.entry_deformation[i])
+    mean = 0.5 * laws.tangent.stiffness[i] * (d + state.entry_deformation[i]) + laws.tangent.offset[i]
+    done: float = before + mean * (d - state.entry_deformation[i])
     return done
 
 
 def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     """Force of law `i`."""
-    if laws.curved[i]:
+    if laws.definition.curved[i]:
         c = curved_force(laws, rules, i, d, v)
         return c[0] + proportional_damping(laws, i, c[1]) * v
-    return linear_force(laws, i, d, v)
+    return linear_force(laws.tangent, i, d, v)
 
 
 def drag_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     """Dissipative force of law `i` at the rate `v`: its own dependence on the rate, and proportional
     dashpots.
     """
-    if not laws.curved[i]:
-        dashpot: float = laws.damping[i] * v
+    definition = laws.definition
+    if not definition.curved[i]:
+        dashpot: float = laws.tangent.damping[i] * v
         return dashpot
     if v == 0.0:
         return 0.0
     power: float = power_of(
         rules,
-        laws.rule[i],
-        parameters(laws.parameters, i),
-        laws.branch[i],
-        internal(laws.internal, i),
+        definition.rule[i],
+        parameters(definition.parameters, i),
+        laws.state.branch[i],
+        internal(laws.state.internal, i),
         d,
         v,
     )
-    return power / v + proportional_damping(laws, i, laws.stiffness[i]) * v
+    return power / v + proportional_damping(laws, i, laws.tangent.stiffness[i]) * v
 
 
 def leave_branch(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float) -> None:
     """Change the branch of law `i` by one of its events, at deformation `d` and rate `v`."""
+    state, coefficients = laws.state, laws.events.coefficients
     done = law_work(laws, rules, i, d)
-    reversal = laws.events[i, event, 0] == 0.0 and laws.events[i, event, 2] == 0.0
-    if reversal and abs(d) > laws.internal[i, TURN]:
-        laws.internal[i, TURN] = abs(d)
-        laws.internal[i, STIFFNESS] = max(law_force(laws, rules, i, d, 0.0) / d, 0.0)
+    reversal = coefficients[i, event, 0] == 0.0 and coefficients[i, event, 2] == 0.0
+    if reversal and abs(d) > state.internal[i, TURN]:
+        state.internal[i, TURN] = abs(d)
+        state.internal[i, STIFFNESS] = max(law_force(laws, rules, i, d, 0.0) / d, 0.0)
     at, m = transition_of(
         rules,
-        laws.rule[i],
-        parameters(laws.parameters, i),
-        laws.branch[i],
-        internal(laws.internal, i),
+        laws.definition.rule[i],
+        parameters(laws.definition.parameters, i),
+        state.branch[i],
+        internal(state.internal, i),
         event,
         d,
         v,
     )
-    laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = at, d, done
+    state.branch[i], state.entry_deformation[i], state.entry_work[i] = at, d, done
     for j in range(len(m)):
-        laws.internal[i, j] = m[j]
+        state.internal[i, j] = m[j]
     enter_branch(laws, rules, i)
 
 
-def press_friction(laws: Laws, i: int, force: float, rate: float, v: float) -> None:
+def press_friction(state: LawState, i: int, force: float, rate: float, v: float) -> None:
     """Set the normal force of coupled law `i`, and its rate, to those of its contact; zero while that
     pulls.
 
     It pulls only as the bodies part, at a rate `v` below zero: a force below zero at touch is rounding.
     """
-    laws.internal[i, PUSH] = max(force, 0.0)
-    laws.internal[i, PUSH_RATE] = rate if force >= 0.0 or v > 0.0 else 0.0
+    state.internal[i, PUSH] = max(force, 0.0)
+    state.internal[i, PUSH_RATE] = rate if force >= 0.0 or v > 0.0 else 0.0
 
 
 def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
     """Compute the normal force of coupled law `i` and its rate from the motion of its contact."""
-    j = laws.normal[i]
-    press_friction(laws, i, linear_force(laws, j, d, v), laws.stiffness[j] * v + laws.damping[j] * a, v)
+    j = laws.friction.normal_law[i]
+    rate = laws.tangent.stiffness[j] * v + laws.tangent.damping[j] * a
+    press_friction(laws.state, i, linear_force(laws.tangent, j, d, v), rate, v)
 
 
 def enter_coupled(laws: Laws, rules: Tables, i: int) -> None:
     """Copy the branch of coupled law `i` and its event functions into the arrays, with the rates at which
     its force and the limits of its events change: they are linear in the normal force.
     """
-    push = laws.internal[i, PUSH]
-    laws.internal[i, PUSH] = push + laws.internal[i, PUSH_RATE]
+    state, coefficients, friction = laws.state, laws.events.coefficients, laws.friction
+    push = state.internal[i, PUSH]
+    state.internal[i, PUSH] = push + state.internal[i, PUSH_RATE]
     enter_branch(laws, rules, i)
-    laws.offset_rate[i] = laws.offset[i]
-    for e in range(laws.events.shape[1]):
-        laws.limit_rates[i, e] = laws.events[i, e, 2]
-    laws.internal[i, PUSH] = push
+    friction.offset_rate[i] = laws.tangent.offset[i]
+    for e in range(coefficients.shape[1]):
+        friction.limit_rates[i, e] = coefficients[i, e, 2]
+    state.internal[i, PUSH] = push
     enter_branch(laws, rules, i)
-    laws.offset_rate[i] -= laws.offset[i]
-    for e in range(laws.events.shape[1]):
-        laws.limit_rates[i, e] -= laws.events[i, e, 2]
+    friction.offset_rate[i] -= laws.tangent.offset[i]
+    for e in range(coefficients.shape[1]):
+        friction.limit_rates[i, e] -= coefficients[i, e, 2]
 
 
 def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> None:
     """Strengths of the coupled laws at the end of a step."""
-    for i in laws.coupled:
-        j = laws.normal[i]
-        a = row_product(laws.rows, j, acceleration)
+    for i in laws.friction.coupled:
+        j = laws.friction.normal_law[i]
+        a = row_product(laws.definition.rows, j, acceleration)
         set_normal_force(laws, i, laws.trial.deformation[j], laws.trial.rate[j], a)
         enter_coupled(laws, rules, i)
 
 
 def hold_friction_limits(laws: Laws) -> None:
     """Store the limits of the coupled laws and their rates as those at the start of the next step."""
-    for i in laws.coupled:
-        for e in range(laws.events.shape[1]):
-            laws.limits_at_start[i, e] = laws.events[i, e, 2]
-            laws.limit_rates_at_start[i, e] = laws.limit_rates[i, e]
+    coefficients, friction = laws.events.coefficients, laws.friction
+    for i in friction.coupled:
+        for e in range(coefficients.shape[1]):
+            friction.limits_at_start[i, e] = coefficients[i, e, 2]
+            friction.limit_rates_at_start[i, e] = friction.limit_rates[i, e]
 
 
 def add_slip_work(laws: Laws, h: float) -> None:
     """Add up the work of the coupled laws that slip, over a step of length `h`."""
-    for i in laws.coupled:
-        if laws.stiffness[i] == 0.0:
-            f0, f1 = laws.friction_force[i], laws.offset[i]
+    friction = laws.friction
+    for i in friction.coupled:
+        if laws.tangent.stiffness[i] == 0.0:
+            f0, f1 = friction.force[i], laws.tangent.offset[i]
             v0, v1 = laws.now.rate[i], laws.trial.rate[i]
-            laws.entry_work[i] += h / 6.0 * ((2.0 * f0 + f1) * v0 + (f0 + 2.0 * f1) * v1)
-            laws.friction_force[i], laws.entry_deformation[i] = f1, laws.trial.deformation[i]
+            laws.state.entry_work[i] += h / 6.0 * ((2.0 * f0 + f1) * v0 + (f0 + 2.0 * f1) * v1)
+            friction.force[i], laws.state.entry_deformation[i] = f1, laws.trial.deformation[i]
 
 
 def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> None:
     """Let coupled law `i` engage or release with the contact that presses it, at the present normal
     force.
     """
-    j = laws.normal[i]
-    d, v, a = laws.now.deformation[j], laws.now.rate[j], row_product(laws.rows, j, acceleration)
+    friction = laws.friction
+    j = friction.normal_law[i]
+    d, v, a = laws.now.deformation[j], laws.now.rate[j], row_product(laws.definition.rows, j, acceleration)
     set_normal_force(laws, i, d, v, a)
-    if laws.curved[j]:  # its tangent may be that of the end of a step that was tried
+    if laws.definition.curved[j]:  # its tangent may be that of the end of a step that was tried
         c = curved_force(laws, rules, j, d, v)
         force = c[0]
         if force == 0.0 == c[1]:  # outside by rounding: the rate is that from inside
-            c = curved_force(laws, rules, j, d + EVENT_TOLERANCE * laws.largest_deformation[j], v)
-        press_friction(laws, i, force, c[1] * v + c[2] * a, v)
-    pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
-    if pressed != (laws.branch[i] != 0):
+            c = curved_force(laws, rules, j, d + EVENT_TOLERANCE * laws.largest.deformation[j], v)
+        press_friction(laws.state, i, force, c[1] * v + c[2] * a, v)
+    pressed = (friction.pressed_branches[i] >> laws.state.branch[j]) & 1
+    if pressed != (laws.state.branch[i] != 0):
         leave_branch(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
     enter_coupled(laws, rules, i)
-    laws.friction_force[i] = laws.stiffness[i] * laws.now.deformation[i] + laws.offset[i]
+    friction.force[i] = laws.tangent.stiffness[i] * laws.now.deformation[i] + laws.tangent.offset[i]
 
 
 def linearise_law(laws: Laws, rules: Tables, i: int, d: float, v: float) -> None:
     """Put the tangent of a curved law at deformation `d` and rate `v` in the place of its branch."""
+    tangent = laws.tangent
     c = curved_force(laws, rules, i, d, v)
     k, proportional = c[1], proportional_damping(laws, i, c[1])
-    laws.stiffness[i], laws.damping[i] = k, c[2] + proportional
-    laws.offset[i] = c[0] - k * d - c[2] * v
+    tangent.stiffness[i], tangent.damping[i] = k, c[2] + proportional
+    tangent.offset[i] = c[0] - k * d - c[2] * v
 
 
 def linearise_laws(laws: Laws, rules: Tables) -> None:
     """Linearise all curved laws at the start of the step."""
-    for i in range(len(laws.rule)):
-        if laws.curved[i]:
+    for i in range(len(laws.definition.rule)):
+        if laws.definition.curved[i]:
             linearise_law(laws, rules, i, laws.now.deformation[i], laws.now.rate[i])
 
 
 def save_state(laws: Laws, i: int) -> None:
     """Save the state of law `i`."""
-    laws.saved[i] = 1
-    saved = laws.saved_state[i]
-    saved[0], saved[1], saved[2] = laws.branch[i], laws.entry_deformation[i], laws.entry_work[i]
-    for j in range(laws.internal.shape[1]):
-        saved[3 + j] = laws.internal[i, j]
+    state, saved = laws.state, laws.saved.values[i]
+    saved[0], saved[1], saved[2] = state.branch[i], state.entry_deformation[i], state.entry_work[i]
+    for j in range(state.internal.shape[1]):
+        saved[3 + j] = state.internal[i, j]
 
 
 def restore_state(laws: Laws, rules: Tables, i: int) -> None:
     """Restore the saved state of law `i`."""
-    saved = laws.saved_state[i]
-    laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = int(saved[0]), saved[1], saved[2]
-    for j in range(laws.internal.shape[1]):
-        laws.internal[i, j] = saved[3 + j]
+    state, saved = laws.state, laws.saved.values[i]
+    state.branch[i], state.entry_deformation[i], state.entry_work[i] = int(saved[0]), saved[1], saved[2]
+    for j in range(state.internal.shape[1]):
+        state.internal[i, j] = saved[3 + j]
     enter_branch(laws, rules, i)
 
 
@@ -252,7 +266,7 @@ def event_on_path(laws: Laws, i: int, start: float, end: float, rate: float) -> 
     """
     sign = 1.0 if end >= start else -1.0
     best, where = -1, 0.0
-    for e in range(laws.n_events[i]):
+    for e in range(laws.events.n_events[i]):
         place = event_place(laws, i, e, start, end, rate)
         if place == place and (best < 0 or (place - where) * sign < 0.0):
             best, where = e, place
@@ -261,13 +275,14 @@ def event_on_path(laws: Laws, i: int, start: float, end: float, rate: float) -> 
 
 def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: float) -> float:
     """Deformation of event `e` of law `i` on such a path; NaN where it is not met."""
+    coefficients = laws.events.coefficients
     sign = 1.0 if end >= start else -1.0
-    a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+    a, b, c = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
     if a != 0.0:
         c += b * rate
     value, slope = a * start + c, a * sign
-    rounding = EVENT_TOLERANCE * abs(a) * laws.largest_deformation[i]
-    if laws.contact[i] and a != 0.0 and a * end + c <= rounding:
+    rounding = EVENT_TOLERANCE * abs(a) * laws.largest.deformation[i]
+    if laws.definition.contact[i] and a != 0.0 and a * end + c <= rounding:
         return np.nan
     if b != 0.0 and a == 0.0 and c == 0.0:
         return np.nan if b * sign <= 0.0 or end == start else start

@@ -37,7 +37,7 @@ class KernelPresent:
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
         engine, laws = self.engine, self.engine.laws
-        before = int(laws.branch[law])
+        before = int(laws.state.branch[law])
         laws.now.deformation[law], laws.now.rate[law] = d, v
         law_kernels.leave_branch(laws, engine.rules, law, event_index, d, v)
         self.enter(law)
@@ -48,7 +48,7 @@ class KernelPresent:
     def enter(self, law: int) -> None:
         """Linearise the branch that a law has changed to, if the law is curved."""
         laws = self.engine.laws
-        if laws.curved[law]:
+        if laws.definition.curved[law]:
             d, v = float(laws.now.deformation[law]), float(laws.now.rate[law])
             law_kernels.linearise_law(laws, self.engine.rules, law, d, v)
 
@@ -60,7 +60,7 @@ class KernelPresent:
         """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
         the input.
         """
-        self.engine.laws.entry_work[law] += lost
+        self.engine.laws.state.entry_work[law] += lost
         self.take_input(put_in)
 
     def take_input(self, put_in: float) -> None:

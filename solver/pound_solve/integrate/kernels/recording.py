@@ -20,19 +20,21 @@ def next_pause(step: Step, run: Run) -> int:
 
 def count_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: float) -> None:
     """Count a value into peak `i`; `law` is not negative for the force of a law."""
+    collision = laws.collision
     extremes = step.extremes
     if value > extremes.high[i]:
         extremes.high[i], extremes.t_high[i] = value, t
     if value < extremes.low[i]:
         extremes.low[i], extremes.t_low[i] = value, t
-    if law >= 0 and laws.contact[law] and value > laws.peak_force[law]:
-        laws.peak_force[law], laws.peak_time[law] = value, t
+    if law >= 0 and laws.definition.contact[law] and value > collision.peak_force[law]:
+        collision.peak_force[law], collision.peak_time[law] = value, t
 
 
 def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     """Value and slope of tracked quantity `i` at the start of the coming step (see `tracker.Extremes`)."""
     linear, laws = sim.linear, sim.laws
-    now, outputs, n_laws = sim.step.now, len(linear.monitored_constants), len(laws.rule)
+    definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
+    now, outputs, n_laws = sim.step.now, len(linear.monitored_constants), len(definition.rule)
     if i < outputs:
         value = row_product(linear.monitored, i, now.displacement) + linear.monitored_constants[i]
         slope = row_product(linear.monitored, i, now.velocity)
@@ -44,12 +46,12 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
         return laws.now.deformation[i - outputs], laws.now.rate[i - outputs]
     law = i - outputs - n_laws
     d, v = laws.now.deformation[law], laws.now.rate[law]
-    value, slope = laws.stiffness[law] * d + laws.offset[law], laws.stiffness[law] * v
-    if laws.viscous[law] and laws.damping[law] != 0.0:  # damping is no part of a spring's force
-        value += laws.damping[law] * v
-        slope += laws.damping[law] * row_product(laws.rows, law, now.acceleration)
+    value, slope = tangent.stiffness[law] * d + tangent.offset[law], tangent.stiffness[law] * v
+    if definition.viscous[law] and tangent.damping[law] != 0.0:  # damping is no part of a spring's force
+        value += tangent.damping[law] * v
+        slope += tangent.damping[law] * row_product(rows, law, now.acceleration)
         # the acceleration of an unknown without mass is a jump of its velocity over a step, or a part
-        if touches_massless(linear, laws, law):
+        if touches_massless(linear, rows, law):
             slope = 0.0
     return value, slope
 
@@ -59,8 +61,8 @@ def track_peaks(sim: Simulation, t: float, since: float) -> None:
     stationary points since the last update, `since` ago (0: none).
     """
     laws, step = sim.laws, sim.step
-    extremes, forces = step.extremes, len(sim.linear.monitored_constants) + len(laws.rule)
-    for i in range(forces + len(laws.rule)):
+    extremes, forces = step.extremes, len(sim.linear.monitored_constants) + len(laws.definition.rule)
+    for i in range(forces + len(laws.definition.rule)):
         value, slope = tracked_value(sim, i)
         count_extreme(laws, step, i - forces, i, value, t)
         if since > 0.0 and extremes.slope[i] * slope < 0.0:
@@ -77,43 +79,45 @@ def track_peaks(sim: Simulation, t: float, since: float) -> None:
 def log_transition(sim: Simulation, i: int, before: int, t: float, force: float) -> None:
     """Put a change of branch into the log; a contact begins to count its force anew."""
     laws = sim.laws
+    collision = laws.collision
     row = sim.buffers.log[sim.run.logged]
-    row[0], row[1], row[2], row[3] = i, before, laws.branch[i], t
+    row[0], row[1], row[2], row[3] = i, before, laws.state.branch[i], t
     row[4], row[5], row[6] = laws.now.deformation[i], laws.now.rate[i], force
-    row[7], row[8], row[9] = laws.peak_force[i], laws.peak_time[i], laws.impulse[i]
+    row[7], row[8], row[9] = collision.peak_force[i], collision.peak_time[i], collision.impulse[i]
     sim.run.logged += 1
-    if laws.contact[i]:
-        laws.peak_force[i], laws.peak_time[i], laws.impulse[i] = force, t, 0.0
+    if laws.definition.contact[i]:
+        collision.peak_force[i], collision.peak_time[i], collision.impulse[i] = force, t, 0.0
 
 
 def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
     """Keep the motion, the laws' forces and energies, and the works."""
     laws, buffers, works = sim.laws, sim.buffers, sim.works
+    definition, state = laws.definition, laws.state
     at, now = sim.run.kept, sim.step.now
     buffers.time[at] = t
     for i in range(len(sim.step.residual)):
         buffers.displacement[at, i] = now.displacement[i]
         buffers.velocity[at, i] = now.velocity[i]
         buffers.acceleration[at, i] = now.acceleration[i]
-    for i in range(len(laws.rule)):
+    for i in range(len(definition.rule)):
         d = laws.now.deformation[i]
         still = law_force(laws, rules, i, d, 0.0)
         whole = law_force(laws, rules, i, d, laws.now.rate[i])
-        buffers.force[at, i] = whole if laws.viscous[i] else still
+        buffers.force[at, i] = whole if definition.viscous[i] else still
         buffers.dashpot[at, i] = whole - buffers.force[at, i]
         held = recoverable_of(
             rules,
-            laws.rule[i],
-            parameters(laws.parameters, i),
-            laws.branch[i],
-            internal(laws.internal, i),
+            definition.rule[i],
+            parameters(definition.parameters, i),
+            state.branch[i],
+            internal(state.internal, i),
             d,
             still,
         )
         lost = law_work(laws, rules, i, d) - held
-        size = max(abs(d), abs(laws.entry_deformation[i]))
+        size = max(abs(d), abs(state.entry_deformation[i]))
         buffers.stored[at, i] = held
-        buffers.lost[at, i] = lost if abs(lost) > 1e-14 * laws.parameters[i, 0] * size * size else 0.0
+        buffers.lost[at, i] = lost if abs(lost) > 1e-14 * definition.parameters[i, 0] * size * size else 0.0
     kept = buffers.works[at]
     kept[0], kept[1], kept[2] = works.input, works.damping, works.contact
     sim.run.kept += 1

@@ -19,7 +19,7 @@ DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL, SHORT, LOOSE, STRIKE =
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns
 WHOLE, PART, MASS, MASSLESS = range(4)
-TURN, STIFFNESS = -2, -1  #: columns of `Laws.internal` beside the rule's own (see `SecantLaw`)
+TURN, STIFFNESS = -2, -1  #: columns of `LawState.internal` beside the rule's own (see `SecantLaw`)
 #: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
 LOGGED = 10
 
@@ -223,71 +223,28 @@ class Corotational(NamedTuple):
     largest: Array
 
 
-class LawMotion(NamedTuple):
-    """Deformations and rates of the laws at one instant, shape (n_laws,)."""
-
-    deformation: Array
-    rate: Array
-
-
-class Laws(NamedTuple):
-    """The laws: what they are, and the state they are in.  Arrays of one number a law have shape (n_laws,).
+class LawDefinition(NamedTuple):
+    """What the laws are: constant through a run.  Arrays of one number a law have shape (n_laws,).
 
     Attributes
     ----------
     rows : Rows
-        Their deformations over the unknowns.
+        Deformation of each law from the unknowns: its row b, by which its force also acts on them.
     inputs : ndarray, shape (n_laws, n_inputs)
-        Deformations of unit inputs.
+        Deformations from unit inputs.
     pair_pointers, pair_places, pair_values : ndarray
-        Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products.
+        Where the ``b b^T`` of each law adds to A: pointers, positions in the pattern of A, products.
     supports : ndarray, shape (n_laws, n_moved)
+        Deformations from unit displacements of moved supports.
     rule : ndarray of int
-        Number of the rule in the tables of functions.
+        Number of the law's rule in the tables of functions.
     curved, contact, viscous : ndarray of int
         Whether the law is curved; whether it is a contact; whether damping is part of the force that is
         reported.
-    coupled : ndarray, shape (n_coupled,)
-        Laws whose strength is a share of the force of another, which comes before them.
-    normal : ndarray of int
-        The law whose force is that normal force, -1 if none.
-    pressed_branches : ndarray of int
-        A bit for each branch of that one where it is pressed.
     tangent_damping, secant_damping : ndarray
-        Dashpot as a multiple of the tangent, and of the secant stiffness [T].
+        Dashpot as a multiple of the tangent stiffness, and of the secant stiffness [T].
     parameters : ndarray, shape (n_laws, PARAMETERS)
-    internal : ndarray, shape (n_laws, VARIABLES + 2)
-        Internal variables; the last two serve the secant stiffness.
-    branch : ndarray of int
-    entry_deformation, entry_work : ndarray
-        Where the branch was entered, and the work done up to there.
-    stiffness, damping, offset : ndarray
-        The linear branch, or the tangent of a curved one: ``f = k d + c v + f0``.
-    offset_rate : ndarray
-        Of a coupled law, the rate of f0 with the normal force.
-    n_events : ndarray of int
-    events : ndarray, shape (n_laws, EVENTS, 3)
-        Event functions of the branch, ``a d + b v + c``.
-    limits_at_start : ndarray, shape (n_laws, EVENTS)
-        Of a coupled law, c at the start of the step: its limits change with the normal force.
-    limit_rates, limit_rates_at_start : ndarray, shape (n_laws, EVENTS)
-        Rates of c with that force, at the end of the step that was tried and at its start.
-    now, trial : LawMotion
-    largest_deformation, largest_rate : ndarray
-    largest_terms : ndarray
-        Largest sum of the absolute terms that a rate is made of: its rounding is a share of them, however
-        small it is itself; as large from the start that a structure at rest moves by less.
-    friction_force : ndarray
-        Of a coupled law, at the start of the step.
-    dashpot_loss : ndarray
-        Energy lost in its dashpot so far [F L].
-    peak_force, peak_time, impulse : ndarray
-        Of the collision that is under way.
-    saved : ndarray of int
-        Whether the state is saved; where steps are cut, 1 + the number of the event by which it is left.
-    saved_state : ndarray, shape (n_laws, 3 + VARIABLES + 2)
-        State at the start of a step that is not cut at events.
-    members : Corotational
+        Parameters of the rule.
     """
 
     rows: Rows
@@ -300,38 +257,178 @@ class Laws(NamedTuple):
     curved: Index
     contact: Index
     viscous: Index
-    coupled: Index
-    normal: Index
-    pressed_branches: Index
     tangent_damping: Array
     secant_damping: Array
     parameters: Array
-    internal: Array
+
+
+class LawState(NamedTuple):
+    """What the laws remember of their past.  Arrays of one number a law have shape (n_laws,).
+
+    Attributes
+    ----------
+    branch : ndarray of int
+        Number of the branch in the rule.
+    entry_deformation, entry_work : ndarray
+        Deformation at which the branch was entered, and the work done on the law up to there [F L].
+    internal : ndarray, shape (n_laws, VARIABLES + 2)
+        Internal variables of the rule; the last two serve the secant stiffness (`TURN`, `STIFFNESS`).
+    dashpot_loss : ndarray
+        Energy lost in the law's dashpot so far [F L].
+    """
+
     branch: Index
     entry_deformation: Array
     entry_work: Array
+    internal: Array
+    dashpot_loss: Array
+
+
+class SavedState(NamedTuple):
+    """States of the laws to go back to: after a trial, or at the start of a step that is not cut at events.
+
+    Attributes
+    ----------
+    in_step : ndarray of bool, shape (n_laws,)
+        Whether the state at the start of the present step is kept here, as the law has left its branch
+        since; only used where steps are not cut at events.
+    values : ndarray, shape (n_laws, 3 + VARIABLES + 2)
+        The branch, where it was entered, the work up to there, the internal variables.
+    """
+
+    in_step: Flags
+    values: Array
+
+
+class LawTangent(NamedTuple):
+    """Linear branches of the laws, or tangents of curved ones: ``f = k d + c v + f0``; shape (n_laws,).
+
+    Attributes
+    ----------
+    stiffness, damping, offset : ndarray
+        k [F/L], c [F T/L] and f0 [F].
+    """
+
     stiffness: Array
     damping: Array
     offset: Array
-    offset_rate: Array
+
+
+class BranchEvents(NamedTuple):
+    """Events that end the laws' branches: a law leaves its branch as an event function rises above zero.
+
+    Attributes
+    ----------
+    n_events : ndarray of int, shape (n_laws,)
+        Number of the branch's event functions.
+    coefficients : ndarray, shape (n_laws, EVENTS, 3)
+        a, b and c of each event function, ``a d + b v + c``.
+    pending : ndarray of int, shape (n_laws,)
+        Number of the event by which the law is to leave its branch at the present instant; -1 for none.
+    """
+
     n_events: Index
-    events: Array
+    coefficients: Array
+    pending: Index
+
+
+class FrictionCoupling(NamedTuple):
+    """Coupled laws, those of friction: their strength is a share of the force of another law.
+
+    Arrays but for `coupled` have a row for every law; only those of coupled laws are used.
+
+    Attributes
+    ----------
+    coupled : ndarray, shape (n_coupled,)
+        The coupled laws; each comes after the law that presses it.
+    normal_law : ndarray of int, shape (n_laws,)
+        The law whose force is the normal force; -1 for a law that is not coupled.
+    pressed_branches : ndarray of int, shape (n_laws,)
+        A bit for each branch of the normal law on which it is pressed.
+    force : ndarray, shape (n_laws,)
+        Friction force at the start of the step [F].
+    offset_rate : ndarray, shape (n_laws,)
+        Rate of the tangent's f0 due to the normal force [F/T].
+    limits_at_start : ndarray, shape (n_laws, EVENTS)
+        c of the event functions at the start of the step: it changes with the normal force.
+    limit_rates, limit_rates_at_start : ndarray, shape (n_laws, EVENTS)
+        Rates of c, at the end of the step that was tried and at its start.
+    """
+
+    coupled: Index
+    normal_law: Index
+    pressed_branches: Index
+    force: Array
+    offset_rate: Array
     limits_at_start: Array
     limit_rates: Array
     limit_rates_at_start: Array
-    now: LawMotion
-    trial: LawMotion
-    largest_deformation: Array
-    largest_rate: Array
-    largest_terms: Array
-    friction_force: Array
-    dashpot_loss: Array
+
+
+class LawMotion(NamedTuple):
+    """Deformations and rates of the laws at one instant, shape (n_laws,)."""
+
+    deformation: Array
+    rate: Array
+
+
+class LawExtremes(NamedTuple):
+    """Largest magnitudes of the laws' motion so far, by which rounding is judged; shape (n_laws,).
+
+    Attributes
+    ----------
+    deformation, rate : ndarray
+    terms : ndarray
+        Largest sum of the absolute terms that a rate is made of: its rounding is a share of them, however
+        small it is itself; as large from the start that a structure at rest moves by less.
+    """
+
+    deformation: Array
+    rate: Array
+    terms: Array
+
+
+class CollisionForces(NamedTuple):
+    """Forces of the contacts in the collision that is under way, shape (n_laws,).
+
+    Attributes
+    ----------
+    peak_force, peak_time, impulse : ndarray
+        Largest force so far [F], its time [T], and the integral of the force over the time [F T].
+    """
+
     peak_force: Array
     peak_time: Array
     impulse: Array
-    saved: Index
-    saved_state: Array
-    members: Corotational
+
+
+class Laws(NamedTuple):
+    """The laws: what they are, the state they are in, and what follows from it at the present instant.
+
+    Attributes
+    ----------
+    definition : LawDefinition
+    state : LawState
+    saved : SavedState
+    tangent : LawTangent
+    events : BranchEvents
+    friction : FrictionCoupling
+    now, trial : LawMotion
+        At the start of the step and at its end.
+    largest : LawExtremes
+    collision : CollisionForces
+    """
+
+    definition: LawDefinition
+    state: LawState
+    saved: SavedState
+    tangent: LawTangent
+    events: BranchEvents
+    friction: FrictionCoupling
+    now: LawMotion
+    trial: LawMotion
+    largest: LawExtremes
+    collision: CollisionForces
 
 
 class MotionState(NamedTuple):
@@ -506,6 +603,7 @@ class Simulation(NamedTuple):
     ----------
     linear : LinearSystem
     laws : Laws
+    members : Corotational
     step : Step
     buffers : Buffers
     works : Works
@@ -514,6 +612,7 @@ class Simulation(NamedTuple):
 
     linear: LinearSystem
     laws: Laws
+    members: Corotational
     step: Step
     buffers: Buffers
     works: Works

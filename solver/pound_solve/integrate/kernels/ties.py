@@ -37,11 +37,19 @@ def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: flo
 
 def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
     """Number of the event of a law that occurs now, if the law holds an unknown without mass; else -1."""
-    if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
+    definition, coefficients = laws.definition, laws.events.coefficients
+    if (
+        definition.contact[i]
+        or definition.curved[i]
+        or laws.friction.normal_law[i] >= 0
+        or not touches_massless(linear, definition.rows, i)
+    ):
         return -1
-    d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest_deformation[i]
-    for e in range(laws.n_events[i]):
-        if event_arrives(laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2], d, v, largest):
+    d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest.deformation[i]
+    for e in range(laws.events.n_events[i]):
+        if event_arrives(
+            coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2], d, v, largest
+        ):
             return e
     return -1
 
@@ -50,14 +58,15 @@ def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event
     """Whether a law that holds an unknown without mass has neither stiffness nor force after an event, and
     loses no force by it.
     """
-    d, v, k, f0 = laws.now.deformation[i], laws.now.rate[i], laws.stiffness[i], laws.offset[i]
-    if laws.contact[i] or laws.curved[i] or not touches_massless(linear, laws, i):
+    definition, tangent = laws.definition, laws.tangent
+    d, v, k, f0 = laws.now.deformation[i], laws.now.rate[i], tangent.stiffness[i], tangent.offset[i]
+    if definition.contact[i] or definition.curved[i] or not touches_massless(linear, definition.rows, i):
         return False
     save_state(laws, i)
     leave_branch(laws, rules, i, event, d, v)
-    slack = laws.stiffness[i] == 0.0 and laws.offset[i] == 0.0 and not lets_go(linear, laws, i, k, f0, d)
+    no_force = tangent.stiffness[i] == 0.0 and tangent.offset[i] == 0.0
+    slack = no_force and not lets_go(linear, laws, i, k, f0, d)
     restore_state(laws, rules, i)
-    laws.saved[i] = 0
     return slack
 
 
@@ -67,8 +76,8 @@ def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> 
     ones.
     """
     linear, laws = sim.linear, sim.laws
-    if laws.stiffness[law] != 0.0 and becomes_slack(linear, laws, rules, law, event):
-        for i in range(len(laws.rule)):
+    if laws.tangent.stiffness[law] != 0.0 and becomes_slack(linear, laws, rules, law, event):
+        for i in range(len(laws.definition.rule)):
             e = arriving_event(linear, laws, i) if i != law else -1
             if e >= 0 and not becomes_slack(linear, laws, rules, i, e):
                 return i, e
@@ -79,21 +88,26 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns:
     """Branch at whose beginning law `i` stands, as it `turns` or else rests; -1 for none, and for laws that
     hold no unknown without mass.
     """
-    if laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0 or not touches_massless(linear, laws, i):
+    definition, coefficients, state = laws.definition, laws.events.coefficients, laws.state
+    if (
+        definition.contact[i]
+        or definition.curved[i]
+        or laws.friction.normal_law[i] >= 0
+        or not touches_massless(linear, definition.rows, i)
+    ):
         return -1
-    d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest_deformation[i]
-    entered = abs(d - laws.entry_deformation[i]) <= NEAR_EVENT * largest
-    if not turns and (entered or abs(v) > STATIONARY_RATE * laws.largest_rate[i]):
+    d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest.deformation[i]
+    entered = abs(d - state.entry_deformation[i]) <= NEAR_EVENT * largest
+    if not turns and (entered or abs(v) > STATIONARY_RATE * laws.largest.rate[i]):
         return -1
-    for e in range(laws.n_events[i]):
-        if event_near(laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2], d, largest):
+    for e in range(laws.events.n_events[i]):
+        if event_near(coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2], d, largest):
             save_state(laws, i)
             leave_branch(laws, rules, i, e, d, v)
-            branch: int = laws.branch[i]
+            branch: int = state.branch[i]
             restore_state(laws, rules, i)
-            laws.saved[i] = 0
             return branch
-    return laws.branch[i] if entered else -1
+    return state.branch[i] if entered else -1
 
 
 def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
@@ -101,10 +115,11 @@ def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
     `event`.
     """
     laws, buffers, run = sim.laws, sim.buffers, sim.run
-    turns = laws.events[law, event, 0] == 0.0 and laws.events[law, event, 1] != 0.0
-    if not turns or laws.contact[law] or not touches_massless(sim.linear, laws, law):
+    definition, coefficients = laws.definition, laws.events.coefficients
+    turns = coefficients[law, event, 0] == 0.0 and coefficients[law, event, 1] != 0.0
+    if not turns or definition.contact[law] or not touches_massless(sim.linear, definition.rows, law):
         return
-    for i in range(len(laws.rule)):
+    for i in range(len(definition.rule)):
         branch = branch_begun(sim.linear, laws, rules, i, i == law)
         if branch >= 0 and run.rests < len(buffers.rests):
             row = buffers.rests[run.rests]
@@ -121,29 +136,29 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
     branch of other laws whose forces fall.
     """
     linear, laws, buffers, run = sim.linear, sim.laws, sim.buffers, sim.run
-    plain = not laws.contact[law] and not laws.curved[law]
+    definition, tangent = laws.definition, laws.tangent
+    plain = not definition.contact[law] and not definition.curved[law]
     fell = lets_go(linear, laws, law, stiffness, offset, laws.now.deformation[law])
-    softer = plain and laws.stiffness[law] < stiffness and touches_massless(linear, laws, law)
+    softer = plain and tangent.stiffness[law] < stiffness and touches_massless(linear, definition.rows, law)
     if not (fell or softer) or run.tied == len(buffers.ties):
         return
     row, count = buffers.ties[run.tied], 0
     rate = laws.now.rate
-    for i in range(len(laws.rule)):
-        row[0, i], row[1, i], row[2, i] = laws.stiffness[i], laws.damping[i], 0.0
+    for i in range(len(definition.rule)):
+        row[0, i], row[1, i], row[2, i] = tangent.stiffness[i], tangent.damping[i], 0.0
         e = arriving_event(linear, laws, i) if i != law else -1
         if e < 0:
             continue
-        d, v, k, f0 = laws.now.deformation[i], rate[i], laws.stiffness[i], laws.offset[i]
+        d, v, k, f0 = laws.now.deformation[i], rate[i], tangent.stiffness[i], tangent.offset[i]
         save_state(laws, i)
         leave_branch(laws, rules, i, e, d, v)
         if fell and lets_go(linear, laws, i, k, f0, d):
-            row[0, i], row[1, i], row[2, i] = -np.inf, laws.branch[i], v
+            row[0, i], row[1, i], row[2, i] = -np.inf, laws.state.branch[i], v
             count += 1
-        elif not fell and laws.stiffness[i] < k:
-            row[0, i], row[2, i] = laws.stiffness[i], v
+        elif not fell and tangent.stiffness[i] < k:
+            row[0, i], row[2, i] = tangent.stiffness[i], v
             count += 1
         restore_state(laws, rules, i)
-        laws.saved[i] = 0
     if count > 0:
         row[2, law] = rate[law]
         buffers.tie_time[run.tied] = run.time

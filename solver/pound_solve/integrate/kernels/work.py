@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.laws import linear_force
-from pound_solve.integrate.kernels.state import LawMotion, Laws, LinearSystem, MemberState, MotionState
+from pound_solve.integrate.kernels.state import (
+    Corotational,
+    LawMotion,
+    Laws,
+    LinearSystem,
+    MemberState,
+    MotionState,
+)
 from pound_solve.numerics.jit import loose
 from pound_solve.numerics.types import Array
 
 
 def support_power(
-    linear: LinearSystem, laws: Laws, motion: MotionState, law_motion: LawMotion, members: MemberState
-) -> tuple[float, float]:
+    linear: LinearSystem, laws: Laws, members: Corotational, motion: MotionState, law_motion: LawMotion,
+    member_state: MemberState,
+) -> tuple[float, float]:  # fmt: skip
     """Power that moved supports put in, and that lost in dashpots which end at them, at one instant."""
+    definition = laws.definition
     put, lost = 0.0, 0.0
     moved = len(linear.support_damping)
     for q in range(moved):
@@ -27,13 +36,13 @@ def support_power(
                 + linear.reactions[2, q, i] * motion.acceleration[i]
             )
             drag += linear.reactions[1, q, i] * motion.velocity[i]
-        for i in range(len(laws.rule)):
-            if laws.supports[i, q] != 0.0:
-                f = linear_force(laws, i, law_motion.deformation[i], law_motion.rate[i])
-                force += laws.supports[i, q] * f
-        for c in range(len(members.forces)):
+        for i in range(len(definition.rule)):
+            if definition.supports[i, q] != 0.0:
+                f = linear_force(laws.tangent, i, law_motion.deformation[i], law_motion.rate[i])
+                force += definition.supports[i, q] * f
+        for c in range(len(member_state.forces)):
             for j in range(6):
-                force += laws.members.supports[c, j, q] * members.forces[c, j]
+                force += members.supports[c, j, q] * member_state.forces[c, j]
         put += (force + drag) * speed
         lost += 2.0 * drag * speed
         for z in range(moved):

@@ -27,13 +27,13 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
     """Let a law leave its branch."""
     laws, run = sim.laws, sim.run
     law = event.law
-    before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
+    before, d, v = laws.state.branch[law], laws.now.deformation[law], laws.now.rate[law]
     note_rests(sim, rules, law, event.event_index)
     leave_branch(laws, rules, law, event.event_index, d, v)
     take_over(laws, rules, series, law)
     # the rate of an unknown without mass jumps, and the force of its dashpot with it
     force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
-    if before != laws.branch[law]:
+    if before != laws.state.branch[law]:
         log_transition(sim, law, before, t, force)
     run.events += 1
     run.fault = law
@@ -58,11 +58,11 @@ def change_branches(
     ahead = Extent(extent.begin, extent.h, extent.terms, min(event.time + AHEAD, extent.end))
     first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
     event = LocatedEvent(first, its_event, event.time)
-    stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
+    stiffness, offset = laws.tangent.stiffness[event.law], laws.tangent.offset[event.law]
     change_branch(sim, rules, series, now, event)
     note_ties(sim, rules, event.law, stiffness, offset)
     # with unknowns without mass `settle_state` decides
-    for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):
+    for i in range(len(laws.definition.rule) if len(series.massless.unknown) == 0 else 0):
         if i != event.law and series.rigid.number[i] < 0:
             other = event_of(laws, series, ahead, i)
             if other.law >= 0 and other.event_index >= 0 and other.time <= event.time + instant / extent.h:
@@ -121,7 +121,7 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     in_series += len(series.smooth.laws) + len(series.viscous.laws)
     if len(held.unknown) + in_series == 0:
         return DONE
-    for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
+    for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.definition.rule)):
         change_friction(sim, rules, series)
         if not renew_branches(sim, rules, series):
             return LOOSE

@@ -59,13 +59,13 @@ def allocate(curved: Flags, terms: int) -> Curved:
 
 def overlap(laws: Laws, i: int) -> float:
     """Present overlap of contact `i`."""
-    x: float = laws.now.deformation[i] - laws.parameters[i, GAP]
+    x: float = laws.now.deformation[i] - laws.definition.parameters[i, GAP]
     return x
 
 
 def touch_overlap(laws: Laws, i: int) -> float:
     """Overlap of contact `i` up to which it counts as zero."""
-    x: float = NO_OVERLAP * (laws.largest_deformation[i] + abs(laws.parameters[i, GAP]))
+    x: float = NO_OVERLAP * (laws.largest.deformation[i] + abs(laws.definition.parameters[i, GAP]))
     return x
 
 
@@ -75,7 +75,11 @@ def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     """
     r = curved.number[i]
     powers = powers_of(
-        rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+        rules,
+        laws.definition.rule[i],
+        parameters(laws.definition.parameters, i),
+        laws.state.branch[i],
+        internal(laws.state.internal, i),
     )
     numbers = curved.numbers[r]
     numbers[K], numbers[N], numbers[C], numbers[Q], numbers[PULLS], numbers[SHIFT] = powers
@@ -132,11 +136,11 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
             d[m] = deformation_term(laws, series, m, top, i)
-        x = d[0] - laws.parameters[i, GAP] - curved.numbers[r, SHIFT]
+        x = d[0] - laws.definition.parameters[i, GAP] - curved.numbers[r, SHIFT]
         force = force_term(curved.numbers[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force
         if curved.phase[r] == PRESSED:
-            add_row(laws.rows, i, -h * h * force, new)
+            add_row(laws.definition.rows, i, -h * h * force, new)
 
 
 def any_overlap(curved: Curved) -> bool:

@@ -49,8 +49,9 @@ def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> N
 
 def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: Array) -> None:
     """Put the series of the force of law `i` into `out`, all dashpots included."""
+    tangent = laws.tangent
     smooth, d = series.smooth, series.deformation[i]
-    r, damping = smooth.number[i], laws.damping[i]
+    r, damping = smooth.number[i], tangent.damping[i]
     if has_series(series, i):
         copy_force(series, terms, i, 1.0, out)
         if r >= 0:
@@ -59,8 +60,8 @@ def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: A
         return
     acts = 1.0 if series.curved.number[i] < 0 else 0.0  # which presses nothing now
     for k in range(terms + 1):
-        out[k] = acts * laws.stiffness[i] * d[k]
-    out[0] += acts * laws.offset[i]
+        out[k] = acts * tangent.stiffness[i] * d[k]
+    out[0] += acts * tangent.offset[i]
     if damping != 0.0:
         for k in range(terms):
             out[k] += acts * damping * (k + 1) / h * d[k + 1]
@@ -80,9 +81,9 @@ def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: fl
     rigid, curved = series.rigid, series.curved
     for q in range(rigid.n_held[0]):
         r = rigid.held[q]
-        laws.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
+        laws.tangent.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
     for r in range(len(curved.laws)):
-        laws.offset[curved.laws[r]] = (
+        laws.tangent.offset[curved.laws[r]] = (
             force_at(curved.force[r], terms, s) if curved.phase[r] == PRESSED else 0.0
         )
 
@@ -91,6 +92,6 @@ def count_largest(laws: Laws, series: Series) -> None:
     """Update the largest force of each rigid and curved contact."""
     rigid, curved = series.rigid, series.curved
     for r in range(len(rigid.laws)):
-        rigid.largest[r] = max(rigid.largest[r], abs(laws.offset[rigid.laws[r]]))
+        rigid.largest[r] = max(rigid.largest[r], abs(laws.tangent.offset[rigid.laws[r]]))
     for r in range(len(curved.laws)):
-        curved.largest[r] = max(curved.largest[r], abs(laws.offset[curved.laws[r]]))
+        curved.largest[r] = max(curved.largest[r], abs(laws.tangent.offset[curved.laws[r]]))

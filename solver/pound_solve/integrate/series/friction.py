@@ -48,7 +48,7 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
 
 def side_of(laws: Laws, friction: Friction, i: int) -> None:
     """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 where it does not."""
-    at = laws.branch[i]
+    at = laws.state.branch[i]
     friction.side[friction.number[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
 
@@ -59,15 +59,16 @@ def is_sliding(friction: Friction, i: int) -> bool:
 
 def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
     """Coefficient `k` of the normal force of friction `r`; the inputs have `top` coefficients."""
+    tangent = laws.tangent
     j, curved = series.friction.normal[r], series.curved
     number = curved.number[j]
     if number >= 0:
         force: float = curved.force[number, k] if curved.phase[number] == PRESSED else 0.0
         return force
-    linear: float = laws.stiffness[j] * deformation_term(laws, series, k, top, j)
-    if laws.damping[j] != 0.0:
-        linear += laws.damping[j] * (k + 1) / h * deformation_term(laws, series, k + 1, top, j)
-    return linear + laws.offset[j] if k == 0 else linear
+    linear: float = tangent.stiffness[j] * deformation_term(laws, series, k, top, j)
+    if tangent.damping[j] != 0.0:
+        linear += tangent.damping[j] * (k + 1) / h * deformation_term(laws, series, k + 1, top, j)
+    return linear + tangent.offset[j] if k == 0 else linear
 
 
 def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
@@ -77,47 +78,48 @@ def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
     friction = series.friction
     for r in range(len(friction.laws)):
         i = friction.laws[r]
-        if laws.branch[i] == OPEN:
+        if laws.state.branch[i] == OPEN:
             continue
         friction.push[r, k] = push_term(laws, series, r, k, h, top)
         if friction.side[r] != 0.0:
-            share = friction.side[r] * laws.parameters[i, MUD] if friction.pressing[r] else 0.0
+            share = friction.side[r] * laws.definition.parameters[i, MUD] if friction.pressing[r] else 0.0
             friction.force[r, k] = share * friction.push[r, k]
-            add_row(laws.rows, i, -h * h * friction.force[r, k], new)
+            add_row(laws.definition.rows, i, -h * h * friction.force[r, k], new)
 
 
 def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
     """Set the normal forces of the friction laws, and the forces of sliding, to those at the place `s`."""
-    friction = series.friction
+    state, friction = laws.state, series.friction
     for r in range(len(friction.laws)):
         i = friction.laws[r]
-        if laws.branch[i] == OPEN:
+        if state.branch[i] == OPEN:
             continue
         push, rate = 0.0, 0.0
         for k in range(terms - 2, -1, -1):
             rate = rate * s + push
             push = push * s + friction.push[r, k]
-        laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(push, 0.0), rate / h
+        state.internal[i, PUSH], state.internal[i, PUSH_RATE] = max(push, 0.0), rate / h
         friction.largest[r] = max(friction.largest[r], push)
         if friction.side[r] != 0.0:
-            laws.offset[i] = friction.side[r] * laws.parameters[i, MUD] * max(push, 0.0)
+            laws.tangent.offset[i] = friction.side[r] * laws.definition.parameters[i, MUD] * max(push, 0.0)
 
 
 def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
     """Set the normal force of friction `r` after a change of its contact, and return the event that
     follows; -1 for none.
     """
+    state = laws.state
     i, j = friction.laws[r], friction.normal[r]
-    pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
-    if bool(pressed) == (laws.branch[i] != OPEN):
+    pressed = (laws.friction.pressed_branches[i] >> state.branch[j]) & 1
+    if bool(pressed) == (state.branch[i] != OPEN):
         return -1
     d, v = laws.now.deformation[j], laws.now.rate[j]
-    push, rate = linear_force(laws, j, d, v), laws.stiffness[j] * v
-    if laws.curved[j]:
+    push, rate = linear_force(laws.tangent, j, d, v), laws.tangent.stiffness[j] * v
+    if laws.definition.curved[j]:
         response = curved_force(laws, rules, j, d, v)
         push, rate = response[0], response[1] * v
     friction.pressing[r] = push >= 0.0
-    laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(push, 0.0), rate
+    state.internal[i, PUSH], state.internal[i, PUSH_RATE] = max(push, 0.0), rate
     return 0 if pressed else RELEASED
 
 
@@ -135,8 +137,8 @@ def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
 def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
     """The first event of friction law `i` before the place `end`, see `none`."""
     friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
-    r, numbers = friction.number[i], laws.parameters[i]
-    if laws.branch[i] == OPEN:
+    r, numbers = friction.number[i], laws.definition.parameters[i]
+    if laws.state.branch[i] == OPEN:
         return none(extent.end)
     terms, h = extent.terms, extent.h
     first = lift_event(series, terms, extent.end, i)
@@ -146,14 +148,14 @@ def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> Locate
         for k in range(terms + 1):
             p[k] = 0.0
         if sliding:  # the slider would turn back
-            scale, share = laws.largest_rate[i], pressing * numbers[MUD] / numbers[KT]
+            scale, share = laws.largest.rate[i], pressing * numbers[MUD] / numbers[KT]
             for k in range(terms - 2):
                 p[k] = (k + 1) / h * (share * friction.push[r, k + 1] - sign * d[i, k + 1])
         else:  # the spring reaches the limit
-            scale = numbers[KT] * laws.largest_deformation[i] + numbers[MU] * friction.largest[r]
+            scale = numbers[KT] * laws.largest.deformation[i] + numbers[MU] * friction.largest[r]
             for k in range(terms - 1):
                 p[k] = sign * numbers[KT] * d[i, k] - pressing * numbers[MU] * friction.push[r, k]
-            p[0] -= sign * numbers[KT] * laws.internal[i, ANCHOR]
+            p[0] -= sign * numbers[KT] * laws.state.internal[i, ANCHOR]
         if p[0] > OVERDUE * scale:
             return LocatedEvent(i, e, 0.0)
         at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)

@@ -69,32 +69,32 @@ def update_displacement_scale(laws: Laws, series: Series, extent: Extent) -> Non
     rounding of the deformation is a share of these, and for bodies that move alike the
     deformation is nothing but rounding.
     """
-    rows, motion = laws.rows, series.motion
-    for i in range(len(laws.rule)):
-        if laws.contact[i]:
+    definition, rows, motion = laws.definition, laws.definition.rows, series.motion
+    for i in range(len(definition.rule)):
+        if definition.contact[i]:
             far = 0.0
             for q in range(rows.pointers[i], rows.pointers[i + 1]):
                 x, at = 0.0, rows.columns[q]
                 for k in range(extent.terms, -1, -1):
                     x = x * extent.end + motion[k, at]
                 far += abs(rows.values[q]) * max(abs(x), abs(motion[0, at]))
-            laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
+            laws.largest.deformation[i] = max(laws.largest.deformation[i], far)
 
 
 def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) -> None:
     """Set the present motion and the state of the laws to those at the end of a step."""
-    terms, h, end = extent.terms, extent.h, extent.end
+    largest, terms, h, end = laws.largest, extent.terms, extent.h, extent.end
     evaluate_motion(series.motion, terms, end, h, 0, now.displacement)
     evaluate_motion(series.motion, terms, end, h, 1, now.velocity)
-    for i in range(len(laws.rule)):
+    for i in range(len(laws.definition.rule)):
         d, v = law_at(series, terms, end, h, i)
         if is_held(series.rigid, i):
-            d, v = laws.entry_deformation[i], 0.0
+            d, v = laws.state.entry_deformation[i], 0.0
         if is_sliding(series.friction, i):  # its work is added up
-            laws.entry_deformation[i] = d
+            laws.state.entry_deformation[i] = d
         laws.now.deformation[i], laws.now.rate[i] = d, v
-        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
-        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
+        largest.deformation[i] = max(largest.deformation[i], abs(d))
+        largest.rate[i] = max(largest.rate[i], abs(v))
     update_branch_forces(laws, series, terms, end, h)
     count_largest(laws, series)
 
@@ -103,7 +103,7 @@ def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
     """Whether the contact of an event starts an implicit step at rest.  Its motion may then be smaller than
     the error of the polynomial, so that its direction is unreliable.
     """
-    at_rest = event.law >= 0 and laws.contact[event.law] and laws.now.rate[event.law] == 0.0
+    at_rest = event.law >= 0 and laws.definition.contact[event.law] and laws.now.rate[event.law] == 0.0
     return at_rest and is_implicit(series)
 
 
@@ -235,7 +235,7 @@ def step_to_goal(
             continue
         run.time = t + at * h
         count_instant(run, h)
-        if run.same_instant > CHANGES + CHANGES_PER_LAW * len(laws.rule):
+        if run.same_instant > CHANGES + CHANGES_PER_LAW * len(laws.definition.rule):
             run.fault = event.law
             return CHATTER
         why = answer_event(sim, rules, series, piece, searched, event)

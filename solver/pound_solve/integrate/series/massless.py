@@ -111,7 +111,7 @@ def form_matrix(laws: Laws, held: Massless, which: int) -> None:
         held.matrix[q] = held.on_pattern[which, q]
     for n in range(len(held.laws)):
         i = held.laws[n]
-        coefficient = laws.damping[i] if which == DAMPING else laws.stiffness[i]
+        coefficient = laws.tangent.damping[i] if which == DAMPING else laws.tangent.stiffness[i]
         for q in range(held.pair_pointers[n], held.pair_pointers[n + 1]):
             held.matrix[held.pair_places[q]] += coefficient * held.pair_values[q]
 
@@ -210,7 +210,7 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
         if held.law_number[i] >= 0:
-            force = k / h * laws.damping[i] * deformation_term(laws, series, k, top, i)
+            force = k / h * laws.tangent.damping[i] * deformation_term(laws, series, k, top, i)
             add_row(held.rows, held.law_number[i], -force, x)
     for r in range(len(series.smooth.laws)):
         n = held.law_number[series.smooth.laws[r]]
@@ -244,7 +244,7 @@ def joints_jump(laws: Laws, series: Series, top: int) -> bool:
     held, most, far = series.massless, 0.0, 0.0
     for i in held.laws:
         d = laws.now.deformation[i]
-        most = max(most, abs(d), laws.largest_deformation[i])
+        most = max(most, abs(d), laws.largest.deformation[i])
         far = max(far, abs(deformation_term(laws, series, 0, top, i) - d))
     return far > DEFORMATION_JUMP * most
 
@@ -256,15 +256,16 @@ def first_violated(laws: Laws, which: Index) -> tuple[int, int]:
     A rate up to the rounding of the force over the dashpot's coefficient counts as zero: at rest it is
     nothing else.
     """
+    coefficients = laws.events.coefficients
     for i in which:
-        d, v, c = laws.now.deformation[i], laws.now.rate[i], laws.damping[i]
-        largest = laws.largest_rate[i]
+        d, v, c = laws.now.deformation[i], laws.now.rate[i], laws.tangent.damping[i]
+        largest = laws.largest.rate[i]
         if c > 0.0:
-            largest = max(largest, abs(linear_force(laws, i, d, 0.0)) / c)
-        for e in range(laws.n_events[i]):
-            on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+            largest = max(largest, abs(linear_force(laws.tangent, i, d, 0.0)) / c)
+        for e in range(laws.events.n_events[i]):
+            on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
             if on_v != 0.0:
-                scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * largest
+                scale = abs(on_d) * laws.largest.deformation[i] + abs(on_v) * largest
                 if on_d * d + on_v * v + constant > EVENT_TOLERANCE * (scale + abs(constant)):
                     return i, e
     return -1, -1

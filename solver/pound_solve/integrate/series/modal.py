@@ -56,8 +56,8 @@ def renew_modes(laws: Laws, series: Series) -> None:
     modal.serves[0] = 0
     if modal.length[0] == 0.0:
         return
-    for i in range(len(laws.rule)):
-        if laws.stiffness[i] != modal.stiffness[i] or laws.damping[i] != 0.0:
+    for i in range(len(laws.definition.rule)):
+        if laws.tangent.stiffness[i] != modal.stiffness[i] or laws.tangent.damping[i] != 0.0:
             return
     modal.serves[0] = 1
     for i in range(len(modal.offset)):
@@ -89,6 +89,7 @@ def to_modes(modal: Modal, step: Step) -> None:
 
 def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
     """Convert the modal coordinates back to the present motion, if the motion is in modes."""
+    rows, largest = laws.definition.rows, laws.largest
     if not modal.is_present[0]:
         return
     now = step.now
@@ -99,11 +100,11 @@ def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
             multiply_dense(modal.from_modes[b, kind], modal.modes[b], n, twice, modal.x[b, 0], 0.0)
             for i in range(n):
                 motion[modal.unknowns[b, i]] = modal.x[b, 0, i]
-    for i in range(len(laws.rule)):
-        d, v = row_product(laws.rows, i, now.displacement), row_product(laws.rows, i, now.velocity)
+    for i in range(len(laws.definition.rule)):
+        d, v = row_product(rows, i, now.displacement), row_product(rows, i, now.velocity)
         laws.now.deformation[i], laws.now.rate[i] = d, v
-        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
-        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
+        largest.deformation[i] = max(largest.deformation[i], abs(d))
+        largest.rate[i] = max(largest.rate[i], abs(v))
 
 
 def start_interval(modal: Modal, inputs: Array) -> None:
@@ -209,9 +210,10 @@ def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
     """Whether law `i` may leave its branch within a cell, by the bounds of its deformation, not of its
     rate.
     """
+    coefficients = laws.events.coefficients
     low, high = cell_bounds(modal, cell, i)
-    for e in range(laws.n_events[i]):
-        on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+    for e in range(laws.events.n_events[i]):
+        on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
         if on_v != 0.0 or (on_d != 0.0 and not max(on_d * low, on_d * high) + constant <= 0.0):
             return True
     return False
@@ -223,7 +225,7 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
     cells = len(modal.values) - 1
     h = modal.length[0] / cells
     for cell in range(cells):
-        for i in range(len(laws.rule)):
+        for i in range(len(laws.definition.rule)):
             if may_change(laws, modal, cell, i):
                 terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
                 if terms == 0 or event_of(laws, series, Extent(t + cell * h, h, terms, 1.0), i).law >= 0:
@@ -251,11 +253,12 @@ def count_ends(
 def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> bool:
     """Update the peaks with the motion within the interval; False if a power series would be too long."""
     laws, step = sim.laws, sim.step
-    modal, n_laws, outputs = series.modal, len(laws.rule), len(sim.linear.monitored_constants)
+    tangent = laws.tangent
+    modal, n_laws, outputs = series.modal, len(laws.definition.rule), len(sim.linear.monitored_constants)
     cells, extremes = len(modal.values) - 1, step.extremes
     h = modal.length[0] / cells
     for i in range(n_laws):
-        k, offset = laws.stiffness[i], laws.offset[i]
+        k, offset = tangent.stiffness[i], tangent.offset[i]
         count_ends(laws, step, modal, i, outputs + i, 1.0, 0.0, t)
         count_ends(laws, step, modal, i, outputs + n_laws + i, k, offset, t)
     for i in range(outputs):
@@ -263,7 +266,7 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
     for cell in range(cells):
         for i in range(n_laws):
             low, high = cell_bounds(modal, cell, i)
-            k, offset = laws.stiffness[i], laws.offset[i]
+            k, offset = tangent.stiffness[i], tangent.offset[i]
             least, most = min(k * low, k * high) + offset, max(k * low, k * high) + offset
             force = outputs + n_laws + i
             if exceeds_peaks(extremes, outputs + i, low, high) or exceeds_peaks(

@@ -28,7 +28,7 @@ class Present(KernelPresent):
     def __init__(self, engine: KernelEngine, series: Series) -> None:
         super().__init__(engine)
         self.series = series
-        self.largest = np.array([engine.laws.largest_deformation, engine.laws.largest_rate])
+        self.largest = np.array([engine.laws.largest.deformation, engine.laws.largest.rate])
 
     def law_forces(self, d: Array, v: Array) -> Array:
         """Forces of all laws at deformations and rates (see `RigidRun`)."""
@@ -36,7 +36,7 @@ class Present(KernelPresent):
         coupled = self.series.friction.laws.tolist()
         for i in [i for i in range(len(d)) if i not in coupled] + coupled:  # the forces that press first
             if i in coupled:
-                laws.internal[i, PUSH] = max(forces[laws.normal[i]], 0.0)
+                laws.state.internal[i, PUSH] = max(forces[laws.friction.normal_law[i]], 0.0)
             if self.series.rigid.number[i] < 0:
                 forces[i] = law_kernels.law_force(laws, rules, i, d[i], v[i])
         return forces
@@ -49,12 +49,12 @@ class Present(KernelPresent):
         """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
         self.take_input(put_in)
         self.engine.accumulator.works.contact += float(lost.sum())
-        self.engine.laws.dashpot_loss[:] += lost
+        self.engine.laws.state.dashpot_loss[:] += lost
 
     def turn_back(self, which: Index) -> None:
         """Let those of some laws leave their branches whose rates an impact has reversed."""
         now, laws = self.engine.laws.now, self.engine.laws
-        for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
+        for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.definition.rule)):
             law, event = first_violated(laws, which)
             if law < 0:
                 return
@@ -66,5 +66,5 @@ class Present(KernelPresent):
         """
         laws = self.engine.laws
         self.hand_back()
-        laws.largest_deformation[:], laws.largest_rate[:] = self.largest
+        laws.largest.deformation[:], laws.largest.rate[:] = self.largest
         self.turn_back(known)

@@ -89,6 +89,6 @@ def keep_interval(laws: Laws, series: Series, t: float) -> None:
             shown.rest[at, b, i] = modal.rest[b, i]
     for i in range(len(shown.acting)):
         law = shown.acting[i]
-        shown.held[at, i] = laws.stiffness[law] * modal.offset[law] + laws.offset[law]
+        shown.held[at, i] = laws.tangent.stiffness[law] * modal.offset[law] + laws.tangent.offset[law]
     shown.start[at] = t
     shown.kept[INTERVALS] += 1

@@ -149,9 +149,9 @@ def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array
         for k in range(min(top - 1, len(laguerre.monomials))):
             change = laguerre.monomials[k, n] - (laguerre.monomials[k, n + 1] if n + 1 <= k else 0.0)
             for j in range(laguerre.inputs.shape[1]):
-                rate += change * (k + 1) / h * laws.inputs[law, j] * series.inputs[k + 1, j]
+                rate += change * (k + 1) / h * laws.definition.inputs[law, j] * series.inputs[k + 1, j]
         if rate != 0.0:
-            add_row(laws.rows, law, -scale * laws.damping[law] * rate, out)
+            add_row(laws.definition.rows, law, -scale * laws.tangent.damping[law] * rate, out)
 
 
 def energy(linear: LinearSystem, series: Series, n: int) -> float:

@@ -71,7 +71,7 @@ def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
     """
     for r in range(len(smooth.laws)):
         i, creep = smooth.laws[r], CREEP * abs(smooth.numbers[r, Y]) / length
-        laws.largest_rate[i] = max(laws.largest_rate[i], creep)
+        laws.largest.rate[i] = max(laws.largest.rate[i], creep)
 
 
 def is_product(n: float) -> bool:
@@ -89,10 +89,10 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
         force, tangent, _, _ = curved_force(laws, rules, i, d, 0.0)
         numbers[W], numbers[Y], numbers[N], numbers[A], numbers[B], k, numbers[Q] = smooth_of(
             rules,
-            laws.rule[i],
-            parameters(laws.parameters, i),
-            laws.branch[i],
-            internal(laws.internal, i),
+            laws.definition.rule[i],
+            parameters(laws.definition.parameters, i),
+            laws.state.branch[i],
+            internal(laws.state.internal, i),
             d,
             force,
         )
@@ -104,9 +104,9 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
             smooth.low[r] = 0.5 * near if smooth.bent[r] else -near
             smooth.high[r] = np.inf if smooth.bent[r] else near
         numbers[SLOPE] = (tangent - k) / numbers[Q] if smooth.bent[r] else 1.0
-        laws.stiffness[i] = k + numbers[Q] * numbers[SLOPE]
-        laws.damping[i] = proportional_damping(laws, i, laws.stiffness[i])
-        laws.offset[i] = force - laws.stiffness[i] * d
+        laws.tangent.stiffness[i] = k + numbers[Q] * numbers[SLOPE]
+        laws.tangent.damping[i] = proportional_damping(laws, i, laws.tangent.stiffness[i])
+        laws.tangent.offset[i] = force - laws.tangent.stiffness[i] * d
 
 
 def product_term(a: Array, b: Array, k: int) -> float:
@@ -140,10 +140,10 @@ def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
     smooth, i = series.smooth, series.smooth.laws[r]
     numbers, share, d = smooth.numbers[r], smooth.share[r], deformation_term(laws, series, k, top, i)
     series.deformation[i, k] = d
-    smooth.force[r, k] = laws.stiffness[i] * d + numbers[Q] * smooth.rest[r, k]
+    smooth.force[r, k] = laws.tangent.stiffness[i] * d + numbers[Q] * smooth.rest[r, k]
     smooth.part[r, k] = numbers[SLOPE] * d + smooth.rest[r, k]
     if k == 0:
-        smooth.force[r, 0] += laws.offset[i]
+        smooth.force[r, 0] += laws.tangent.offset[i]
         smooth.part[r, 0] = numbers[W] + numbers[SLOPE] * (d - laws.now.deformation[i])
     share[0, k] = smooth.part[r, k] / numbers[Y]
     if not smooth.bent[r]:
@@ -175,7 +175,7 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
 def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
     """Coefficient `k` of the dashpot force of smooth law `r` beyond that of its tangent."""
     rate = (k + 1) / h * smooth.rest[r, k + 1]
-    force: float = laws.tangent_damping[smooth.laws[r]] * smooth.numbers[r, Q] * rate
+    force: float = laws.definition.tangent_damping[smooth.laws[r]] * smooth.numbers[r, Q] * rate
     return force
 
 
@@ -185,7 +185,7 @@ def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
     """
     for r in range(len(smooth.laws)):
         rest = smooth.numbers[r, Q] * smooth.rest[r, k] + dashpot_rest(laws, smooth, r, k, h)
-        add_row(laws.rows, smooth.laws[r], -h * h * rest, new)
+        add_row(laws.definition.rows, smooth.laws[r], -h * h * rest, new)
 
 
 def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:

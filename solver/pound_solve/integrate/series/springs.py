@@ -64,6 +64,7 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
 
     The forces of rigid and of curved contacts, and of friction that slides, are series instead.
     """
+    definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     springs, rigid, curved, friction = series.springs, series.rigid, series.curved, series.friction
     values, moved, n = springs.rows.values, springs.inputs, 0
     for q in range(len(values)):
@@ -72,18 +73,18 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
         springs.constant[i] = linear.constant[i]
         for j in range(len(moved)):
             moved[j, i] = linear.inputs[j, i]
-    for i in range(len(laws.rule)):
-        k, offset, rubs = laws.stiffness[i], laws.offset[i], friction.number[i]
+    for i in range(len(definition.rule)):
+        k, offset, rubs = tangent.stiffness[i], tangent.offset[i], friction.number[i]
         if rigid.number[i] >= 0 or curved.number[i] >= 0 or (rubs >= 0 and friction.side[rubs] != 0.0):
             offset = 0.0
         for q in range(springs.pair_pointers[i], springs.pair_pointers[i + 1]):
             values[springs.pair_places[q]] += k * springs.pair_values[q]
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            at, x = laws.rows.columns[q], laws.rows.values[q]
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            at, x = rows.columns[q], rows.values[q]
             springs.constant[at] -= x * offset
             for j in range(len(moved)):
-                moved[j, at] -= x * k * laws.inputs[i, j]
-        if laws.damping[i] != 0.0:
+                moved[j, at] -= x * k * definition.inputs[i, j]
+        if tangent.damping[i] != 0.0:
             springs.dashpots[n] = i
             n += 1
     springs.n_dashpots[0] = n
@@ -106,8 +107,8 @@ def load_term(springs: Springs, series: Series, k: int, top: int, i: int) -> flo
 
 def deformation_term(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
     """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
-    d = row_product(laws.rows, i, series.motion[k])
+    d = row_product(laws.definition.rows, i, series.motion[k])
     if k < top:
         for j in range(series.inputs.shape[1]):
-            d += laws.inputs[i, j] * series.inputs[k, j]
+            d += laws.definition.inputs[i, j] * series.inputs[k, j]
     return d

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.state import Corotational
 from pound_solve.integrate.series.smooth import product_term
 from pound_solve.integrate.series.state import Series, Strings
 from pound_solve.numerics.types import Array
@@ -24,9 +24,9 @@ def allocate(members: int, terms: int) -> Strings:
     return Strings(*np.zeros((3, members, terms)))
 
 
-def quantity_term(laws: Laws, series: Series, c: int, j: int, k: int, top: int) -> float:
+def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int, top: int) -> float:
     """Coefficient `k` of quantity `j` of member `c`; the inputs have `top` coefficients."""
-    members, total = laws.members, 0.0
+    total = 0.0
     for y in range(members.pointers[c], members.pointers[c + 1]):
         total += members.rows[y, j] * series.motion[k, members.unknown[y]]
     if k < top:
@@ -35,14 +35,14 @@ def quantity_term(laws: Laws, series: Series, c: int, j: int, k: int, top: int) 
     return total
 
 
-def add_strings(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
+def add_strings(members: Corotational, series: Series, k: int, h: float, top: int, new: Array) -> None:
     """Add the coefficients `k` of the strings' forces to the right side `new` of the coefficients `k` + 2;
     the inputs have `top` coefficients.
     """
-    members, strings = laws.members, series.strings
+    strings = series.strings
     for c in range(len(members.parameters)):
-        strings.across[c, k] = quantity_term(laws, series, c, ACROSS, k, top)
-        strings.axial[c, k] = quantity_term(laws, series, c, AXIAL, k, top)
+        strings.across[c, k] = quantity_term(members, series, c, ACROSS, k, top)
+        strings.axial[c, k] = quantity_term(members, series, c, AXIAL, k, top)
         if k == 0:
             strings.axial[c, 0] += members.parameters[c, N0]
         force = product_term(strings.axial[c], strings.across[c], k) / members.parameters[c, LENGTH]
@@ -51,11 +51,11 @@ def add_strings(laws: Laws, series: Series, k: int, h: float, top: int, new: Arr
             new[members.unknown[y]] -= h * h * members.rows[y, ACROSS] * force
 
 
-def string_power(laws: Laws, series: Series, terms: int, s: float, h: float) -> float:
+def string_power(members: Corotational, series: Series, terms: int, s: float, h: float) -> float:
     """Power that the strings put in at the place `s`; sets the members' transverse forces to those
     there.
     """
-    members, strings, power = laws.members, series.strings, 0.0
+    strings, power = series.strings, 0.0
     for c in range(len(members.parameters)):
         y, rate, force = 0.0, 0.0, 0.0
         for k in range(terms - 2, -1, -1):

@@ -153,7 +153,7 @@ class Taylor(KernelEngine):
         is_smooth = np.array([s.law.rule.smooth is not None for s in self.springs], bool)
         which, acting = self.place[np.flatnonzero(self.recorder.shown)], self.recorder.acting
         modal = modal_tables.allocate(
-            system, laws.stiffness, monitored, self._intervals(), np.argsort(o), which
+            system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), which
         )
         kept = terms if tolerance is None else single_pole.LAST_TERM + 1
         return state.Series(
@@ -167,15 +167,17 @@ class Taylor(KernelEngine):
             inverse=np.divide(1.0, mass, out=np.zeros(n), where=mass > 0.0),
             gauss=gauss_rules(expansion.MAX_TERMS // expansion.UNCHECKED_TERMS + 1),
             springs=springs.allocate(
-                n, laws.rows, self.linear.inputs, whole if len(held.unknown) else None
+                n, laws.definition.rows, self.linear.inputs, whole if len(held.unknown) else None
             ),
             massless=held,
             rigid=rigid.allocate(self.contacts, o, n_laws, terms),
             curved=curved.allocate(is_curved & collides, terms),
-            friction=friction.allocate(laws.coupled, laws.normal[laws.coupled], n_laws, terms),
+            friction=friction.allocate(
+                laws.friction.coupled, laws.friction.normal_law[laws.friction.coupled], n_laws, terms
+            ),
             smooth=smooth.allocate(is_smooth, terms),
             viscous=viscous.allocate(is_damper, held.law_number >= 0, terms),
-            strings=strings.allocate(len(laws.members.parameters), terms),
+            strings=strings.allocate(len(self.members.parameters), terms),
             damped=self._damped(terms),
             modal=modal,
             shown=shown.allocate(which, acting, modal, kept),
@@ -197,13 +199,15 @@ class Taylor(KernelEngine):
         """
         laws, linear = self.laws, self.linear
         others = (
-            len(laws.members.parameters)
+            len(self.members.parameters)
             + len(self.massless.unknown)
             + len(self.contacts.laws)
             + len(linear.support_damping)
         )
-        acts_else = laws.curved.any() or laws.inputs.any() or linear.monitored_inputs.any()
-        if others or acts_else or len(laws.coupled):
+        acts_else = (
+            laws.definition.curved.any() or laws.definition.inputs.any() or linear.monitored_inputs.any()
+        )
+        if others or acts_else or len(laws.friction.coupled):
             return np.zeros(1)
         return np.concatenate([self.times[:1], goals(self.system, self.times)[0]])
 
@@ -264,7 +268,7 @@ class Taylor(KernelEngine):
     def _hold(self, rounding: Array | float = 0.0) -> None:
         """Set which rigid contacts are closed, and the `rounding` of their forces."""
         x = self.series.rigid
-        kinds = [self.springs[i].law.rule.branches[self.laws.branch[i]].kind for i in x.laws]
+        kinds = [self.springs[i].law.rule.branches[self.laws.state.branch[i]].kind for i in x.laws]
         rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
         x.largest[:] = np.maximum(x.largest, rounding)
 
@@ -303,7 +307,7 @@ class Taylor(KernelEngine):
             return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy))
         if why == CHATTER:
             fault = int(self.state.fault)
-            s, at = self.springs[fault], self.laws.branch[fault]
+            s, at = self.springs[fault], self.laws.state.branch[fault]
             what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
@@ -328,7 +332,7 @@ class Taylor(KernelEngine):
             return int(self.order[int(self.state.fault)])
         rows = dense(self.system.law_rows[:, light])
         stiffness = dense(self.system.stiffness[np.ix_(light, light)])
-        shapes = np.linalg.eigh(stiffness + (rows.T * self.laws.stiffness) @ rows)[1]
+        shapes = np.linalg.eigh(stiffness + (rows.T * self.laws.tangent.stiffness) @ rows)[1]
         return int(light[np.argmax(np.abs(shapes[:, 0]))])
 
     def figures(self) -> dict[str, Any]:

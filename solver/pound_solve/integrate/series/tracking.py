@@ -52,7 +52,7 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
         sign = -1.0
     for k in range(terms + 1):
         p[k] = sign * d[k]
-    p[0] -= sign * (laws.parameters[i, GAP] + overlap)
+    p[0] -= sign * (laws.definition.parameters[i, GAP] + overlap)
     at = first_rise(series.polynomial, terms, first.time, 0.0)
     first = earlier(first, i, TOUCHES if phase == APART else PARTS, at)
     if phase == RELEASED or (phase == PRESSED and curved.numbers[r, PULLS] == 0.0):
@@ -65,18 +65,19 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
 
 def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
     """The first event of law `i` in a step, in lengths of the step, see `none`."""
+    coefficients = laws.events.coefficients
     terms, h, end = extent.terms, extent.h, extent.end
     if series.friction.number[i] >= 0:
         return friction_event(laws, series, extent, i)
     first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
     far, faster = size(d, i, terms), rate_size(d, i, terms) / h
-    for e in range(laws.n_events[i]):
-        on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+    for e in range(laws.events.n_events[i]):
+        on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
         if on_d == 0.0 and on_v == 0.0:
             continue
         if is_held(series.rigid, i):
             return parting_event(series, terms, end, i)
-        scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
+        scale = abs(on_d) * laws.largest.deformation[i] + abs(on_v) * laws.largest.rate[i] + abs(constant)
         most = on_d * d[i, 0] + on_v * d[i, 1] / h + constant + abs(on_d) * far + abs(on_v) * faster
         if most <= EVENT_TOLERANCE * scale:  # most laws are far from all their events
             continue
@@ -103,8 +104,8 @@ def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
     """
     first = none(extent.end)
     for late in range(2):
-        for i in range(len(laws.rule)):
-            if laws.contact[i] == (late == 1):
+        for i in range(len(laws.definition.rule)):
+            if laws.definition.contact[i] == (late == 1):
                 before = Extent(extent.begin, extent.h, extent.terms, first.time)
                 event = event_of(laws, series, before, i)
                 if event.law >= 0 and (first.law < 0 or event.time < first.time):
@@ -116,17 +117,18 @@ def count_crest(laws: Laws, step: Step, series: Series, extent: Extent, i: int, 
     """Update peak `i` with the polynomial in the work space; `law` is not negative for the force of a
     law.
     """
+    collision = laws.collision
     extremes, p = step.extremes, series.polynomial
     t, h, terms, end = extent
     known = extremes.high[i]
-    contact = law >= 0 and laws.contact[law]
+    contact = law >= 0 and laws.definition.contact[law]
     if contact:
-        known = min(known, laws.peak_force[law])
+        known = min(known, collision.peak_force[law])
     high, place = highest(p, terms, end, known)
     if high > extremes.high[i]:
         extremes.high[i], extremes.t_high[i] = high, t + h * place
-    if contact and high > laws.peak_force[law]:
-        laws.peak_force[law], laws.peak_time[law] = high, t + h * place
+    if contact and high > collision.peak_force[law]:
+        collision.peak_force[law], collision.peak_time[law] = high, t + h * place
     for k in range(terms + 1):
         p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
     high, place = highest(p, terms, end, -extremes.low[i])
@@ -150,6 +152,7 @@ def track_outputs(sim: Simulation, series: Series, extent: Extent, top: int) -> 
 
 def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int, i: int) -> None:
     """Count the deformation and the force of law `i` over a step into the peaks, from peak `first` on."""
+    definition, tangent = laws.definition, laws.tangent
     terms = extent.terms
     extremes, d, p = step.extremes, series.deformation, series.polynomial[POLYNOMIAL]
     begin, far = d[i, 0], size(d, i, terms)
@@ -157,21 +160,21 @@ def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int
         for k in range(terms + 1):
             p[k] = d[i, k]
         count_crest(laws, step, series, extent, first + i, -1)
-    peak = first + len(laws.rule) + i
-    stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
+    peak = first + len(definition.rule) + i
+    stiffness, damping = tangent.stiffness[i], tangent.damping[i] if definition.viscous[i] else 0.0
     if has_series(series, i):
         copy_force(series, terms, i, 1.0, p)
         count_crest(laws, step, series, extent, peak, i)
         return
     far *= abs(stiffness)
     high = extremes.high[peak]
-    if laws.contact[i]:
-        high = min(high, laws.peak_force[i])
-    force = laws.offset[i] + stiffness * begin
+    if definition.contact[i]:
+        high = min(high, laws.collision.peak_force[i])
+    force = tangent.offset[i] + stiffness * begin
     if damping != 0.0 or force + far > high or force - far < extremes.low[peak]:
         for k in range(terms + 1):
             p[k] = stiffness * d[i, k]
-        p[0] += laws.offset[i]
+        p[0] += tangent.offset[i]
         if damping != 0.0:
             for k in range(terms):
                 p[k] += damping * (k + 1) / extent.h * d[i, k + 1]
@@ -180,5 +183,5 @@ def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int
 
 def track_laws(laws: Laws, step: Step, series: Series, extent: Extent, first: int) -> None:
     """Count deformations and forces of the laws over a step into the peaks, from peak `first` on."""
-    for i in range(len(laws.rule)):
+    for i in range(len(laws.definition.rule)):
         track_law(laws, step, series, extent, first, i)

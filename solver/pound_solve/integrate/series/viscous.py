@@ -60,10 +60,15 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
 
 def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
     """Replace the branches of the dampers by their present tangents."""
+    tangent = laws.tangent
     for r in range(len(viscous.laws)):
         i, numbers = viscous.laws[r], viscous.numbers[r]
         numbers[K], numbers[N], _, _, _, _ = powers_of(
-            rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+            rules,
+            laws.definition.rule[i],
+            parameters(laws.definition.parameters, i),
+            laws.state.branch[i],
+            internal(laws.state.internal, i),
         )
         viscous.fast[r], numbers[RATE] = False, laws.now.rate[i]
         if numbers[K] == 0.0:  # the branch is linear
@@ -71,15 +76,15 @@ def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
         c, n, x = abs(numbers[K]), numbers[N], numbers[RATE] if numbers[K] > 0.0 else -numbers[RATE]
         share = 1.0 / max(n, 1.0)
         numbers[LIMIT] = (
-            max(SLOW_RATE_OF_UNIT**share, SLOW_RATE**share * laws.largest_rate[i]) if n != 1.0 else np.inf
+            max(SLOW_RATE_OF_UNIT**share, SLOW_RATE**share * laws.largest.rate[i]) if n != 1.0 else np.inf
         )
         viscous.fast[r] = x > numbers[LIMIT]
         if viscous.fast[r]:
-            laws.damping[i] = n * c * x ** (n - 1.0)
-            laws.offset[i] = (1.0 - n) * numbers[K] * x**n
+            tangent.damping[i] = n * c * x ** (n - 1.0)
+            tangent.offset[i] = (1.0 - n) * numbers[K] * x**n
         else:
-            laws.damping[i] = c if n == 1.0 else c * numbers[LIMIT] ** (n - 1.0)
-            laws.offset[i] = 0.0
+            tangent.damping[i] = c if n == 1.0 else c * numbers[LIMIT] ** (n - 1.0)
+            tangent.offset[i] = 0.0
 
 
 def is_fast(viscous: Viscous, i: int) -> bool:
@@ -96,7 +101,7 @@ def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
         x = max(x, numbers[LIMIT])
         viscous.force[r, 0] = numbers[K] * x ** numbers[N]
     else:
-        viscous.force[r, k] = sign * laws.damping[i] * x + viscous.rest[r, k]
+        viscous.force[r, k] = sign * laws.tangent.damping[i] * x + viscous.rest[r, k]
     viscous.rate[r, k] = x
 
 
@@ -124,7 +129,7 @@ def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> Non
     """
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
-            add_row(laws.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
+            add_row(laws.definition.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
 
 
 def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
@@ -161,12 +166,13 @@ def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
     """Whether the tangents of the dampers that hold unknowns without mass were taken at the present rates,
     within the tolerance of Newton's iteration and the rounding of the `velocity` of the unknowns.
     """
+    rows = laws.definition.rows
     for r in viscous.light:
         i, numbers = viscous.laws[r], viscous.numbers[r]
         if numbers[K] != 0.0 and numbers[N] != 1.0:
             v, size = laws.now.rate[i], 0.0
-            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-                size += abs(laws.rows.values[q] * velocity[laws.rows.columns[q]])
+            for q in range(rows.pointers[i], rows.pointers[i + 1]):
+                size += abs(rows.values[q] * velocity[rows.columns[q]])
             if abs(v - numbers[RATE]) > RATE_CONVERGED * max(abs(v), numbers[LIMIT]) + RATE_ROUNDING * size:
                 return False
     return True

@@ -20,11 +20,12 @@ def add_law_losses(
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at the Gauss point `s`."""
     laws, works, moved = sim.laws, sim.works, len(sim.linear.support_damping) > 0
+    definition, tangent = laws.definition, laws.tangent
     update_branch_forces(laws, series, extent.terms, s, extent.h)
-    for i in range(len(laws.rule)):
-        drag, curved = laws.damping[i], series.curved.number[i]
+    for i in range(len(definition.rule)):
+        drag, curved = tangent.damping[i], series.curved.number[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
-        pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
+        pressed = definition.contact[i] and (tangent.stiffness[i] != 0.0 or tangent.offset[i] != 0.0)
         curves = overlaps or series.viscous.number[i] >= 0
         sliding = is_sliding(series.friction, i)
         if drag != 0.0 or moved or pressed or curves or sliding:
@@ -32,15 +33,17 @@ def add_law_losses(
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
             if series.smooth.number[i] >= 0 or (moved and series.viscous.number[i] >= 0):
                 linearise_law(laws, rules, i, d, v)
-                drag = laws.damping[i]
+                drag = tangent.damping[i]
             if sliding:
-                laws.entry_work[i] += weight * laws.offset[i] * v
+                laws.state.entry_work[i] += weight * tangent.offset[i] * v
                 continue
             lost = weight * v * (drag_force(laws, rules, i, d, v) if curves else drag * v)
-            laws.dashpot_loss[i] += lost
-            if laws.contact[i]:
+            laws.state.dashpot_loss[i] += lost
+            if definition.contact[i]:
                 works.contact += lost
-                laws.impulse[i] += weight * (laws.stiffness[i] * d + drag * v + laws.offset[i])
+                laws.collision.impulse[i] += weight * (
+                    tangent.stiffness[i] * d + drag * v + tangent.offset[i]
+                )
             else:
                 works.damping += lost
 
@@ -78,12 +81,12 @@ def add_works(sim: Simulation, rules: Tables, series: Series, piece: Piece, exte
         if moved:
             evaluate_inputs(piece.coefs, begin + s * h, trial.inputs, trial.input_rates)
         add_law_losses(sim, rules, series, extent, s, weight)
-        put += weight * string_power(laws, series, terms, s, h)
+        put += weight * string_power(sim.members, series, terms, s, h)
         if moved:
             evaluate_motion(series.motion, terms, s, h, 0, trial.displacement)
             evaluate_motion(series.motion, terms, s, h, 1, trial.velocity)
             evaluate_motion(series.motion, terms, s, h, 2, trial.acceleration)
-            supplied, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
+            supplied, lost = support_power(linear, laws, sim.members, trial, laws.trial, sim.members.trial)
             put += weight * supplied
             works.damping += weight * lost
             for i in range(len(trial.velocity)):

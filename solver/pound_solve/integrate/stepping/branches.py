@@ -26,34 +26,35 @@ FIRST_PART = 1.0 / 32.0  #: part of a step taken after a curved contact has touc
 def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: int, event: int) -> None:
     """Change the branch of law `i`, and update the factor for the nominal step `h`."""
     linear, laws, run = sim.linear, sim.laws, sim.run
-    before, k, c = laws.branch[i], laws.stiffness[i], laws.damping[i]
-    if laws.normal[i] >= 0:
+    definition, tangent, state, friction = laws.definition, laws.tangent, laws.state, laws.friction
+    before, k, c = state.branch[i], tangent.stiffness[i], tangent.damping[i]
+    if friction.normal_law[i] >= 0:
         couple_friction(laws, rules, sim.step.now.acceleration, i)
-    d, v, f0 = laws.now.deformation[i], laws.now.rate[i], laws.offset[i]
+    d, v, f0 = laws.now.deformation[i], laws.now.rate[i], tangent.offset[i]
     note_rests(sim, rules, i, event)
     leave_branch(laws, rules, i, event, d, v)
-    if laws.normal[i] < 0 and lets_go(linear, laws, i, k, f0, d):
+    if friction.normal_law[i] < 0 and lets_go(linear, laws, i, k, f0, d):
         run.fell = i
-    if laws.curved[i]:
+    if definition.curved[i]:
         linearise_law(laws, rules, i, d, v)
-    change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
+    change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (tangent.stiffness[i] - k)
     if not linear.explicit and change != 0.0:
         run.updates += 1
         if run.updates > MAX_UPDATES or not update_factor(sim, i, change, WHOLE):
             run.updates = MAX_UPDATES + 1
-    force = linear_force(laws, i, d, v)
-    if laws.contact[i] and touches_massless(linear, laws, i):
+    force = linear_force(tangent, i, d, v)
+    if definition.contact[i] and touches_massless(linear, definition.rows, i):
         # the dashpot's is only known when the velocities are consistent
-        force -= laws.damping[i] * v
-    if before != laws.branch[i]:
+        force -= tangent.damping[i] * v
+    if before != state.branch[i]:
         log_transition(sim, i, before, run.time, force)
     note_ties(sim, rules, i, k, f0)
     run.events += 1
-    for j in laws.coupled:
-        before = laws.branch[j]
+    for j in friction.coupled:
+        before = state.branch[j]
         couple_friction(laws, rules, sim.step.now.acceleration, j)
-        if before != laws.branch[j]:
-            log_transition(sim, j, before, run.time, laws.friction_force[j])
+        if before != state.branch[j]:
+            log_transition(sim, j, before, run.time, friction.force[j])
             run.updates = MAX_UPDATES + 1
     hold_friction_limits(laws)
 
@@ -65,10 +66,11 @@ def leaves_independently(sim: Simulation, i: int) -> bool:
     holds the unknowns of the laws that have left.
     """
     laws = sim.laws
-    if laws.events[i, laws.saved[i] - 1, 0] != 0.0:
+    rows = laws.definition.rows
+    if laws.events.coefficients[i, laws.events.pending[i], 0] != 0.0:
         return True
-    for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-        if not sim.linear.diagonal or sim.step.marked[laws.rows.columns[q]]:
+    for q in range(rows.pointers[i], rows.pointers[i + 1]):
+        if not sim.linear.diagonal or sim.step.marked[rows.columns[q]]:
             return False
     return True
 
@@ -78,22 +80,23 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
     has fallen: joints must move first.
     """
     laws, step, run = sim.laws, sim.step, sim.run
+    definition, rows, events = laws.definition, laws.definition.rows, laws.events
     first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
     event = LocatedEvent(first, its_event, event.time)
-    laws.saved[event.law] = 1 + event.event_index
+    events.pending[event.law] = event.event_index
     for j in range(len(step.marked)):
         step.marked[j] = False
-    for k in range(-1, len(laws.rule)):
+    for k in range(-1, len(definition.rule)):
         i = event.law if k < 0 else k
-        room = len(sim.buffers.log) - run.logged > len(laws.coupled)
-        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_independently(sim, i)):
+        room = len(sim.buffers.log) - run.logged > len(laws.friction.coupled)
+        if events.pending[i] < 0 or not room or (k >= 0 and not leaves_independently(sim, i)):
             continue
-        change_branch(sim, rules, scheme, h, i, laws.saved[i] - 1)
-        if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
+        change_branch(sim, rules, scheme, h, i, events.pending[i])
+        if definition.curved[i] and definition.contact[i] and laws.now.rate[i] > 0.0:
             run.longest_part = FIRST_PART * h
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            step.marked[laws.rows.columns[q]] = True
-        laws.saved[i] = 0
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            step.marked[rows.columns[q]] = True
+        events.pending[i] = -1
     if run.fell < 0:
         resume_after_jump(sim, rules)
 

@@ -65,13 +65,13 @@ def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
         event, where = event_on_path(laws, i, d, d1, v1)
         if event < 0:
             break
-        k, f0 = laws.stiffness[i], laws.offset[i]
+        k, f0 = laws.tangent.stiffness[i], laws.tangent.offset[i]
         leave_branch(laws, rules, i, event, where, v1)
         if lets_go(sim.linear, laws, i, k, f0, where):
             return False
         sim.run.driven += 1
         d = where
-    if laws.curved[i]:
+    if laws.definition.curved[i]:
         linearise_law(laws, rules, i, d1, v1)
     return True
 
@@ -86,24 +86,28 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
         the step must be cut at its events, or PIVOT.
     """
     laws, run = sim.laws, sim.run
+    tangent = laws.tangent
     why = DONE
-    for i in range(len(laws.rule)):
+    for i in range(len(laws.definition.rule)):
         d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
-        if laws.saved[i] == 0 and event_on_path(laws, i, d, d1, v1)[0] < 0:
+        if not laws.saved.in_step[i] and event_on_path(laws, i, d, d1, v1)[0] < 0:
             continue
-        k, c, f0 = laws.stiffness[i], laws.damping[i], laws.offset[i]
-        if laws.saved[i] == 0:
-            save_state(laws, i)
-        else:
+        k, c, f0 = tangent.stiffness[i], tangent.damping[i], tangent.offset[i]
+        if laws.saved.in_step[i]:
             restore_state(laws, rules, i)
+        else:
+            save_state(laws, i)
+            laws.saved.in_step[i] = True
         run.stale = 1
         if not drive_law(sim, rules, i):
             return NEWTON
-        changed = laws.stiffness[i] != k or laws.damping[i] != c
-        if not changed and abs(laws.offset[i] - f0) <= EVENT_TOLERANCE * abs(f0):
+        changed = tangent.stiffness[i] != k or tangent.damping[i] != c
+        if not changed and abs(tangent.offset[i] - f0) <= EVENT_TOLERANCE * abs(f0):
             continue
         why = FULL
-        change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
+        change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (
+            tangent.stiffness[i] - k
+        )
         if change != 0.0 and not sim.linear.explicit:
             run.updates += 1
             if not update_factor(sim, i, change, WHOLE):
@@ -122,8 +126,9 @@ def step_through(
     already.
     """
     laws, run = sim.laws, sim.run
-    for i in range(len(laws.rule)):
-        laws.saved[i] = 0
+    definition = laws.definition
+    for i in range(len(definition.rule)):
+        laws.saved.in_step[i] = False
     end = run.time + length - piece.begin
     for _ in range(50):
         if not tried and not try_step(sim, rules, scheme, piece.coefs, end, length, WHOLE):
@@ -139,14 +144,14 @@ def step_through(
         accept_trial(sim, rules, scheme, length, WHOLE)
         run.time += length
         run.events += run.driven
-        for i in range(len(laws.rule)):
-            if laws.saved[i] == 1 and laws.saved_state[i, 0] != laws.branch[i]:
-                force = linear_force(laws, i, laws.now.deformation[i], laws.now.rate[i])
-                log_transition(sim, i, int(laws.saved_state[i, 0]), run.time, force)
+        for i in range(len(definition.rule)):
+            if laws.saved.in_step[i] and laws.saved.values[i, 0] != laws.state.branch[i]:
+                force = linear_force(laws.tangent, i, laws.now.deformation[i], laws.now.rate[i])
+                log_transition(sim, i, int(laws.saved.values[i, 0]), run.time, force)
         track_peaks(sim, run.time, length)
         return DONE
-    for i in range(len(laws.rule)):
-        if laws.saved[i] == 1:
+    for i in range(len(definition.rule)):
+        if laws.saved.in_step[i]:
             restore_state(laws, rules, i)
     run.updates, run.stale = MAX_UPDATES + 1, 1
     return NEWTON
@@ -156,7 +161,7 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
     """Whether a law passes an event in the step that was tried."""
     if scheme.locate:
         return first_event(laws, step, h).law >= 0
-    for i in range(len(laws.rule)):
+    for i in range(len(laws.definition.rule)):
         d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
         if event_on_path(laws, i, d, d1, v1)[0] >= 0:
             return True

@@ -70,19 +70,20 @@ def search_verdict(
 
 
 def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) -> None:
-    """Mark the laws that pass an event at the instant of the one located, in `laws.saved`: 1 + its number.
+    """Mark the laws that pass an event at the instant of the one located, in `laws.events.pending`.
 
     The part in which they do was tried with length `tried`, NaN where that failed, and is not accepted yet.
     Rates of unknowns without mass and the forces of friction jump there: then one law leaves at a time.
     """
     laws = sim.laws
-    alone = not sim.linear.all_mass or len(laws.coupled) > 0
-    for i in range(len(laws.rule)):
-        laws.saved[i], first = 0, event.time + SAME_INSTANT_OF_STEP * h
-        for e in range(0 if alone or i == event.law else laws.n_events[i]):
+    events = laws.events
+    alone = not sim.linear.all_mass or len(laws.friction.coupled) > 0
+    for i in range(len(laws.definition.rule)):
+        events.pending[i], first = -1, event.time + SAME_INSTANT_OF_STEP * h
+        for e in range(0 if alone or i == event.law else events.n_events[i]):
             at = time_of_event(laws, sim.step, i, e, tried)
             if at <= first:
-                laws.saved[i], first = 1 + e, at
+                events.pending[i], first = e, at
 
 
 def locate_event(
@@ -134,7 +135,7 @@ def locate_event(
             if last:
                 return NEWTON, event
             # at `high` there was a solution: look for the event nearer to it
-            restore_start_tangents(laws, rules)
+            restore_start_tangents(sim, rules)
             b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
             continue
         tried = tau

@@ -64,7 +64,7 @@ def solve_part(
     for halvings in range(MAX_HALVINGS + 1):
         if at == PART:
             # from here on, trials change the tangents of curved laws, but not the factor
-            if laws.curved.any():
+            if laws.definition.curved.any():
                 run.updates = MAX_UPDATES + 1
             why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:
@@ -72,7 +72,7 @@ def solve_part(
         if tried or try_step(sim, rules, scheme, piece.coefs, run.time + part - piece.begin, part, at):
             return DONE, part, at
         run.updates = MAX_UPDATES + 1
-        restore_start_tangents(laws, rules)
+        restore_start_tangents(sim, rules)
         part, at = 0.5 * part, PART
     return NEWTON, part, at
 
@@ -82,14 +82,14 @@ def end_part_at_event(
 ) -> tuple[int, LocatedEvent]:
     """Shorten a part to the first event in it, see `locate_event`."""
     laws, run = sim.laws, sim.run
-    curved = laws.curved.any()
+    curved = laws.definition.curved.any()
     if curved:  # shorter trials change the tangents, which the present factor does not know
         run.updates = MAX_UPDATES + 1
     why, event = locate_event(sim, rules, scheme, piece, part, h, event)
     if why == DONE and event.time > 1e-9 * h:
         run.same_instant = 0
     elif why == DONE and event.time == 0.0 and curved:
-        restore_start_tangents(laws, rules)  # else what follows takes forces and tangents of the last trial
+        restore_start_tangents(sim, rules)  # else what follows takes forces and tangents of the last trial
     return why, event
 
 
@@ -110,9 +110,10 @@ def pass_event(
     change_branches(sim, rules, scheme, h, event)
     run.fault = event.law
     run.same_instant += 1
-    if run.same_instant > 100 + 8 * len(laws.rule):
+    n_laws = len(laws.definition.rule)
+    if run.same_instant > 100 + 8 * n_laws:
         return CHATTER
-    if run.same_instant > len(laws.rule):  # a law may turn to and fro: what follows is tried nearer by
+    if run.same_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
         run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
     if run.fell >= 0:
         run.rest = left
@@ -134,7 +135,7 @@ def step_in_parts(
     left = length
     at = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
-        if len(sim.buffers.log) - run.logged <= len(laws.coupled):
+        if len(sim.buffers.log) - run.logged <= len(laws.friction.coupled):
             return CROWD
         part = min(left, run.longest_part)
         at = at if part == left else PART

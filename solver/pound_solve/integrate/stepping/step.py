@@ -50,7 +50,15 @@ from pound_solve.integrate.kernels.products import (
     row_magnitude,
     row_product,
 )
-from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Scheme, Simulation, Step
+from pound_solve.integrate.kernels.state import (
+    WHOLE,
+    Corotational,
+    Laws,
+    LinearSystem,
+    Scheme,
+    Simulation,
+    Step,
+)
 from pound_solve.integrate.kernels.work import (
     load_on_nodes,
     mean_damping_power,
@@ -78,7 +86,7 @@ def factorise_step(sim: Simulation, scheme: Scheme, h: float, at: int) -> int:
 def update_factor(sim: Simulation, i: int, change: float, at: int) -> bool:
     """Add ``change b b^T`` of law `i` to a factor; False where it must be made anew."""
     step = sim.step
-    rows = sim.laws.rows
+    rows = sim.laws.definition.rows
     if change == 0.0 or rows.pointers[i] == rows.pointers[i + 1]:
         return True
     first = len(step.row)
@@ -93,6 +101,7 @@ def predict_step(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: f
     acceleration there.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
+    definition, rows = laws.definition, laws.definition.rows
     now, trial, right = step.now, step.trial, step.right_side
     on_displacement, on_velocity = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
     n = len(right)
@@ -113,34 +122,35 @@ def predict_step(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: f
             right[i] -= one * (scheme.alpha_f * step.residual[i] - scheme.alpha_m * inertia[i])
     for i in range(n):
         right[i] = trial.load[i] - right[i] - now.damping_force[i] - on_velocity * now.damping_rate[i]
-    for i in range(len(laws.rule)):
+    for i in range(len(definition.rule)):
         d, v, terms = 0.0, 0.0, 0.0
         for j in range(len(trial.inputs)):
-            d += laws.inputs[i, j] * trial.inputs[j]
-            term = laws.inputs[i, j] * trial.input_rates[j]
+            d += definition.inputs[i, j] * trial.inputs[j]
+            term = definition.inputs[i, j] * trial.input_rates[j]
             v, terms = v + term, terms + abs(term)
-        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-            d += laws.rows.values[q] * trial.displacement[laws.rows.columns[q]]
-            term = laws.rows.values[q] * trial.velocity[laws.rows.columns[q]]
+        for q in range(rows.pointers[i], rows.pointers[i + 1]):
+            d += rows.values[q] * trial.displacement[rows.columns[q]]
+            term = rows.values[q] * trial.velocity[rows.columns[q]]
             v, terms = v + term, terms + abs(term)
         laws.trial.deformation[i], laws.trial.rate[i] = d, v
-        laws.largest_terms[i] = max(laws.largest_terms[i], terms)
-    predict_members(laws, step)
+        laws.largest.terms[i] = max(laws.largest.terms[i], terms)
+    predict_members(sim.members, step)
 
 
 def solve_acceleration(sim: Simulation, at: int) -> None:
     """Acceleration at the end of the step, with the laws and the members on their present tangents."""
-    laws, step = sim.laws, sim.step
+    laws, members, step = sim.laws, sim.members, sim.step
+    rows = laws.definition.rows
     acceleration = step.trial.acceleration
     copy(step.right_side, acceleration)
-    for i in range(len(laws.rule)):
-        f = linear_force(laws, i, laws.trial.deformation[i], laws.trial.rate[i])
+    for i in range(len(laws.definition.rule)):
+        f = linear_force(laws.tangent, i, laws.trial.deformation[i], laws.trial.rate[i])
         if f != 0.0:
-            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-                acceleration[laws.rows.columns[q]] -= laws.rows.values[q] * f
-    for c in range(len(laws.members.parameters)):
-        predicted_force(laws.members, c)
-        subtract_force(laws.members, c, laws.members.trial.forces, acceleration)
+            for q in range(rows.pointers[i], rows.pointers[i + 1]):
+                acceleration[rows.columns[q]] -= rows.values[q] * f
+    for c in range(len(members.parameters)):
+        predicted_force(members, c)
+        subtract_force(members, c, members.trial.forces, acceleration)
     solve_factored(sim.linear.pattern, step.factors[at], step.pivots[at], acceleration)
 
 
@@ -154,28 +164,29 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         factor fails.
     """
     laws = sim.laws
+    definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     beta_h2, gamma_h = scheme.beta * h * h, scheme.gamma * h
     acceleration, worst, law = sim.step.trial.acceleration, 0.0, -1
-    for i in range(len(laws.rule)):
-        if not laws.curved[i]:
+    for i in range(len(definition.rule)):
+        if not definition.curved[i]:
             continue
-        j = laws.normal[i]
+        j = laws.friction.normal_law[i]
         if j >= 0:
-            a = row_product(laws.rows, j, acceleration)
+            a = row_product(rows, j, acceleration)
             set_normal_force(
                 laws, i, laws.trial.deformation[j] + beta_h2 * a, laws.trial.rate[j] + gamma_h * a, a
             )
-        a = row_product(laws.rows, i, acceleration)
+        a = row_product(rows, i, acceleration)
         d, v = laws.trial.deformation[i] + beta_h2 * a, laws.trial.rate[i] + gamma_h * a
         c = curved_force(laws, rules, i, d, v)
         k, proportional = c[1], proportional_damping(laws, i, c[1])
         damp, force = c[2] + proportional, c[0] + proportional * v
-        guess = linear_force(laws, i, d, v)
-        size = max(abs(force), abs(k * laws.largest_deformation[i]), 1e-300)
+        guess = linear_force(tangent, i, d, v)
+        size = max(abs(force), abs(k * laws.largest.deformation[i]), 1e-300)
         if abs(force - guess) > worst * size:
             worst, law = abs(force - guess) / size, i
-        change = beta_h2 * (k - laws.stiffness[i]) + gamma_h * (damp - laws.damping[i])
-        laws.stiffness[i], laws.damping[i], laws.offset[i] = k, damp, force - k * d - damp * v
+        change = beta_h2 * (k - tangent.stiffness[i]) + gamma_h * (damp - tangent.damping[i])
+        tangent.stiffness[i], tangent.damping[i], tangent.offset[i] = k, damp, force - k * d - damp * v
         sim.run.updates += 1
         if sim.linear.explicit or update_factor(sim, i, change, at):
             continue
@@ -186,7 +197,7 @@ def correct_curved(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
 
 def update_member_tangents(sim: Simulation, scheme: Scheme, h: float, at: int) -> bool:
     """Recompute the members' tangents, and factorise again; False where that fails."""
-    members = sim.laws.members
+    members = sim.members
     take_tangents(members, members.trial.quantities)
     for c in range(len(members.parameters)):
         anchor_member(members, c)
@@ -208,8 +219,8 @@ def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at:
         worst, law = correct_curved(sim, rules, scheme, h, at)
         if worst == -1.0:
             return False
-        has_members = len(sim.laws.members.parameters) > 0
-        error = correct_members(sim.laws, sim.step, scheme.beta * h * h) if has_members else 0.0
+        has_members = len(sim.members.parameters) > 0
+        error = correct_members(sim.members, sim.step, scheme.beta * h * h) if has_members else 0.0
         if worst <= CONVERGED and error <= 1.0:
             return True
         if not error < np.inf:
@@ -230,6 +241,7 @@ def try_step(
     does not converge (see `iterate_newton`).
     """
     linear, laws = sim.linear, sim.laws
+    definition, rows = laws.definition, laws.definition.rows
     predict_step(sim, scheme, coefs, end, h)
     if not iterate_newton(sim, rules, scheme, h, at):
         return False
@@ -238,14 +250,14 @@ def try_step(
         trial.displacement[i] += beta_h2 * trial.acceleration[i]
     for i in range(len(trial.acceleration)):
         trial.velocity[i] += gamma_h * trial.acceleration[i]
-    for i in range(len(laws.rule)):
-        a = row_product(laws.rows, i, trial.acceleration)
+    for i in range(len(definition.rule)):
+        a = row_product(rows, i, trial.acceleration)
         laws.trial.deformation[i] += beta_h2 * a
         laws.trial.rate[i] += gamma_h * a
-        if laws.contact[i]:  # of bodies that move alike the deformation is rounding
-            far = row_magnitude(laws.rows, i, trial.displacement)
-            laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
-    if len(laws.coupled) > 0:
+        if definition.contact[i]:  # of bodies that move alike the deformation is rounding
+            far = row_magnitude(rows, i, trial.displacement)
+            laws.largest.deformation[i] = max(laws.largest.deformation[i], far)
+    if len(laws.friction.coupled) > 0:
         update_friction_limits(laws, rules, trial.acceleration)
     if linear.implicit and not linear.all_mass:
         correct_massless_rates(sim, linear.massless_vary or sim.run.stale != 0, h)
@@ -253,17 +265,17 @@ def try_step(
     return True
 
 
-def restore_start_tangents(laws: Laws, rules: Tables) -> None:
+def restore_start_tangents(sim: Simulation, rules: Tables) -> None:
     """Linearise the curved laws and the members at the start of the step."""
-    linearise_laws(laws, rules)
-    take_tangents(laws.members, laws.members.now.quantities)
+    linearise_laws(sim.laws, rules)
+    take_tangents(sim.members, sim.members.now.quantities)
 
 
 def add_external_work(sim: Simulation, h: float) -> None:
     """Add up the work of loads and moved supports over the step, and the loss in dashpots of the
     structure.
     """
-    linear, laws, works = sim.linear, sim.laws, sim.works
+    linear, laws, members, works = sim.linear, sim.laws, sim.members, sim.works
     now, trial = sim.step.now, sim.step.trial
     before, work, loss = works.input, 0.0, 0.0
     loss += mean_damping_power(now, trial)
@@ -272,13 +284,13 @@ def add_external_work(sim: Simulation, h: float) -> None:
             pushed0 = load_on_nodes(linear, now.inputs, i)
             pushed1 = load_on_nodes(linear, trial.inputs, i)
             work += 3.0 * (pushed0 * now.velocity[i] + pushed1 * trial.velocity[i])
-        put0, lost0 = support_power(linear, laws, now, laws.now, laws.members.now)
-        put1, lost1 = support_power(linear, laws, trial, laws.trial, laws.members.trial)
+        put0, lost0 = support_power(linear, laws, members, now, laws.now, members.now)
+        put1, lost1 = support_power(linear, laws, members, trial, laws.trial, members.trial)
         work += 3.0 * (put0 + put1)
         loss += 1.5 * (lost0 + lost1)
     else:
         work += mean_load_power(now, trial)
-    p, members = laws.members.parameters, laws.members
+    p = members.parameters
     for c in range(len(p)):
         if p[c, KIND] == STRING:  # work of the axial force on the shortening that a string leaves out
             s0, s1 = members.now.quantities, members.trial.quantities
@@ -291,28 +303,28 @@ def add_external_work(sim: Simulation, h: float) -> None:
 
 def accept_laws(laws: Laws, rules: Tables, h: float, works: Works) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses; take over the end of the step."""
-    for i in range(len(laws.rule)):
+    definition, largest = laws.definition, laws.largest
+    for i in range(len(definition.rule)):
         d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
         v0, v1 = laws.now.rate[i], laws.trial.rate[i]
         drag0, drag1 = drag_force(laws, rules, i, d0, v0), drag_force(laws, rules, i, d1, v1)
         if drag0 != 0.0 or drag1 != 0.0:
             lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
-            laws.dashpot_loss[i] += lost
-            if laws.contact[i]:
+            laws.state.dashpot_loss[i] += lost
+            if definition.contact[i]:
                 works.contact += lost
             else:
                 works.damping += lost
-        if laws.contact[i]:
+        if definition.contact[i]:
             force0, force1 = law_force(laws, rules, i, d0, v0), law_force(laws, rules, i, d1, v1)
-            laws.impulse[i] += 0.5 * h * (force0 + force1)
+            laws.collision.impulse[i] += 0.5 * h * (force0 + force1)
         laws.now.deformation[i], laws.now.rate[i] = d1, v1
-        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d1))
-        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v1))
+        largest.deformation[i] = max(largest.deformation[i], abs(d1))
+        largest.rate[i] = max(largest.rate[i], abs(v1))
 
 
-def accept_members(laws: Laws) -> None:
+def accept_members(members: Corotational) -> None:
     """Make the members' state at the end of the step the present one."""
-    members = laws.members
     for c in range(len(members.parameters)):
         size = force_size(members.trial, c, members.parameters[c, LENGTH])
         members.largest[0] = max(members.largest[0], size)
@@ -357,8 +369,8 @@ def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, at: i
     else:
         multiply(linear.damping, trial.velocity, trial.damping_force)
     add_external_work(sim, h)
-    accept_members(laws)
-    if len(laws.coupled) > 0:
+    accept_members(sim.members)
+    if len(laws.friction.coupled) > 0:
         add_slip_work(laws, h)
         hold_friction_limits(laws)
     accept_laws(laws, rules, h, sim.works)
