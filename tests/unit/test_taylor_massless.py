@@ -283,7 +283,7 @@ def test_only_a_stiffness_below_zero_snaps_through(hardening: float, snaps: bool
                 structure=SimpleNamespace(corotational=()),
             ),
             laws=SimpleNamespace(
-                stiffness=np.array([law.branch(state).stiffness]),
+                tangent=SimpleNamespace(stiffness=np.array([law.branch(state).stiffness])),
                 now=SimpleNamespace(deformation=np.array([0.2])),
             ),
             springs=[SimpleNamespace(law=law)],
@@ -311,7 +311,10 @@ def test_a_falling_branch_counts_where_the_law_has_been_on_it_at_this_instant(fa
             law_rows=np.array([[1.0]]),
             structure=SimpleNamespace(corotational=()),
         ),
-        laws=SimpleNamespace(stiffness=np.array([10.0]), now=SimpleNamespace(deformation=np.array([0.2]))),
+        laws=SimpleNamespace(
+            tangent=SimpleNamespace(stiffness=np.array([10.0])),
+            now=SimpleNamespace(deformation=np.array([0.2])),
+        ),
         springs=[SimpleNamespace(law=law)],
         law_state=lambda i: (0,),
         latest=[[0, *change, 5.0] for change in changes],
