@@ -384,6 +384,18 @@ def test_variables_say_what_they_hold():
             assert not names, f"{place(path)}: {names} in {f.name} say nothing"
 
 
+#: names that fields of the engines had in two to five meanings each
+AMBIGUOUS = {"held", "number", "numbers", "place", "present", "rest"}
+
+
+def test_fields_of_the_engines_have_names_with_one_meaning():
+    for path in (SOLVER / "integrate").rglob("*.py"):
+        for record in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(record, ast.ClassDef):
+                fields = {x.target.id for x in record.body if isinstance(x, ast.AnnAssign)}
+                assert not fields & AMBIGUOUS, f"{place(path)}: {record.name}"
+
+
 def test_numerics_open_no_file_and_print_nothing():
     for path in SOLVER.rglob("*.py"):
         if place(path).startswith(NUMERICS) and path.name != "jit.py":

@@ -382,7 +382,7 @@ def test_snap_back_of_a_frame_is_its_modes() -> None:
     s = scene_of(FRAME.format(more=more)).structure
     n, modes = s.n_free, s.free_vibration
     k = s.stiffness[:n, :n]
-    start, rest = np.linalg.solve(k, s.loads[:n]), np.linalg.solve(k, s.held[:n])
+    start, rest = np.linalg.solve(k, s.loads[:n]), np.linalg.solve(k, s.retained_loads[:n])
     # by the dynamic DOFs: massless ones follow at once, also from the start
     finite = np.isfinite(modes.omega) & (modes.omega < 1e6)
     shapes, omega = modes.shapes[:, finite], modes.omega[finite]

@@ -30,8 +30,8 @@ def steps(terms: int, rng: np.random.Generator) -> ShownSteps:
         begin=np.append(0.0, np.cumsum(length)[:-1]),
         length=length,
         x=nothing,
-        rest=nothing,
-        held=np.zeros((1, LAWS)),
+        equilibrium=nothing,
+        constant_forces=np.zeros((1, LAWS)),
         start=np.zeros(1),
     )
     breaks = np.array([0.0, 0.2, 0.3, 5.0])

@@ -118,7 +118,7 @@ def value(own: modal.Modal, i: int, cell: int, s: float, n_inputs: int) -> float
     """A followed quantity within a cell, by complex exponentials."""
     cells, total = len(own.values) - 1, own.offset[i]
     for b in range(len(own.counts)):
-        at, count = own.place[b, i], own.counts[b, MODES]
+        at, count = own.index_of[b, i], own.counts[b, MODES]
         if at < 0:
             continue
         assert at < own.counts[b, FOLLOWED]

@@ -60,7 +60,9 @@ def begin(
 def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
     """State of a law that is driven from deformation `d0` to `d1`, where it has the rate given."""
     if law.rigid:  # it stays closed unless pulled open, and its force follows from the motion
-        closed = law.branch(state).held and d1 - law.p[GAP] >= -GAP_ROUNDING * max(abs(d0), law.p[GAP])
+        closed = law.branch(state).constrains and d1 - law.p[GAP] >= -GAP_ROUNDING * max(
+            abs(d0), law.p[GAP]
+        )
         return law.transition(law.start(), 0, d1) if closed else law.start()
     return consistent(law, drive(law, state, d0, d1) if d0 != d1 else state, d1, rate)
 

@@ -229,14 +229,14 @@ class EquilibriumPath:
         """
         i, law = event.law, self.laws[event.law].law
         d, before = float(self.deformations(self.u, self.factor)[i]), self.branches[i].name
-        held = law.force(self.states[i], d)[0]
+        force = law.force(self.states[i], d)[0]
         self.states[i] = law.transition(self.states[i], event.event, d)
         self.branches[i] = law.branch(self.states[i])
-        released = held - law.force(self.states[i], d)[0]
+        released = force - law.force(self.states[i], d)[0]
         if law.rigid:  # it opens without force
             self.ties = self._closed()
         elif abs(released) > FORCE_JUMP * (
-            abs(held) + abs(law.p[K]) * float(self._deformation_terms(self.u)[i])
+            abs(force) + abs(law.p[K]) * float(self._deformation_terms(self.u)[i])
         ):
             self._released = self._released + released * self.rows[i]
         self.changes += 1
@@ -321,7 +321,7 @@ class EquilibriumPath:
     def _blocking(self, motion: Array) -> PathEvent | None:
         """Event of the first touching open contact that the motion of a mechanism closes, if any."""
         rate, noise = self.rows @ motion, RATE_ROUNDING * (np.abs(self.rows) @ np.abs(motion))
-        rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
+        rate[[not s.role.collides or b.constrains for s, b in zip(self.laws, self.branches)]] = 0.0
         # the motion does not move pressed contacts, except by rounding
         rate[self._stiffnesses(self.deformations(self.u, self.factor)) > 0.0] = 0.0
         return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
@@ -343,8 +343,8 @@ class EquilibriumPath:
 
     def _closed(self) -> Ties:
         """Ties of the rigid contacts that are closed."""
-        held = np.array([i for i, b in enumerate(self.branches) if b.held], np.intp)
-        return Ties(held, dense(self.rows[held]))
+        constrained = np.array([i for i, b in enumerate(self.branches) if b.constrains], np.intp)
+        return Ties(constrained, dense(self.rows[constrained]))
 
     def rates(self, u: Array, factor: float) -> Rates:
         """Rates of displacements, load factor and event arguments (see `_arguments`), with the rounding

@@ -62,10 +62,10 @@ class Quantities:
         for name, x in sums.items():
             motion = {**dict(enumerate(x.motion)), 3: x.of_laws[:, acting]}
             self._add(name, motion, dict(enumerate(x.inputs)), x.constant)
-        order = np.lexsort((self._rows.columns, self._rows.number))
+        order = np.lexsort((self._rows.columns, self._rows.row))
         self._rows = self._rows.some(order)
         self._driven = np.flatnonzero(self._inputs.any(axis=1))
-        self._pointers = np.searchsorted(self._rows.number, np.arange(len(self.place) + 1))
+        self._pointers = np.searchsorted(self._rows.row, np.arange(len(self.place) + 1))
         used, column = np.unique(self._rows.columns, return_inverse=True)
         parts = np.split(used, np.searchsorted(used, system.size * np.arange(1, 4)))
         self._used = [part - k * system.size for k, part in enumerate(parts)]
@@ -73,7 +73,7 @@ class Quantities:
         self._column[used] = np.arange(len(used))
         shape = len(self.place), len(used)
         most = max(shape) if shape[0] * shape[1] <= FEW**2 else 0
-        self._matrix = gathered(shape, self._rows.number, column, self._rows.factors, most_dense=most)
+        self._matrix = gathered(shape, self._rows.row, column, self._rows.factors, most_dense=most)
 
     def _add(
         self, name: str, motion: Mapping[int, Matrix], inputs: Mapping[int, Array], constant: Array,
@@ -186,7 +186,7 @@ class Quantities:
                 return np.asarray(self.values(motion, s).reshape(-1, len(cells), len(shares))[row, at])
             stacked = self._stacked(motion)
             stacked = stacked.reshape(len(stacked), len(cells), len(shares))
-            which, sums = rows.summed(stacked[self._column[rows.columns], at[rows.number]])
+            which, sums = rows.summed(stacked[self._column[rows.columns], at[rows.row]])
             values[which] += sums
         inputs = np.concatenate([*s, np.ones((1, len(t)))]).reshape(-1, len(cells), len(shares))
         for factors, x in zip(self._inputs.T, inputs):
@@ -207,7 +207,7 @@ class Quantities:
         counts = self.entries[row]
         number = np.repeat(np.arange(len(row)), counts)
         at = np.arange(len(number)) + np.repeat(self._pointers[row] - np.cumsum(counts) + counts, counts)
-        return self._rows.some(at)._replace(number=number)
+        return self._rows.some(at)._replace(row=number)
 
     @property
     def shown(self) -> Flags:

@@ -347,7 +347,7 @@ class HistoryRecorder:
         """Laws whose forces `between` needs (see `integrate.protocol.Recorder`)."""
         return self.envelopes.acting
 
-    def trial(self, t: float, doing: str = "") -> None:
+    def report_progress(self, t: float, doing: str = "") -> None:
         """Report the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
         self._progress(t, doing)
 

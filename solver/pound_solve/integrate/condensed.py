@@ -68,9 +68,9 @@ class ExpandingRecorder:
         within = None if inner is None else lambda cells, shares: whole(inner(cells, shares))
         self.recorder.between(Course(whole(course.motion), course.lengths, within))
 
-    def trial(self, t: float, doing: str = "") -> None:
+    def report_progress(self, t: float, doing: str = "") -> None:
         """Pass the progress on."""
-        self.recorder.trial(t, doing)
+        self.recorder.report_progress(t, doing)
 
 
 def others(system: ReducedSystem) -> str:

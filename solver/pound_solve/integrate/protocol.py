@@ -90,28 +90,28 @@ class Rows(NamedTuple):
 
     Attributes
     ----------
-    number : ndarray of int
+    row : ndarray of int
         Of the row.
     columns : ndarray of int
     factors : ndarray
     """
 
-    number: Index
+    row: Index
     columns: Index
     factors: Array
 
     def some(self, entries: Index | Flags) -> Rows:
         """Some of the entries."""
-        return Rows(self.number[entries], self.columns[entries], self.factors[entries])
+        return Rows(self.row[entries], self.columns[entries], self.factors[entries])
 
     def summed(self, values: Array) -> tuple[Index, Array]:
         """Numbers of the rows that have entries, and for each of them the sum of its factors times the
         `values` of the entries, which have shape (n_entries, n); shape (n_used, n).
         """
-        if not len(self.number):
-            return self.number, values
-        starts = np.flatnonzero(np.diff(self.number, prepend=-1))
-        return self.number[starts], np.add.reduceat(self.factors[:, None] * values, starts, axis=0)
+        if not len(self.row):
+            return self.row, values
+        starts = np.flatnonzero(np.diff(self.row, prepend=-1))
+        return self.row[starts], np.add.reduceat(self.factors[:, None] * values, starts, axis=0)
 
 
 class RowPeaks(NamedTuple):
@@ -196,7 +196,7 @@ class Recorder(Protocol):
     def between(self, course: Course) -> None:
         """Take the motion between samples: for envelopes."""
 
-    def trial(self, t: float, doing: str = "") -> None:
+    def report_progress(self, t: float, doing: str = "") -> None:
         """Receive the time reached by a run whose samples may not be used, or what keeps it waiting."""
 
 

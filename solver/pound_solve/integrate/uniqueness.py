@@ -86,7 +86,7 @@ class Uniqueness:
         self._k0 = np.array([s.k0 for s in system.structure.laws], float)
         self._known: set[bytes] = set()
 
-    def take(self, t: float, stiffness: Array, damping: Array, rising: Array) -> None:
+    def examine_tie(self, t: float, stiffness: Array, damping: Array, rising: Array) -> None:
         """Examine an instant at which laws come to the ends of their branches together.
 
         Parameters
@@ -119,13 +119,13 @@ class Uniqueness:
         if elements:
             self.first, self.elements = t, elements
 
-    def changed(self, t: float, law: int, branch: int) -> None:
+    def record_change(self, t: float, law: int, branch: int) -> None:
         """Record that a law changes from its branch to another, by number."""
         for since, first, others in self._falls:
             if t >= since and others.pop(law, branch) != branch:
                 self._tell(since, [first, law])
 
-    def rests(self, t: float, law: int, other: int, branch: int) -> None:
+    def record_rest(self, t: float, law: int, other: int, branch: int) -> None:
         """Record that a law reverses while another one, or itself, stands at the beginning of a branch, by
         number.
         """

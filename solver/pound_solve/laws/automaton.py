@@ -222,7 +222,7 @@ class Branch(NamedTuple):
     events: tuple[EventFunction, ...]
 
     @property
-    def held(self) -> bool:
+    def constrains(self) -> bool:
         """Whether a rigid contact holds the deformation."""
         return self.kind is BranchKind.HELD
 

@@ -179,7 +179,7 @@ class Equations:
             inputs.append(free @ system.expand_inputs + ruled @ self._prescribed)
         inputs[0] = inputs[0] + weights.ridden @ (s.ground.T @ system.acceleration_inputs)
         inputs[0] = inputs[0] - weights.loads @ self._forces()
-        constant = terms[0][:, : self.n] @ system.expand_constant - weights.loads @ s.held
+        constant = terms[0][:, : self.n] @ system.expand_constant - weights.loads @ s.retained_loads
         of_laws = (weights.elements @ s.law_rows.T) * ~self._contact
         of_laws = of_laws + (weights.contacts @ s.law_rows.T) * self._contact
         turning = _product(weights.geometric, s.corotational.rows.T)

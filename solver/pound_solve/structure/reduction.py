@@ -130,7 +130,7 @@ class ReducedSystem:
         """Held loads and FORCES on all unknown DOFs at inputs `s`; columns are instants
         where there are several.
         """
-        constant = self.structure.held[: self.structure.n_free]
+        constant = self.structure.retained_loads[: self.structure.n_free]
         return ((self.force_inputs @ s).T + constant).T
 
     @cached_property
@@ -236,7 +236,7 @@ def build(
         damping=damping,
         stiffness=stiffness,
         inputs=inputs.forces[keep],
-        constant=structure.held[keep],
+        constant=structure.retained_loads[keep],
         law_rows=structure.law_rows[:, keep],
         law_inputs=structure.law_rows[:, n:] @ inputs.supports,
         excitation=inputs.excitation,
@@ -333,7 +333,7 @@ def _excited_unknowns(structure: Structure, inputs: Inputs, start: Array, start_
     n = structure.n_free
     matrices = [a[:n, :n] for a in (structure.stiffness, structure.damping, structure.mass)]
     real = np.any([used_rows(a) for a in matrices], axis=0)  # the others do not take part
-    driven = (start != 0) | (start_rate != 0) | (structure.held[:n] != 0)
+    driven = (start != 0) | (start_rate != 0) | (structure.retained_loads[:n] != 0)
     driven |= np.any(inputs.forces[:, inputs.excitation.active] != 0, axis=1)
     groups = [touched for touched, _ in structure.corotational.on(slice(n)).touched()]
     for spring, (row, _) in zip(structure.laws, by_rows(structure.law_rows)):

@@ -102,7 +102,7 @@ class Structure:
         return len(self.dofs.free)
 
     @property
-    def held(self) -> Array:
+    def retained_loads(self) -> Array:
         """Static loads that remain during a history, shape (n,) [F]."""
         return self.loads - self.released
 

@@ -65,7 +65,7 @@ class Reactions:
     Attributes
     ----------
     laws : ndarray of int, shape (n_held,)
-    place : ndarray of int, shape (n_held,)
+    rows : ndarray of int, shape (n_held,)
         Their rows among those of the run.
     gaps : ndarray, shape (n_held,)
     inputs : ndarray, shape (n_held, n_inputs)
@@ -76,7 +76,7 @@ class Reactions:
     """
 
     laws: Index
-    place: Index
+    rows: Index
     gaps: Array
     inputs: Array
     on_q: NDArray[Any]
@@ -117,7 +117,7 @@ class Decomposition:
     propagator : Propagator
     monitored : ndarray of int, shape (n_monitored,)
         The rows of the run that depend on its unknowns.
-    place : list of int
+    index_of : list of int
         Place of every row of the run among `monitored`, or -1.
     rows : ndarray, shape (n_monitored, n)
     rows_q, rows_q_size : ndarray, shape (n_monitored, n_q)
@@ -138,7 +138,7 @@ class Decomposition:
     laws: Index
     propagator: Propagator
     monitored: Index
-    place: list[int]
+    index_of: list[int]
     rows: Array
     rows_q: NDArray[Any]
     rows_q_size: Array
@@ -188,11 +188,11 @@ class Decomposer:
         b = system.law_rows[np.ix_(laws, unknowns)]
         k = system.stiffness[block] + (b.T * [branches[i].stiffness for i in laws]) @ b
         c = system.damping[block] + (b.T * [branches[i].damping for i in laws]) @ b
-        held = np.array([i for i in laws if branches[i].held], np.intp)
-        held_rows = system.law_rows[np.ix_(held, unknowns)] if len(held) else None
+        constrained = np.array([i for i in laws if branches[i].constrains], np.intp)
+        constrained_rows = system.law_rows[np.ix_(constrained, unknowns)] if len(constrained) else None
         inputs = system.inputs[unknowns]
         try:
-            propagator = make_propagator(system.mass[block], c, k, inputs, held_rows)
+            propagator = make_propagator(system.mass[block], c, k, inputs, constrained_rows)
         except Mechanism as err:
             shape = np.zeros(system.size)
             shape[unknowns] = err.shape
@@ -202,7 +202,7 @@ class Decomposer:
         ]
         work = WorkIntegrals(propagator, system.damping[block], inputs, dashpots)
         parts = (Part(slice(None), unknowns, work),)
-        reactions = self._reactions(held, unknowns, propagator, c, k) if len(held) else None
+        reactions = self._reactions(constrained, unknowns, propagator, c, k) if len(constrained) else None
         return self._with_rows(unknowns, laws, propagator, parts, reactions)
 
     def join(self, decompositions: Sequence[Decomposition]) -> Decomposition:
@@ -230,9 +230,9 @@ class Decomposer:
     ) -> Decomposition:
         """A decomposition with what gives rows and unknowns from its state."""
         monitored = np.flatnonzero(np.any(self.rows[:, unknowns] != 0, axis=1))
-        place = [-1] * len(self.rows)
+        index_of = [-1] * len(self.rows)
         for i, row in enumerate(monitored.tolist()):
-            place[row] = i
+            index_of[row] = i
         rows = self.rows[np.ix_(monitored, unknowns)]
         rows_q = rows @ propagator.u_q
         acceleration_q = propagator.rate_rows(propagator.v_q)
@@ -243,7 +243,7 @@ class Decomposer:
             laws=laws,
             propagator=propagator,
             monitored=monitored,
-            place=place,
+            index_of=index_of,
             rows=rows,
             rows_q=rows_q,
             rows_q_size=np.abs(rows_q),
@@ -256,19 +256,19 @@ class Decomposer:
         )
 
     def _reactions(
-        self, held: Index, unknowns: Index, propagator: Propagator, c: Array, k: Array
+        self, constrained: Index, unknowns: Index, propagator: Propagator, c: Array, k: Array
     ) -> Reactions:
         """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid.contacts` and `held_space`."""
-        assert propagator.u_p is not None and propagator.v_p is not None  # of all that is held
-        at = np.array([self.rigid.laws.index(i) for i in held], np.intp)
+        assert propagator.u_p is not None and propagator.v_p is not None  # of all constraints
+        at = np.array([self.rigid.laws.index(i) for i in constrained], np.intp)
         inverse = self.rigid.inverse(at)
         x = inverse @ self.rigid.velocity_change[np.ix_(unknowns, at)].T
         on_p = -x @ (k @ propagator.u_p + c @ propagator.v_p)
         on_p[:, : len(unknowns)] += x
-        on_p[:, on_p.shape[1] - len(held) :] -= inverse
+        on_p[:, on_p.shape[1] - len(constrained) :] -= inverse
         return Reactions(
-            laws=held,
-            place=np.array([self.reaction_row[i] for i in held], np.intp),
+            laws=constrained,
+            rows=np.array([self.reaction_row[i] for i in constrained], np.intp),
             gaps=self.rigid.gap[at],
             inputs=self.rigid.inputs[at],
             on_q=-x @ (k @ propagator.u_q + c @ propagator.v_q),

@@ -119,7 +119,7 @@ class DenseOutput:
                 subsystem.states[:, :-1], subsystem.forcing, self.lengths
             )
             if x.reactions is not None:
-                limits[:, x.reactions.place] = np.inf
+                limits[:, x.reactions.rows] = np.inf
             if not np.isfinite(bounds).all():
                 limits[:, x.monitored] = np.inf
                 continue
@@ -250,7 +250,7 @@ class DenseOutput:
     def impulse(self, law: int, interval: int, tau: float) -> float:
         """Return the integral of a law's force over the first `tau` of an interval [F T]."""
         b, system = self.branches[law], self.subsystems.system
-        if b.held:
+        if b.constrains:
             return self._reaction_impulse(law, interval, tau)
         e = self.input_coefs[interval] @ system.law_inputs[law]
         area = float(_integral(e, tau))

@@ -79,7 +79,7 @@ class EventDrivenRun(ABC):
         before = self.branches[law].kind
         self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
-        self.uniqueness.changed(self.t, law, self.states[law][0])
+        self.uniqueness.record_change(self.t, law, self.states[law][0])
         force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
         self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.force(law).take(force, self.t)
@@ -158,7 +158,7 @@ class EventDrivenRun(ABC):
             if not self.laws[i].role.collides:
                 branch = self._branch_begun(i, float(d[i]), float(v[i]), i == law)
                 if branch >= 0:
-                    self.uniqueness.rests(self.t, law, i, branch)
+                    self.uniqueness.record_rest(self.t, law, i, branch)
 
     def _branch_begun(self, law: int, d: float, v: float, turns: bool) -> int:
         """Return the branch whose start the law is at, while it reverses (`turns`) or rests; -1 if none."""
@@ -187,7 +187,7 @@ class EventDrivenRun(ABC):
             elif not fell and after.stiffness < k[i]:
                 k[i], rising[i] = after.stiffness, float(v[i])
         if np.count_nonzero(rising) > 1:
-            self.uniqueness.take(self.t, k, c, rising)
+            self.uniqueness.examine_tie(self.t, k, c, rising)
 
     def count_change(self, elapsed: float, rounding: float) -> None:
         """Count the changes of branch at one instant: `elapsed` up to a share `rounding` of the time counts

@@ -201,7 +201,7 @@ class Exact(EventDrivenRun):
         dense.advance_subsystems(dense.intervals - 1, float(window.lengths[-1]))
         self.windows.widen()
         self.changes_at_instant = 0
-        self.recorder.trial(self.t)
+        self.recorder.report_progress(self.t)
         return cursor
 
     def _accept_event(
@@ -227,7 +227,7 @@ class Exact(EventDrivenRun):
         """
         self.events += 1
         try:
-            strikes = self.laws[law].law.rigid and not self.branches[law].held
+            strikes = self.laws[law].law.rigid and not self.branches[law].constrains
             if strikes:
                 self.rigid.impact()
             else:

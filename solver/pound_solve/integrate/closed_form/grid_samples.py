@@ -154,8 +154,8 @@ class GridSamples:
         force, slope, curvature = (polynomial.on(loads, self.local, order) for order in range(3))
         by, by_rate = (partial(np.tensordot, rows, axes=1) for rows in (x.on_p, x.on_rate))
         shape = self.local.shape
-        self.value[x.place] = (real_rows(x.on_q) @ reals).reshape(-1, *shape) + by(force) + by_rate(slope)
-        self.rate[x.place] = (
+        self.value[x.rows] = (real_rows(x.on_q) @ reals).reshape(-1, *shape) + by(force) + by_rate(slope)
+        self.rate[x.rows] = (
             (real_rows(propagator.rate_rows(x.on_q)) @ reals).reshape(-1, *shape)
             + polynomial.on((forcing @ x.on_q.T).real, self.local)
             + by(slope)
@@ -198,18 +198,18 @@ class GridSamples:
         known = self.input_coefs[segment] @ subsystems.rows.inputs[row]
         for subsystem, states, forcing in zip(subsystems.present, self.states, self.forcing):
             x = subsystem.decomposition
-            place, reactions = x.place[row], x.reactions
-            if reactions is not None and row in reactions.place:
+            index, reactions = x.index_of[row], x.reactions
+            if reactions is not None and row in reactions.rows:
                 assert subsystem.loads is not None
-                n = int(np.argmax(reactions.place == row))
+                n = int(np.argmax(reactions.rows == row))
                 row_q, p = reactions.on_q[n], self._about_starts(subsystem.loads)[segment]
                 known = p @ reactions.on_p[n]
                 known[:-1] += (p[1:] @ reactions.on_rate[n]) * np.arange(1, len(p))
-            elif place >= 0:
-                row_q = x.rows_q[place]
+            elif index >= 0:
+                row_q = x.rows_q[index]
                 if subsystem.loads is not None and x.propagator.u_p is not None:
                     p = self._about_starts(subsystem.loads)[segment]
-                    known = known + p @ (x.rows[place] @ x.propagator.u_p)
+                    known = known + p @ (x.rows[index] @ x.propagator.u_p)
             else:
                 continue
             g = polynomial.shift(forcing[segment], t)

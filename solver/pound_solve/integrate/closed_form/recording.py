@@ -32,11 +32,11 @@ def forces_of(
     d = system.law_rows[chosen] @ u + system.law_inputs[chosen] @ s[0]
     rate = system.law_rows[chosen] @ v + system.law_inputs[chosen] @ s[1]
     forces = linear_forces([branches[i] for i in chosen])(d, rate)
-    held = np.array([branches[i].held for i in rigid.laws], bool)
-    if held.any():
-        held &= np.isin(rigid.laws, chosen)
-        of_rigid = rigid.forces(held, linear_forces(branches), u, v, s)
-        forces[np.searchsorted(chosen, np.array(rigid.laws)[held])] = of_rigid[held]
+    constrained = np.array([branches[i].constrains for i in rigid.laws], bool)
+    if constrained.any():
+        constrained &= np.isin(rigid.laws, chosen)
+        of_rigid = rigid.forces(constrained, linear_forces(branches), u, v, s)
+        forces[np.searchsorted(chosen, np.array(rigid.laws)[constrained])] = of_rigid[constrained]
     return forces
 
 
@@ -58,11 +58,11 @@ class DeferredSamples:
         """Keep samples at times (n_times,), with the entries of `DeferredWork` at which they stand."""
         u, v, a = motion
         laws = law_values(self.system, t, u, v, states)
-        held = np.array([branches[i].held for i in self.rigid.laws], bool)
-        if held.any():
+        constrained = np.array([branches[i].constrains for i in self.rigid.laws], bool)
+        if constrained.any():
             inputs = self.system.excitation
             s = np.stack([inputs.values(t, order, before=True).T for order in range(3)])
-            laws.force[self.rigid.laws] = self.rigid.forces(held, linear_forces(branches), u, v, s)
+            laws.force[self.rigid.laws] = self.rigid.forces(constrained, linear_forces(branches), u, v, s)
         self._waiting.append((t, u, v, a, laws, entries))
 
     def release(self, works: Array) -> None:

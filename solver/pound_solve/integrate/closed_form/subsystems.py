@@ -24,7 +24,9 @@ from pound_solve.numerics.graph import components
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-Key = tuple[Any, ...]  #: label and size of a subsystem; number, stiffness, damping and `held` of each law
+Key = tuple[
+    Any, ...
+]  #: label and size of a subsystem; number, stiffness, damping, `constrains` of each law
 
 MAX_JOINED_MODES = 128  #: modes that joined subsystems may have
 
@@ -121,7 +123,7 @@ class Subsystems:
         """`_labels_with_contacts_open` with the parts joined that closed contacts connect."""
         labels = self._open_labels.copy()
         for s, b, row in zip(self.system.structure.laws, branches, self.system.law_rows):
-            if s.role.collides and (b.stiffness or b.damping or b.held):
+            if s.role.collides and (b.stiffness or b.damping or b.constrains):
                 parts = np.unique(labels[row != 0])
                 if len(parts):
                     labels[np.isin(labels, parts)] = parts[0]
@@ -163,12 +165,14 @@ class Subsystems:
     ) -> list[tuple[Key, Array]]:
         """Keys of the present decompositions, made where they are new, and constant loads of each."""
         system, labels = self.system, self._labels(branches)
-        acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.held]
+        acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.constrains]
         decomposed = []
         for label in np.unique(labels):
             unknowns = np.flatnonzero(labels == label)
             laws = np.array([i for i in acting if np.any(system.law_rows[i, unknowns])], np.intp)
-            present = ((int(i), branches[i].stiffness, branches[i].damping, branches[i].held) for i in laws)
+            present = (
+                (int(i), branches[i].stiffness, branches[i].damping, branches[i].constrains) for i in laws
+            )
             key = (int(label), len(unknowns), *present)
             if key not in self.decompositions:
                 charge(costs.of_decomposition(len(unknowns)))

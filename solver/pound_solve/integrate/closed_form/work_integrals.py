@@ -258,9 +258,9 @@ def total_work(
     force = (
         structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
     )
-    held = [i for i, b in enumerate(branches) if b.held]
-    if held:  # the imbalance of the unknowns is the force of the rigid contacts
-        rows = structure.law_rows[held]
+    constrained = [i for i, b in enumerate(branches) if b.constrains]
+    if constrained:  # the imbalance of the unknowns is the force of the rigid contacts
+        rows = structure.law_rows[constrained]
         rest = system.applied(inputs[0]) - force[:n]
         force += rows.T @ np.linalg.lstsq(rows[:, :n].T, rest, rcond=1e-12)[0]
     power = (force[n:] * v[n:]).sum(axis=0) + (system.applied(inputs[0]) * v[:n]).sum(axis=0)

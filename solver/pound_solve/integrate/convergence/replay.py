@@ -32,7 +32,7 @@ class Witness:
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take some samples (see `Recorder`)."""
         self.see(u, laws)
-        self.trial(float(t[-1]))
+        self.report_progress(float(t[-1]))
 
     def see(self, u: Array, laws: LawValues) -> None:
         """Update extremes and lost energies with some samples."""
@@ -53,9 +53,9 @@ class Witness:
         """Laws whose forces `between` needs (see `Recorder`)."""
         return self.recorder.acting[:0]
 
-    def trial(self, t: float, doing: str = "") -> None:
+    def report_progress(self, t: float, doing: str = "") -> None:
         """Pass the progress of a trial on."""
-        self.recorder.trial(t, doing)
+        self.recorder.report_progress(t, doing)
 
 
 class Watch(Witness):

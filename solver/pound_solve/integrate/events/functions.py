@@ -131,7 +131,7 @@ class EventFunctions(RowFunctions):
 
     def __init__(self, branches: Sequence[Branch], reaction_row: Mapping[int, int]) -> None:
         self.keys = [(i, e) for i, b in enumerate(branches) for e in range(len(b.events))]
-        rows = [reaction_row[i] if branches[i].held else i for i, _ in self.keys]
+        rows = [reaction_row[i] if branches[i].constrains else i for i, _ in self.keys]
         super().__init__(rows, [branches[i].events[e] for i, e in self.keys])
 
     def violated(
@@ -207,8 +207,8 @@ def monitored_functions(
     for i, (spring, b) in enumerate(zip(tracker.laws, branches)):
         if spring.role.collides and i not in tracker.open:
             continue
-        rows.append(reaction_row[i] if b.held else i)
+        rows.append(reaction_row[i] if b.constrains else i)
         # a spring's force is without damping
-        factors.append((1.0 if b.held else b.stiffness, b.damping * spring.role.viscous, b.force0))
+        factors.append((1.0 if b.constrains else b.stiffness, b.damping * spring.role.viscous, b.force0))
         kept.append(tracker.collision_force(i) if i in tracker.open else tracker.force(i))
     return RowFunctions(rows, factors), kept

@@ -39,8 +39,8 @@ class Layout(NamedTuple):
     ----------
     order : ndarray, shape (n,)
         Unknowns of the reduced system in the order of elimination.
-    place : ndarray, shape (n,)
-        Their places in it.
+    inverse_order : ndarray, shape (n,)
+        Their positions in it.
     pattern : Pattern
     column : ndarray, shape (n_entries,)
         Columns of the pattern's entries.
@@ -51,7 +51,7 @@ class Layout(NamedTuple):
     """
 
     order: Index
-    place: Index
+    inverse_order: Index
     pattern: ldl.Pattern
     column: Index
     joins: Flags
@@ -117,11 +117,11 @@ def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
 def laid_out(n: int, one: Index, other: Index, joins: Flags) -> Layout:
     """Choose the order of elimination of n unknowns by the pairs of them that are coupled."""
     order = ldl.order(n, one, other)
-    place = np.argsort(order)
-    pattern = ldl.analyse(n, place[one], place[other])
+    inverse_order = np.argsort(order)
+    pattern = ldl.analyse(n, inverse_order[one], inverse_order[other])
     column = np.repeat(np.arange(n), np.diff(pattern.ap))
     position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
-    return Layout(order, place, pattern, column, joins, position)
+    return Layout(order, inverse_order, pattern, column, joins, position)
 
 
 def linear_system(
@@ -142,7 +142,7 @@ def linear_system(
     free, nf = np.array(system.columns, int)[o], s.n_free
     rate_of, second_of = np.zeros_like(moved), np.zeros_like(moved)
     rate_of[:, 1:], second_of[:, 2:] = moved[:, :-1], moved[:, :-2]
-    held = s.stiffness[nf:, nf:] @ moved + s.damping[nf:, nf:] @ rate_of + s.mass[nf:, nf:] @ second_of
+    forces = s.stiffness[nf:, nf:] @ moved + s.damping[nf:, nf:] @ rate_of + s.mass[nf:, nf:] @ second_of
     return state.LinearSystem(
         stiffness=product(stiffness),
         damping=product(damping),
@@ -164,7 +164,7 @@ def linear_system(
         monitored_inputs=np.ascontiguousarray(monitored.input_rows),
         monitored_constants=np.ascontiguousarray(monitored.constants),
         reactions=np.array([dense(a[nf:][:, free]) for a in (s.stiffness, s.damping, s.mass)]),
-        support_forces=np.ascontiguousarray(held),
+        support_forces=np.ascontiguousarray(forces),
         support_rates=rate_of,
         support_damping=np.ascontiguousarray(dense(s.damping[nf:, nf:])),
     )
@@ -330,7 +330,7 @@ def member_arrays(system: ReducedSystem, layout: Layout, scheme: Scheme) -> stat
         predicted=six(),
         at_zero=six(),
         tangent=np.zeros((count, 36)),
-        present=np.zeros((count, 36)),
+        present_tangent=np.zeros((count, 36)),
         product=np.zeros((max((len(x) for x in touched), default=1), 6)),
         largest=np.zeros(1),
     )
@@ -411,5 +411,5 @@ def run_record(t: float, initial_energy: float) -> state.Run:
     run.time, run.factor_length, run.initial_energy = t, -1.0, initial_energy
     run.longest_part = np.inf
     run.fault = run.fell = -1
-    run.rest = run.jumped = -1.0
+    run.remaining_step = run.jumped = -1.0
     return run

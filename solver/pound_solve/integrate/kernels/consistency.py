@@ -105,8 +105,8 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
                 step.matrix[at] += change * definition.pair_values[q]
     members = sim.members
     for c in range(len(members.parameters) * linear.massless_vary):
-        quantity_stiffness(members.parameters, c, quantities, 0, members.present, c)
-        add_tangent(linear, members, step, c, members.present, 1.0, True)
+        quantity_stiffness(members.parameters, c, quantities, 0, members.present_tangent, c)
+        add_tangent(linear, members, step, c, members.present_tangent, 1.0, True)
     if factor(linear.pattern, step.matrix, step.factors[MASSLESS], step.pivots[MASSLESS], step.row) >= 0:
         for i in range(len(step.row)):  # what nothing holds goes on as it did
             step.pivots[MASSLESS, i] = float("inf")
@@ -134,7 +134,7 @@ def force_rates(sim: Simulation, velocity: Array, rate: Array, input_rates: Arra
     for c in range(len(members.parameters) * linear.massless_vary):
         for j in range(6):
             members.at_zero[c, j] = 0.0
-        add_tangent_force(members.present, c, members.predicted, members.at_zero, 1.0)
+        add_tangent_force(members.present_tangent, c, members.predicted, members.at_zero, 1.0)
         subtract_force(members, c, members.at_zero, out)
     for i in range(len(out)):
         if linear.has_mass[i]:
@@ -182,7 +182,7 @@ def jump_massless_rates(sim: Simulation) -> None:
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     now, change, force = step.now, step.scratch[0], step.scratch[1]
-    size, held = step.scratch[2], step.scratch[3]
+    size, damping_force = step.scratch[2], step.scratch[3]
     rate = factorise_massless(sim, sim.members.now.quantities)
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
@@ -205,11 +205,11 @@ def jump_massless_rates(sim: Simulation) -> None:
             force[i] = 0.0
         force[i] *= rate
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], force)
-    dashpot_forces(linear, laws, force, held)
+    dashpot_forces(linear, laws, force, damping_force)
     force_rates(sim, now.velocity, laws.now.rate, now.input_rates, change)
     for i in range(len(change)):
         if not linear.has_mass[i]:
-            change[i] += rate * held[i]
+            change[i] += rate * damping_force[i]
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
     for i in range(len(change)):
         now.velocity[i] += change[i]

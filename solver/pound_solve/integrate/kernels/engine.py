@@ -77,8 +77,8 @@ class KernelEngine(ABC):
         self.laws = allocation.law_arrays(system, start, layout, rules, losses, dt)
         self.members = allocation.member_arrays(system, layout, scheme)
         self.step = allocation.step_arrays(system, start, layout, self.linear, self.tracker.extremes)
-        self.place = layout.place
-        seen = layout.place[np.flatnonzero(recorder.shown)], recorder.acting
+        self.inverse_order = layout.inverse_order
+        seen = layout.inverse_order[np.flatnonzero(recorder.shown)], recorder.acting
         which, acting = seen if self.shows_steps else np.zeros((2, 0), np.int64)
         self.buffers = allocation.buffers(system.size, len(self.springs), which, acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
@@ -139,7 +139,7 @@ class KernelEngine(ABC):
             law_kernels.couple_friction(laws, self.rules, self.step.now.acceleration, i)
         law_kernels.hold_friction_limits(laws)
         if told := provider().notice(advance):
-            self.recorder.trial(t, told)
+            self.recorder.report_progress(t, told)
 
     def advance(self, kernel: Function, *given: Any) -> None:
         """Run a kernel until it has reached the end, and fetch what it keeps whenever it returns."""
@@ -163,15 +163,15 @@ class KernelEngine(ABC):
         self.fetch_shown()
         self._fetch_samples()
         if not self.state.kept:  # a signal that has come is answered at each return of a kernel
-            self.recorder.trial(float(self.state.time))
+            self.recorder.report_progress(float(self.state.time))
         self.state.kept = self.state.shown = 0
 
     def fetch_transitions(self) -> None:
         """Fetch the transitions from the buffers, and which laws came to theirs together."""
         for k in range(int(self.state.tied)):
-            self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
+            self.uniqueness.examine_tie(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
         for t, law, other, branch in self.buffers.rests[: self.state.rests].tolist():
-            self.uniqueness.rests(t, int(law), int(other), int(branch))
+            self.uniqueness.record_rest(t, int(law), int(other), int(branch))
         self.state.tied = self.state.rests = 0
         self.latest = self.buffers.log[: self.state.logged].tolist()
         for row in self.latest:
@@ -180,7 +180,7 @@ class KernelEngine(ABC):
             if law in self.tracker.open:
                 self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
-            self.uniqueness.changed(row[3], law, after)
+            self.uniqueness.record_change(row[3], law, after)
         self.state.logged = 0
 
     def fetch_shown(self) -> None:
@@ -244,10 +244,10 @@ class KernelEngine(ABC):
         """
         rows, has_mass = self.laws.definition.rows, self.linear.has_mass
         unknowns = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
-        held = unknowns[~np.asarray(has_mass, bool)[unknowns]]
+        massless = unknowns[~np.asarray(has_mass, bool)[unknowns]]
         rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.state.time]
         turns = min(rates, default=0.0) < 0.0 < max(rates, default=0.0)
-        return int(self.order[held[0]]) if turns and len(held) and self._softens() else None
+        return int(self.order[massless[0]]) if turns and len(massless) and self._softens() else None
 
     def _softens(self) -> bool:
         """Whether the stiffness of the unknowns without mass is not positive where all laws that change at

@@ -105,7 +105,7 @@ def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
         whole = law_force(laws, rules, i, d, laws.now.rate[i])
         buffers.force[at, i] = whole if definition.viscous[i] else still
         buffers.dashpot[at, i] = whole - buffers.force[at, i]
-        held = recoverable_of(
+        stored = recoverable_of(
             rules,
             definition.rule[i],
             parameters(definition.parameters, i),
@@ -114,9 +114,9 @@ def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
             d,
             still,
         )
-        lost = law_work(laws, rules, i, d) - held
+        lost = law_work(laws, rules, i, d) - stored
         size = max(abs(d), abs(state.entry_deformation[i]))
-        buffers.stored[at, i] = held
+        buffers.stored[at, i] = stored
         buffers.lost[at, i] = lost if abs(lost) > 1e-14 * definition.parameters[i, 0] * size * size else 0.0
     kept = buffers.works[at]
     kept[0], kept[1], kept[2] = works.input, works.damping, works.contact

@@ -48,7 +48,7 @@ class Run(Protocol):
     factor_length: float  #: step that the factor at hand is for
     initial_energy: float  #: kinetic and recoverable
     longest_part: float  #: that a step may take at once for now
-    rest: float  #: of a step that stopped where a force fell, negative for none
+    remaining_step: float  #: of a step that stopped where a force fell, negative for none
     last_event: float  #: time of the last transition
     jumped: float  #: time at which a load has jumped, negative for none
 
@@ -197,7 +197,7 @@ class Corotational(NamedTuple):
         Forces at zero quantities of the straight line that stands for the member in an iteration.
     tangent : ndarray, shape (n_members, 36)
         Tangents that are in the factor.
-    present : ndarray, shape (n_members, 36)
+    present_tangent : ndarray, shape (n_members, 36)
         Tangents at the present quantities.
     product : ndarray, shape (most touched, 6)
         Scratch.
@@ -218,7 +218,7 @@ class Corotational(NamedTuple):
     predicted: Array
     at_zero: Array
     tangent: Array
-    present: Array
+    present_tangent: Array
     product: Array
     largest: Array
 

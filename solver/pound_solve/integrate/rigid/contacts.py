@@ -200,11 +200,11 @@ class RigidContacts:
         size = np.abs(self.velocity_change).T @ sums
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 
-    def forces(self, held: Flags, law_forces: LawForces, u: Array, v: Array, inputs: Array) -> Array:
-        """Forces of the contacts that are `held` closed, shape (n_rigid,), or (n_rigid, n_times);
+    def forces(self, closed: Flags, law_forces: LawForces, u: Array, v: Array, inputs: Array) -> Array:
+        """Forces of the contacts that are `closed`, shape (n_rigid,), or (n_rigid, n_times);
         parameters as of `free_accelerations`.
         """
-        forces, at = np.zeros((len(held), *u.shape[1:])), np.flatnonzero(held)
+        forces, at = np.zeros((len(closed), *u.shape[1:])), np.flatnonzero(closed)
         free = self.free_accelerations(law_forces, u, v, inputs)[0]
         forces[at] = self.inverse(at) @ free[at]
         return forces

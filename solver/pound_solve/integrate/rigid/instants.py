@@ -81,9 +81,9 @@ class RigidInstants:
         coefs = excitation.about(np.array([self.run.t]))[0]
         return np.stack([polynomial.value(coefs, 0.0, order) for order in range(3)])
 
-    def _held(self) -> Flags:
+    def _closed(self) -> Flags:
         """Which rigid contacts are closed, shape (n_rigid,)."""
-        return np.array([self.run.branches[i].held for i in self.contacts.laws], bool)
+        return np.array([self.run.branches[i].constrains for i in self.contacts.laws], bool)
 
     def begin(self) -> bool:
         """Stop where rigid bodies overlap at the start; let contacts that are closed then strike, stay
@@ -100,7 +100,7 @@ class RigidInstants:
         self._check_overlap()
         farthest = np.abs(run.u).max(initial=0.0)
         run.largest[0, laws] = np.maximum(run.largest[0, laws], farthest)
-        if self._held().any():
+        if self._closed().any():
             self.impact()
             self.open_pulled()
         return bool(laws)
@@ -125,10 +125,10 @@ class RigidInstants:
         ArithmeticError
             The impacts do not end.
         """
-        x, run, s, held = self.contacts, self.run, self._inputs(), self._held()
+        x, run, s, closed = self.contacts, self.run, self._inputs(), self._closed()
         d, rates = x.rows @ run.u + x.inputs @ s[0], x.rows @ run.v + x.inputs @ s[1]
         near = 1e-12 * (run.largest[0, x.laws] + x.gap) + 1e-13 * max(1.0, run.t) * np.abs(rates)
-        touching = held | (d >= x.gap - near)
+        touching = closed | (d >= x.gap - near)
         fastest = run.largest[1, x.laws]
         impulse, lost, after = x.impact(rates, touching, self._slow(s))
         run.v = run.v - x.velocity_change @ impulse
@@ -137,12 +137,12 @@ class RigidInstants:
         run.take_impact(float(impulse @ (x.inputs @ s[1])), losses)
         stays = touching & (after >= -ACCELERATION_ROUNDING * fastest)
         for i, law in enumerate(x.laws):
-            if not held[i] and (stays[i] or impulse[i] > 0.0):
+            if not closed[i] and (stays[i] or impulse[i] > 0.0):
                 run.transition(law, 0, float(d[i]), float(rates[i]))
             if law in run.tracker.open:
                 run.tracker.open[law].impulse += float(impulse[i])
-            if run.branches[law].held and not stays[i]:
-                if not held[i]:
+            if run.branches[law].constrains and not stays[i]:
+                if not closed[i]:
                     run.tracker.open[law].peak = np.nan  # the force of an impact is infinite
                 run.transition(law, 0, float(d[i]), float(after[i]))
 
@@ -181,14 +181,14 @@ class RigidInstants:
         # a deformation that contact keeps at next to nothing has the rounding of its terms
         terms = np.abs(x.rows) @ np.abs(run.u)
         run.largest[0, x.laws] = np.maximum(run.largest[0, x.laws], terms)
-        held = self._held()
-        if not held.any():
+        closed = self._closed()
+        if not closed.any():
             return
         s = self._inputs()
         free, size = x.free_accelerations(run.law_forces, run.u, run.v, s)
         size = size + spectral_radius * (np.abs(x.rows) @ np.abs(run.v))
-        force = x.plastic_impulses(free, held)
-        parting = held & (force == 0.0) & (free - x.delassus @ force < -ACCELERATION_ROUNDING * size)
+        force = x.plastic_impulses(free, closed)
+        parting = closed & (force == 0.0) & (free - x.delassus @ force < -ACCELERATION_ROUNDING * size)
         for i in np.flatnonzero(parting).tolist():
             d, v = x.rows[i] @ run.u + x.inputs[i] @ s[0], x.rows[i] @ run.v + x.inputs[i] @ s[1]
             run.transition(x.laws[i], 0, float(d), float(v))

@@ -32,7 +32,7 @@ def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, even
     leave_branch(laws, rules, law, event.event_index, d, v)
     take_over(laws, rules, series, law)
     # the rate of an unknown without mass jumps, and the force of its dashpot with it
-    force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
+    force = law_force(laws, rules, law, d, 0.0 if series.massless.index_of_law[law] >= 0 else v)
     if before != laws.state.branch[law]:
         log_transition(sim, law, before, t, force)
     run.events += 1
@@ -63,7 +63,7 @@ def change_branches(
     note_ties(sim, rules, event.law, stiffness, offset)
     # with unknowns without mass `settle_state` decides
     for i in range(len(laws.definition.rule) if len(series.massless.unknown) == 0 else 0):
-        if i != event.law and series.rigid.number[i] < 0:
+        if i != event.law and series.rigid.index_of[i] < 0:
             other = event_of(laws, series, ahead, i)
             if other.law >= 0 and other.event_index >= 0 and other.time <= event.time + instant / extent.h:
                 change_branch(sim, rules, series, now, other)
@@ -82,15 +82,15 @@ def renew_branches(sim: Simulation, rules: Tables, series: Series) -> bool:
     factors; False where an unknown without mass is not held, which `run.fault` names.
     """
     laws, run = sim.laws, sim.run
-    held = series.massless
+    massless = series.massless
     if run.stale:
         linearise_smooth(laws, rules, series.smooth)
         linearise_dampers(laws, rules, series.viscous)
         add_up(sim.linear, laws, series)
         renew_modes(laws, series)
-        fault = factorise_orders(laws, held) if len(held.unknown) else -1
+        fault = factorise_orders(laws, massless) if len(massless.unknown) else -1
         if fault >= 0:
-            run.fault = held.unknown[fault]
+            run.fault = massless.unknown[fault]
             return False
         run.stale, run.factor_length = 0, -1.0
     return True
@@ -116,10 +116,10 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     123-130.
     """
     laws, run = sim.laws, sim.run
-    held, now, top = series.massless, sim.step.now, len(piece.coefs)
-    in_series = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
+    massless, now, top = series.massless, sim.step.now, len(piece.coefs)
+    in_series = series.rigid.n_closed[0] + len(series.curved.laws) + len(series.friction.laws)
     in_series += len(series.smooth.laws) + len(series.viscous.laws)
-    if len(held.unknown) + in_series == 0:
+    if len(massless.unknown) + in_series == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.definition.rule)):
         change_friction(sim, rules, series)
@@ -131,15 +131,15 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
         if run.fault >= 0 and joints_jump(laws, series, top):
             return FALL
-        for i in held.unknown:
+        for i in massless.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
-        for i in held.laws:
+        for i in massless.laws:
             laws.now.deformation[i] = deformation_term(laws, series, 0, top, i)
             laws.now.rate[i] = deformation_term(laws, series, 1, top, i)
         if not tangents_settled(laws, series.viscous, now.velocity):
             run.stale = 1
             continue
-        law, event = first_violated(laws, held.laws)
+        law, event = first_violated(laws, massless.laws)
         if law < 0:
             update_branch_forces(laws, series, 2, 0.0, 1.0)
             return DONE

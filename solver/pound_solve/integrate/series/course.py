@@ -76,8 +76,8 @@ class ShownSteps:
             1, 2
         )
         on_motion, (row, column) = peaks.rows, np.nonzero(peaks.on_inputs[:, :-1])
-        number = np.concatenate([on_motion.number, row])
-        order = np.argsort(number, kind="stable")
+        rows = np.concatenate([on_motion.row, row])
+        order = np.argsort(rows, kind="stable")
         source = [self.rows[on_motion.columns], x.coefs.shape[1] + column % n_inputs]
         derivative = [self.derivatives[on_motion.columns], column // n_inputs]
         factors = [on_motion.factors, peaks.on_inputs[row, column]]
@@ -86,7 +86,7 @@ class ShownSteps:
             x,
             inputs,
             RowExtremes(
-                np.searchsorted(number[order], np.arange(len(peaks.high) + 1)).astype(np.uint32),
+                np.searchsorted(rows[order], np.arange(len(peaks.high) + 1)).astype(np.uint32),
                 np.concatenate(source)[order].astype(np.uint32),
                 np.concatenate(derivative)[order],
                 np.concatenate(factors)[order],
@@ -136,7 +136,7 @@ class ShownIntervals:
         x.
         """
         modal, acting, (_, q, _, seen) = self.modal, self.shown.acting, self.modal.counts[b]
-        place = modal.place[b, acting]
+        place = modal.index_of[b, acting]
         force = np.where(
             place[:, None] >= 0, modal.stiffness[acting, None] * modal.rows[b, np.maximum(place, 0)], 0.0
         )
@@ -179,12 +179,12 @@ class ShownIntervals:
         shown, modal = self.shown, self.modal
         t = shown.start[intervals, None] + places * modal.length[0]
         u, v, a = motions = np.zeros((3, self.size, t.size))
-        forces = np.repeat(shown.held[intervals].T, t.shape[1], axis=1)
+        forces = np.repeat(shown.constant_forces[intervals].T, t.shape[1], axis=1)
         for b, (moved, (_, q, _, seen)) in enumerate(zip(parts, modal.counts.tolist())):
             unknowns = self.unknowns[modal.shown[b, :seen]]
             for k, motion in enumerate(motions):
                 motion[unknowns] = moved[k * seen : (k + 1) * seen].reshape(seen, t.size)
-            still = self.rows[b][:seen, : 2 * q] @ shown.rest[intervals, b, : 2 * q].T
+            still = self.rows[b][:seen, : 2 * q] @ shown.equilibrium[intervals, b, : 2 * q].T
             u[unknowns] += np.repeat(still, t.shape[1], axis=1)
             forces += moved[3 * seen :].reshape(len(forces), t.size)
         return Motion(t.ravel(), u, v, a, forces)

@@ -40,7 +40,7 @@ NO_OVERLAP = 1e-12  #: overlap that counts as none, over the largest deformation
 FORCE_TRUNCATION = 1e-10  #: share of the force that the last of its terms may be
 FIRST_STEP = 0.4  #: length of the first step after a touch, as a share of the time since touch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
-K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.numbers`
+K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.constants`
 
 
 def allocate(curved: Flags, terms: int) -> Curved:
@@ -48,8 +48,8 @@ def allocate(curved: Flags, terms: int) -> Curved:
     laws = np.flatnonzero(curved)
     return Curved(
         laws=laws,
-        number=places(laws, len(curved)),
-        numbers=np.zeros((len(laws), 6)),
+        index_of=places(laws, len(curved)),
+        constants=np.zeros((len(laws), 6)),
         phase=np.zeros(len(laws), np.int64),
         power=np.zeros((len(laws), 2, terms)),
         force=np.zeros((len(laws), terms)),
@@ -73,7 +73,7 @@ def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     """Copy the force law of curved law `i` on its branch, and find its phase: apart, pressed or
     released.
     """
-    r = curved.number[i]
+    r = curved.index_of[i]
     powers = powers_of(
         rules,
         laws.definition.rule[i],
@@ -81,13 +81,16 @@ def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
         laws.state.branch[i],
         internal(laws.state.internal, i),
     )
-    numbers = curved.numbers[r]
-    numbers[K], numbers[N], numbers[C], numbers[Q], numbers[PULLS], numbers[SHIFT] = powers
+    constants = curved.constants[r]
+    constants[K], constants[N], constants[C], constants[Q], constants[PULLS], constants[SHIFT] = powers
     x, v = overlap(laws, i), laws.now.rate[i]
-    y = max(x - numbers[SHIFT], 0.0)
-    if numbers[K] == 0.0 or x <= touch_overlap(laws, i):
+    y = max(x - constants[SHIFT], 0.0)
+    if constants[K] == 0.0 or x <= touch_overlap(laws, i):
         curved.phase[r] = APART
-    elif numbers[PULLS] > 0.0 or numbers[K] * y ** numbers[N] + numbers[C] * y ** numbers[Q] * v >= 0.0:
+    elif (
+        constants[PULLS] > 0.0
+        or constants[K] * y ** constants[N] + constants[C] * y ** constants[Q] * v >= 0.0
+    ):
         curved.phase[r] = PRESSED
     else:
         curved.phase[r] = RELEASED
@@ -110,17 +113,17 @@ def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
     return total / (k * x)
 
 
-def force_term(numbers: Array, power: Array, x: float, d: Array, k: int, h: float) -> float:
+def force_term(constants: Array, power: Array, x: float, d: Array, k: int, h: float) -> float:
     """Coefficient `k` of the force of one contact, from those of its deformation `d` up to `k` + 1."""
     spring, dashpot = power[SPRING], power[DASHPOT]
-    spring[k] = power_term(numbers[N], x, d, spring, k)
-    force: float = numbers[K] * spring[k]
-    if numbers[C] != 0.0:
-        dashpot[k] = power_term(numbers[Q], x, d, dashpot, k)
+    spring[k] = power_term(constants[N], x, d, spring, k)
+    force: float = constants[K] * spring[k]
+    if constants[C] != 0.0:
+        dashpot[k] = power_term(constants[Q], x, d, dashpot, k)
         drag = 0.0
         for j in range(k + 1):
             drag += dashpot[j] * (k - j + 1) * d[k - j + 1]
-        force += numbers[C] * drag / h
+        force += constants[C] * drag / h
     return force
 
 
@@ -136,8 +139,8 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
             d[m] = deformation_term(laws, series, m, top, i)
-        x = d[0] - laws.definition.parameters[i, GAP] - curved.numbers[r, SHIFT]
-        force = force_term(curved.numbers[r], curved.power[r], x, d, k, h)
+        x = d[0] - laws.definition.parameters[i, GAP] - curved.constants[r, SHIFT]
+        force = force_term(curved.constants[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force
         if curved.phase[r] == PRESSED:
             add_row(laws.definition.rows, i, -h * h * force, new)
@@ -174,7 +177,7 @@ def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
 
 def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: int) -> None:
     """Change the phase of contact `i` by an event: its force begins or ends."""
-    r = curved.number[i]
+    r = curved.index_of[i]
     if event == TOUCHES:
         curved.phase[r] = PRESSED
         lengths.before = max(lengths.before, lengths.next)
@@ -189,4 +192,4 @@ def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: in
 
 def has_force(curved: Curved, i: int) -> bool:
     """Whether law `i` is a curved contact that presses."""
-    return bool(curved.number[i] >= 0 and curved.phase[curved.number[i]] == PRESSED)
+    return bool(curved.index_of[i] >= 0 and curved.phase[curved.index_of[i]] == PRESSED)

@@ -78,10 +78,10 @@ def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> f
 
 def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
     """Twice the kinetic energy of the term `k`, and twice the elastic one of the unknowns without mass."""
-    held, energy = series.massless, kinetic_of_term(linear, series, k, h)
-    for n in range(len(held.unknown)):
-        x = series.motion[k, held.unknown[n]]
-        energy += held.elastic[n] * x * x
+    massless, energy = series.massless, kinetic_of_term(linear, series, k, h)
+    for n in range(len(massless.unknown)):
+        x = series.motion[k, massless.unknown[n]]
+        energy += massless.elastic[n] * x * x
     return energy
 
 
@@ -91,14 +91,14 @@ def structural_forces(
     """Negative forces of structure and laws from the coefficients `k` and of dashpots from those `k` + 1,
     times factors; zero for unknowns without mass, for which they are not needed.
     """
-    c, held, springs = series.motion, series.massless, series.springs
-    if len(held.unknown):
-        for i in held.unknown:
+    c, massless, springs = series.motion, series.massless, series.springs
+    if len(massless.unknown):
+        for i in massless.unknown:
             out[i] = 0.0
-        for r in range(len(held.heavy)):
-            i = held.heavy[r]
-            elastic = row_product(springs.rows, springs.number[i], c[k])
-            out[i] = -on_stiffness * elastic - on_damping * row_product(held.heavy_damping, r, c[k + 1])
+        for r in range(len(massless.heavy)):
+            i = massless.heavy[r]
+            elastic = row_product(springs.rows, springs.index_of[i], c[k])
+            out[i] = -on_stiffness * elastic - on_damping * row_product(massless.heavy_damping, r, c[k + 1])
         return
     multiply(linear.stiffness, c[k], series.stiffness_product)
     add_product(springs, c[k], series.stiffness_product)

@@ -6,8 +6,8 @@ from __future__ import annotations
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import PRESSED, enter_curved, has_force
 from pound_solve.integrate.series.friction import is_sliding, side_of, update_friction
-from pound_solve.integrate.series.rigid import is_held
-from pound_solve.integrate.series.smooth import dashpot_rest
+from pound_solve.integrate.series.rigid import is_closed
+from pound_solve.integrate.series.smooth import dashpot_remainder
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.viscous import is_fast
 from pound_solve.laws.functions import Tables
@@ -16,22 +16,26 @@ from pound_solve.numerics.types import Array
 
 def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
     """Copy the branch that law `i` has changed to into the arrays of curved contacts and of friction."""
-    if series.curved.number[i] >= 0:
+    if series.curved.index_of[i] >= 0:
         enter_curved(laws, rules, series.curved, i)
-    if series.friction.number[i] >= 0:
+    if series.friction.index_of[i] >= 0:
         side_of(laws, series.friction, i)
 
 
 def has_series(series: Series, i: int) -> bool:
     """Whether the force of law `i` is a series of its own."""
-    contact = is_held(series.rigid, i) or has_force(series.curved, i) or is_sliding(series.friction, i)
-    return contact or series.smooth.number[i] >= 0 or is_fast(series.viscous, i)
+    contact = is_closed(series.rigid, i) or has_force(series.curved, i) or is_sliding(series.friction, i)
+    return contact or series.smooth.index_of[i] >= 0 or is_fast(series.viscous, i)
 
 
 def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
     """Put `sign` times the series of the force of law `i`, which has one, into `out`."""
-    rigid, curved, friction = series.rigid.number[i], series.curved.number[i], series.friction.number[i]
-    smooth, viscous = series.smooth.number[i], series.viscous.number[i]
+    rigid, curved, friction = (
+        series.rigid.index_of[i],
+        series.curved.index_of[i],
+        series.friction.index_of[i],
+    )
+    smooth, viscous = series.smooth.index_of[i], series.viscous.index_of[i]
     for k in range(terms + 1):
         out[k] = 0.0
     for k in range(terms - 1):
@@ -51,14 +55,14 @@ def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: A
     """Put the series of the force of law `i` into `out`, all dashpots included."""
     tangent = laws.tangent
     smooth, d = series.smooth, series.deformation[i]
-    r, damping = smooth.number[i], tangent.damping[i]
+    r, damping = smooth.index_of[i], tangent.damping[i]
     if has_series(series, i):
         copy_force(series, terms, i, 1.0, out)
         if r >= 0:
             for k in range(terms - 1):
-                out[k] += damping * (k + 1) / h * d[k + 1] + dashpot_rest(laws, smooth, r, k, h)
+                out[k] += damping * (k + 1) / h * d[k + 1] + dashpot_remainder(laws, smooth, r, k, h)
         return
-    acts = 1.0 if series.curved.number[i] < 0 else 0.0  # which presses nothing now
+    acts = 1.0 if series.curved.index_of[i] < 0 else 0.0  # which presses nothing now
     for k in range(terms + 1):
         out[k] = acts * tangent.stiffness[i] * d[k]
     out[0] += acts * tangent.offset[i]
@@ -79,8 +83,8 @@ def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: fl
     """Set the offsets of rigid and curved contacts and of friction to their forces at the place `s`."""
     update_friction(laws, series, terms, s, h)
     rigid, curved = series.rigid, series.curved
-    for q in range(rigid.n_held[0]):
-        r = rigid.held[q]
+    for q in range(rigid.n_closed[0]):
+        r = rigid.closed[q]
         laws.tangent.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
     for r in range(len(curved.laws)):
         laws.tangent.offset[curved.laws[r]] = (

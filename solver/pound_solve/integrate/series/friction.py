@@ -36,7 +36,7 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
     """
     return Friction(
         laws=laws,
-        number=places(laws, n_laws),
+        index_of=places(laws, n_laws),
         normal=normal,
         side=np.zeros(len(laws)),
         pressing=np.ones(len(laws), bool),
@@ -49,21 +49,21 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
 def side_of(laws: Laws, friction: Friction, i: int) -> None:
     """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 where it does not."""
     at = laws.state.branch[i]
-    friction.side[friction.number[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
+    friction.side[friction.index_of[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
 
 def is_sliding(friction: Friction, i: int) -> bool:
     """Whether law `i` is friction that slides."""
-    return bool(friction.number[i] >= 0 and friction.side[friction.number[i]] != 0.0)
+    return bool(friction.index_of[i] >= 0 and friction.side[friction.index_of[i]] != 0.0)
 
 
 def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
     """Coefficient `k` of the normal force of friction `r`; the inputs have `top` coefficients."""
     tangent = laws.tangent
     j, curved = series.friction.normal[r], series.curved
-    number = curved.number[j]
-    if number >= 0:
-        force: float = curved.force[number, k] if curved.phase[number] == PRESSED else 0.0
+    row = curved.index_of[j]
+    if row >= 0:
+        force: float = curved.force[row, k] if curved.phase[row] == PRESSED else 0.0
         return force
     linear: float = tangent.stiffness[j] * deformation_term(laws, series, k, top, j)
     if tangent.damping[j] != 0.0:
@@ -126,7 +126,7 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
 def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     """Instant at which the contact of friction `i` begins to pull, or to press again; law -1 for none."""
     friction, p = series.friction, series.polynomial[POLYNOMIAL]
-    r = friction.number[i]
+    r = friction.index_of[i]
     sign = -1.0 if friction.pressing[r] else 1.0
     for k in range(terms + 1):
         p[k] = sign * friction.push[r, k] if k < terms - 1 else 0.0
@@ -137,7 +137,7 @@ def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
 def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
     """The first event of friction law `i` before the place `end`, see `none`."""
     friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
-    r, numbers = friction.number[i], laws.definition.parameters[i]
+    r, parameters = friction.index_of[i], laws.definition.parameters[i]
     if laws.state.branch[i] == OPEN:
         return none(extent.end)
     terms, h = extent.terms, extent.h
@@ -148,14 +148,14 @@ def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> Locate
         for k in range(terms + 1):
             p[k] = 0.0
         if sliding:  # the slider would turn back
-            scale, share = laws.largest.rate[i], pressing * numbers[MUD] / numbers[KT]
+            scale, share = laws.largest.rate[i], pressing * parameters[MUD] / parameters[KT]
             for k in range(terms - 2):
                 p[k] = (k + 1) / h * (share * friction.push[r, k + 1] - sign * d[i, k + 1])
         else:  # the spring reaches the limit
-            scale = numbers[KT] * laws.largest.deformation[i] + numbers[MU] * friction.largest[r]
+            scale = parameters[KT] * laws.largest.deformation[i] + parameters[MU] * friction.largest[r]
             for k in range(terms - 1):
-                p[k] = sign * numbers[KT] * d[i, k] - pressing * numbers[MU] * friction.push[r, k]
-            p[0] -= sign * numbers[KT] * laws.state.internal[i, ANCHOR]
+                p[k] = sign * parameters[KT] * d[i, k] - pressing * parameters[MU] * friction.push[r, k]
+            p[0] -= sign * parameters[KT] * laws.state.internal[i, ANCHOR]
         if p[0] > OVERDUE * scale:
             return LocatedEvent(i, e, 0.0)
         at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)

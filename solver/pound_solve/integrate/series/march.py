@@ -48,7 +48,7 @@ from pound_solve.integrate.series.force_events import BENDS, LIFT, TURNS
 from pound_solve.integrate.series.forces import count_largest, update_branch_forces
 from pound_solve.integrate.series.friction import is_sliding
 from pound_solve.integrate.series.modal import from_modes, take_in_modes
-from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.rigid import is_closed
 from pound_solve.integrate.series.shown import has_room, is_full, keep_step
 from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
 from pound_solve.integrate.series.smooth import shorten_for_bend
@@ -88,7 +88,7 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
     evaluate_motion(series.motion, terms, end, h, 1, now.velocity)
     for i in range(len(laws.definition.rule)):
         d, v = law_at(series, terms, end, h, i)
-        if is_held(series.rigid, i):
+        if is_closed(series.rigid, i):
             d, v = laws.state.entry_deformation[i], 0.0
         if is_sliding(series.friction, i):  # its work is added up
             laws.state.entry_deformation[i] = d
@@ -159,7 +159,7 @@ def answer_event(
     """
     laws, lengths, kind = sim.laws, series.lengths, event.event_index
     if kind == LIFT:
-        r = series.friction.number[event.law]
+        r = series.friction.index_of[event.law]
         series.friction.pressing[r] = not series.friction.pressing[r]
         return DONE
     if kind == BENDS:
@@ -171,7 +171,7 @@ def answer_event(
     if kind < 0:
         change_phase(laws, series.curved, lengths, event.law, kind)
         return DONE
-    if series.rigid.number[event.law] >= 0:
+    if series.rigid.index_of[event.law] >= 0:
         sim.run.fault = event.law
         return STRIKE
     change_branches(sim, rules, series, extent, event)

@@ -31,7 +31,7 @@ from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import add_row, row_product
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.series.smooth import Q, dashpot_rest
+from pound_solve.integrate.series.smooth import Q, dashpot_remainder
 from pound_solve.integrate.series.springs import deformation_term, load_term
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics.ldl import factor
@@ -85,7 +85,7 @@ def allocate(
         damping=sparse_rows(damping[unknown]),
         heavy_damping=sparse_rows(damping[linear.has_mass]),
         laws=laws,
-        law_number=places(laws, law_rows.shape[0]),
+        index_of_law=places(laws, law_rows.shape[0]),
         rows=rows,
         pattern=pattern,
         column=column,
@@ -105,18 +105,18 @@ def allocate(
     )
 
 
-def form_matrix(laws: Laws, held: Massless, which: int) -> None:
+def form_matrix(laws: Laws, massless: Massless, which: int) -> None:
     """Fill in C or K (`which`) of the unknowns without mass, with the laws on their present branches."""
-    for q in range(len(held.matrix)):
-        held.matrix[q] = held.on_pattern[which, q]
-    for n in range(len(held.laws)):
-        i = held.laws[n]
+    for q in range(len(massless.matrix)):
+        massless.matrix[q] = massless.on_pattern[which, q]
+    for n in range(len(massless.laws)):
+        i = massless.laws[n]
         coefficient = laws.tangent.damping[i] if which == DAMPING else laws.tangent.stiffness[i]
-        for q in range(held.pair_pointers[n], held.pair_pointers[n + 1]):
-            held.matrix[held.pair_places[q]] += coefficient * held.pair_values[q]
+        for q in range(massless.pair_pointers[n], massless.pair_pointers[n + 1]):
+            massless.matrix[massless.pair_places[q]] += coefficient * massless.pair_values[q]
 
 
-def factorise_orders(laws: Laws, held: Massless) -> int:
+def factorise_orders(laws: Laws, massless: Massless) -> int:
     """Find the orders of the unknowns on the present branches, and factorise C and K for them.
 
     Returns
@@ -125,51 +125,53 @@ def factorise_orders(laws: Laws, held: Massless) -> int:
         -1, or the number of one that nothing holds, or that would snap through, by K; one that is held by
         dashpots between such unknowns alone, by C.
     """
-    form_matrix(laws, held, DAMPING)
-    held.counts[DAMPING] = held.counts[STIFFNESS] = 0
-    for i in range(len(held.unknown)):
-        held.damped[i] = held.matrix[held.pattern.ap[i]] != 0.0
-        which = DAMPING if held.damped[i] else STIFFNESS
-        held.members[which, held.counts[which]] = i
-        held.counts[which] += 1
+    form_matrix(laws, massless, DAMPING)
+    massless.counts[DAMPING] = massless.counts[STIFFNESS] = 0
+    for i in range(len(massless.unknown)):
+        massless.damped[i] = massless.matrix[massless.pattern.ap[i]] != 0.0
+        which = DAMPING if massless.damped[i] else STIFFNESS
+        massless.members[which, massless.counts[which]] = i
+        massless.counts[which] += 1
     for which in range(2):
         if which == STIFFNESS:
-            form_matrix(laws, held, STIFFNESS)
-        for q in range(len(held.matrix)):
-            i, j = held.pattern.ai[q], held.column[q]
-            if held.damped[i] != (which == DAMPING) or held.damped[j] != (which == DAMPING):
-                held.matrix[q] = 1.0 if i == j else 0.0
-        fault = factor(held.pattern, held.matrix, held.factors[which], held.pivots[which], held.row)
+            form_matrix(laws, massless, STIFFNESS)
+        for q in range(len(massless.matrix)):
+            i, j = massless.pattern.ai[q], massless.column[q]
+            if massless.damped[i] != (which == DAMPING) or massless.damped[j] != (which == DAMPING):
+                massless.matrix[q] = 1.0 if i == j else 0.0
+        fault = factor(
+            massless.pattern, massless.matrix, massless.factors[which], massless.pivots[which], massless.row
+        )
         if fault >= 0:
             return fault
-        for i in range(len(held.unknown)):
-            if held.pivots[which, i] < 0.0:
+        for i in range(len(massless.unknown)):
+            if massless.pivots[which, i] < 0.0:
                 return i
-        for i in range(len(held.unknown)):
-            held.pivots[which, i] = 1.0 / held.pivots[which, i]
+        for i in range(len(massless.unknown)):
+            massless.pivots[which, i] = 1.0 / massless.pivots[which, i]
     return -1
 
 
-def undamped_unknowns(laws: Laws, held: Massless) -> Index:
+def undamped_unknowns(laws: Laws, massless: Massless) -> Index:
     """Numbers of the unknowns of order one that take part in the motion which dashpots resist least."""
-    form_matrix(laws, held, DAMPING)
-    c = np.zeros((len(held.unknown), len(held.unknown)))
-    c[held.pattern.ai, held.column] = c[held.column, held.pattern.ai] = held.matrix
-    at = np.flatnonzero(held.damped)
+    form_matrix(laws, massless, DAMPING)
+    c = np.zeros((len(massless.unknown), len(massless.unknown)))
+    c[massless.pattern.ai, massless.column] = c[massless.column, massless.pattern.ai] = massless.matrix
+    at = np.flatnonzero(massless.damped)
     motion = softest(scaled(c[np.ix_(at, at)], scaling(c[np.ix_(at, at)])))[1]
     return np.asarray(at[np.abs(motion) > PARTICIPATION * np.abs(motion).max()], np.int64)
 
 
-def solve_order(held: Massless, which: int) -> None:
+def solve_order(massless: Massless, which: int) -> None:
     """Solve in place for the unknowns of one order; the right sides of the others do not matter."""
-    s, l, d, x = held.pattern, held.factors[which], held.pivots[which], held.right_side  # noqa: E741
-    members = held.members[which]
-    for q in range(held.counts[which]):
+    s, l, d, x = massless.pattern, massless.factors[which], massless.pivots[which], massless.right_side  # noqa: E741
+    members = massless.members[which]
+    for q in range(massless.counts[which]):
         j = members[q]
         t = x[j]
         for y in range(s.lp[j], s.lp[j + 1]):
             x[s.li[y]] -= l[y] * t
-    for q in range(held.counts[which] - 1, -1, -1):
+    for q in range(massless.counts[which] - 1, -1, -1):
         j = members[q]
         t = x[j] * d[j]
         for y in range(s.lp[j], s.lp[j + 1]):
@@ -181,68 +183,68 @@ def balance_forces(series: Series, k: int, top: int, which: int) -> None:
     """Right sides for the unknowns of one order: loads less the forces of K and of the laws, with the parts
     of smooth laws and dampers beyond their tangents, at the coefficients `k`.
     """
-    held, springs, c = series.massless, series.springs, series.motion[k]
-    members, x = held.members[which], held.right_side
-    for q in range(held.counts[which]):
-        x[members[q]] = -row_product(springs.rows, held.unknown[members[q]], c)
+    massless, springs, c = series.massless, series.springs, series.motion[k]
+    members, x = massless.members[which], massless.right_side
+    for q in range(massless.counts[which]):
+        x[members[q]] = -row_product(springs.rows, massless.unknown[members[q]], c)
     if k < top:
-        for q in range(held.counts[which]):
-            x[members[q]] += load_term(springs, series, k, top, held.unknown[members[q]])
+        for q in range(massless.counts[which]):
+            x[members[q]] += load_term(springs, series, k, top, massless.unknown[members[q]])
     smooth = series.smooth
     for r in range(len(smooth.laws)):
-        n = held.law_number[smooth.laws[r]]
+        n = massless.index_of_law[smooth.laws[r]]
         if n >= 0:
-            add_row(held.rows, n, -smooth.numbers[r, Q] * smooth.rest[r, k], x)
+            add_row(massless.rows, n, -smooth.constants[r, Q] * smooth.remainder[r, k], x)
     viscous = series.viscous
     for r in range(len(viscous.laws)):
-        n = held.law_number[viscous.laws[r]]
+        n = massless.index_of_law[viscous.laws[r]]
         if n >= 0 and viscous.fast[r]:
-            add_row(held.rows, n, -viscous.rest[r, k], x)
+            add_row(massless.rows, n, -viscous.remainder[r, k], x)
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     """Compute the coefficients `k` > 0 of the unknowns of order one."""
-    held, c, x = series.massless, series.motion, series.massless.right_side
-    members = held.members[DAMPING]
+    massless, c, x = series.massless, series.motion, series.massless.right_side
+    members = massless.members[DAMPING]
     balance_forces(series, k - 1, top, DAMPING)
-    for q in range(held.counts[DAMPING]):
-        x[members[q]] -= k / h * row_product(held.damping, members[q], c[k])
+    for q in range(massless.counts[DAMPING]):
+        x[members[q]] -= k / h * row_product(massless.damping, members[q], c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
-        if held.law_number[i] >= 0:
+        if massless.index_of_law[i] >= 0:
             force = k / h * laws.tangent.damping[i] * deformation_term(laws, series, k, top, i)
-            add_row(held.rows, held.law_number[i], -force, x)
+            add_row(massless.rows, massless.index_of_law[i], -force, x)
     for r in range(len(series.smooth.laws)):
-        n = held.law_number[series.smooth.laws[r]]
+        n = massless.index_of_law[series.smooth.laws[r]]
         if n >= 0:
-            add_row(held.rows, n, -dashpot_rest(laws, series.smooth, r, k - 1, h), x)
-    solve_order(held, DAMPING)
-    for q in range(held.counts[DAMPING]):
-        c[k, held.unknown[members[q]]] = x[members[q]] * (h / k)
+            add_row(massless.rows, n, -dashpot_remainder(laws, series.smooth, r, k - 1, h), x)
+    solve_order(massless, DAMPING)
+    for q in range(massless.counts[DAMPING]):
+        c[k, massless.unknown[members[q]]] = x[members[q]] * (h / k)
 
 
 def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: int) -> None:
     """Compute the coefficients `k` of the unknowns without mass (see the module's head), which must be zero
     before for `k` > 1.
     """
-    held, c, x = series.massless, series.motion, series.massless.right_side
+    massless, c, x = series.massless, series.motion, series.massless.right_side
     if k < 2:
         for n in range(len(x)):
-            i = held.unknown[n]
-            c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
-    if k > 0 and held.counts[DAMPING] > 0:
+            i = massless.unknown[n]
+            c[k, i] = step.now.displacement[i] if k == 0 and massless.damped[n] else 0.0
+    if k > 0 and massless.counts[DAMPING] > 0:
         add_damped(laws, series, k, h, top)
     balance_forces(series, k, top, STIFFNESS)
-    solve_order(held, STIFFNESS)
-    members = held.members[STIFFNESS]
-    for q in range(held.counts[STIFFNESS]):
-        c[k, held.unknown[members[q]]] = x[members[q]]
+    solve_order(massless, STIFFNESS)
+    members = massless.members[STIFFNESS]
+    for q in range(massless.counts[STIFFNESS]):
+        c[k, massless.unknown[members[q]]] = x[members[q]]
 
 
 def joints_jump(laws: Laws, series: Series, top: int) -> bool:
     """Whether the laws at joints without mass deform in no time; the inputs have `top` coefficients."""
-    held, most, far = series.massless, 0.0, 0.0
-    for i in held.laws:
+    massless, most, far = series.massless, 0.0, 0.0
+    for i in massless.laws:
         d = laws.now.deformation[i]
         most = max(most, abs(d), laws.largest.deformation[i])
         far = max(far, abs(deformation_term(laws, series, 0, top, i) - d))

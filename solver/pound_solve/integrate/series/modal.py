@@ -64,14 +64,14 @@ def renew_modes(laws: Laws, series: Series) -> None:
         modal.offset[i] = 0.0
     for b in range(len(modal.counts)):
         n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
-        load, rest = modal.x[b, 0], modal.rest[b]
+        load, equilibrium = modal.x[b, 0], modal.equilibrium[b]
         for i in range(n):
             load[i] = series.springs.constant[modal.unknowns[b, i]]
-        multiply_dense(modal.held[b], load, twice, n, rest, 0.0)
+        multiply_dense(modal.static_positions[b], load, twice, n, equilibrium, 0.0)
         for i in range(modal.counts[b, FOLLOWED]):
             at = modal.followed[b, i]
             for j in range(twice):
-                modal.offset[at] += modal.rows[b, i, j] * rest[j]
+                modal.offset[at] += modal.rows[b, i, j] * equilibrium[j]
 
 
 def to_modes(modal: Modal, step: Step) -> None:
@@ -120,7 +120,7 @@ def start_interval(modal: Modal, inputs: Array) -> None:
                     inputs[1, j],
                 )
         for i in range(2 * count):
-            x[0, i] = modal.modes[b, i] - modal.rest[b, i]
+            x[0, i] = modal.modes[b, i] - modal.equilibrium[b, i]
             for j in range(2 * n_inputs):
                 x[0, i] -= modal.steady[b, i, j] * x[0, 2 * count + j]
         for place in range(1, places):
@@ -182,7 +182,7 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
         p[k] = 0.0
     p[0], terms = modal.values[cell, i], UNCHECKED_TERMS
     for b in range(len(modal.counts)):
-        at, count = modal.place[b, i], modal.counts[b, MODES]
+        at, count = modal.index_of[b, i], modal.counts[b, MODES]
         if at < 0:
             continue
         row, x, later = modal.rows[b, at], modal.x[b, 2 * cell], modal.x[b, 2 * cell + 2]
@@ -309,7 +309,7 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
         twice, modes = 2 * modal.counts[b, MODES], modal.modes[b]
         x = modal.x[b, modal.growth.shape[1] - 1]
         for i in range(twice):
-            modes[i] = x[i] + modal.rest[b, i]
+            modes[i] = x[i] + modal.equilibrium[b, i]
             for j in range(2 * n_inputs):
                 modes[i] += modal.steady[b, i, j] * x[twice + j]
 

@@ -81,7 +81,7 @@ class Part:
         unit, none = np.eye(inputs.shape[1]), np.zeros(len(mass))
         forcing = np.array([self.modes.forcing(s[None], none)[0] for s in unit]).T
         self.steady = -forcing.reshape(len(self.rate), len(unit)) / self.rate[:, None]
-        self.held = -self.modes.load_forcing(np.eye(len(mass))).T / self.rate[:, None]
+        self.static_positions = -self.modes.load_forcing(np.eye(len(mass))).T / self.rate[:, None]
         self.followed = np.flatnonzero(rows.any(axis=1))
         self.rows = rows[self.followed] @ self.modes.u_q
 
@@ -195,12 +195,12 @@ def allocate(
         unknowns=np.zeros((b, n), np.int64),
         to_modes=np.zeros((b, 2, 2 * q, n)),
         from_modes=np.zeros((b, 2, n, 2 * q)),
-        held=np.zeros((b, 2 * q, n)),
+        static_positions=np.zeros((b, 2 * q, n)),
         growth=np.zeros((b, places, 2, q)),
         steady=np.zeros((b, 2 * q, 2 * n_inputs)),
         bend=np.zeros((b, q)),
         followed=np.zeros((b, r), np.int64),
-        place=np.full((b, n_followed), -1),
+        index_of=np.full((b, n_followed), -1),
         turn=np.zeros((b, 2, q)),
         share=np.zeros((b, r, q)),
         rows=np.zeros((b, r, size)),
@@ -210,7 +210,7 @@ def allocate(
         shown=np.zeros((b, w), np.int64),
         motion=np.zeros((b, 3, w, size)),
         modes=np.zeros((b, 2 * q)),
-        rest=np.zeros((b, 2 * q)),
+        equilibrium=np.zeros((b, 2 * q)),
         offset=np.zeros(n_followed),
         x=np.zeros((b, places, size)),
         departure=np.zeros((b, q)),
@@ -236,7 +236,7 @@ def fill_tables(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, sh
     to_modes = modes.state_of(one, 0.0 * one), modes.state_of(0.0 * one, one)
     put(out.to_modes, np.array([np.vstack([x.real, x.imag]) for x in to_modes]))
     put(out.from_modes, np.array([np.hstack([x.real, -x.imag]) for x in (modes.u_q, modes.v_q)]))
-    put(out.held, np.vstack([part.held.real, part.held.imag]))
+    put(out.static_positions, np.vstack([part.static_positions.real, part.static_positions.imag]))
     cells = len(out.values) - 1
     growth = np.exp(rate * h * np.linspace(0.0, 1.0, 2 * cells + 1)[:, None])
     put(out.growth, np.stack([growth.real, growth.imag], axis=1))
@@ -244,7 +244,7 @@ def fill_tables(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, sh
     put(out.steady, np.vstack([start.real, start.imag]))
     put(out.bend, np.minimum(2.0, (np.abs(rate) * h / cells) ** 2 / 8.0))
     put(out.followed, part.followed)
-    out.place[b, part.followed] = np.arange(len(part.followed))
+    out.index_of[b, part.followed] = np.arange(len(part.followed))
     put(out.turn, np.array([rate.real, rate.imag]) * h / cells)
     put(out.share, np.abs(part.rows))
     put(out.rows, part.table(part.rows, START)[0])

@@ -37,7 +37,7 @@ class Present(KernelPresent):
         for i in [i for i in range(len(d)) if i not in coupled] + coupled:  # the forces that press first
             if i in coupled:
                 laws.state.internal[i, PUSH] = max(forces[laws.friction.normal_law[i]], 0.0)
-            if self.series.rigid.number[i] < 0:
+            if self.series.rigid.index_of[i] < 0:
                 forces[i] = law_kernels.law_force(laws, rules, i, d[i], v[i])
         return forces
 

@@ -28,12 +28,12 @@ def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> 
     n, laws = len(contacts.laws), np.array(contacts.laws, np.int64)
     return Rigid(
         laws=laws,
-        number=places(laws, n_laws),
+        index_of=places(laws, n_laws),
         gap=contacts.gap,
         velocity_change=np.ascontiguousarray(contacts.velocity_change[order].T),
-        held=np.zeros(n, np.int64),
-        n_held=np.zeros(1, np.int64),
-        is_held=np.zeros(n, bool),
+        closed=np.zeros(n, np.int64),
+        n_closed=np.zeros(1, np.int64),
+        is_closed=np.zeros(n, bool),
         inverse=np.zeros((n, n)),
         violation=np.zeros(n),
         force=np.zeros((n, terms)),
@@ -41,17 +41,17 @@ def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> 
     )
 
 
-def take_over(rigid: Rigid, contacts: RigidContacts, held: Flags) -> None:
+def take_over(rigid: Rigid, contacts: RigidContacts, closed: Flags) -> None:
     """Set which contacts are closed, and the inverse matrix for their forces."""
-    at = np.flatnonzero(held)
-    rigid.is_held[:], rigid.n_held[0], rigid.held[: len(at)] = held, len(at), at
+    at = np.flatnonzero(closed)
+    rigid.is_closed[:], rigid.n_closed[0], rigid.closed[: len(at)] = closed, len(at), at
     rigid.inverse[: len(at), : len(at)] = contacts.inverse(at)
     rigid.force[:] = 0.0
 
 
-def is_held(rigid: Rigid, law: int) -> bool:
+def is_closed(rigid: Rigid, law: int) -> bool:
     """Whether a law is a rigid contact that is closed."""
-    return bool(rigid.number[law] >= 0 and rigid.is_held[rigid.number[law]])
+    return bool(rigid.index_of[law] >= 0 and rigid.is_closed[rigid.index_of[law]])
 
 
 def hold_contacts(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
@@ -60,13 +60,13 @@ def hold_contacts(laws: Laws, series: Series, k: int, h: float, top: int) -> Non
     The inputs have `top` coefficients.
     """
     rigid, c = series.rigid, series.motion[k]
-    n = rigid.n_held[0]
+    n = rigid.n_closed[0]
     for q in range(n):
-        r = rigid.held[q]
+        r = rigid.closed[q]
         off = deformation_term(laws, series, k, top, rigid.laws[r])
         rigid.violation[q] = off - rigid.gap[r] if k == 0 else off
     for q in range(n):
-        r, x = rigid.held[q], 0.0
+        r, x = rigid.closed[q], 0.0
         for p in range(n):
             x += rigid.inverse[q, p] * rigid.violation[p]
         for i in range(len(c)):

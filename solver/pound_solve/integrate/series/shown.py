@@ -34,8 +34,8 @@ def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
         begin=np.zeros(s),
         length=np.zeros(s),
         x=np.zeros((i, b, size)),
-        rest=np.zeros((i, b, modal.rest.shape[1])),
-        held=np.zeros((i, len(acting))),
+        equilibrium=np.zeros((i, b, modal.equilibrium.shape[1])),
+        constant_forces=np.zeros((i, len(acting))),
         start=np.zeros(i),
     )
 
@@ -85,10 +85,12 @@ def keep_interval(laws: Laws, series: Series, t: float) -> None:
     for b in range(len(modal.counts)):
         for i in range(modal.x.shape[2]):
             shown.x[at, b, i] = modal.x[b, 0, i]
-        for i in range(modal.rest.shape[1]):
-            shown.rest[at, b, i] = modal.rest[b, i]
+        for i in range(modal.equilibrium.shape[1]):
+            shown.equilibrium[at, b, i] = modal.equilibrium[b, i]
     for i in range(len(shown.acting)):
         law = shown.acting[i]
-        shown.held[at, i] = laws.tangent.stiffness[law] * modal.offset[law] + laws.tangent.offset[law]
+        shown.constant_forces[at, i] = (
+            laws.tangent.stiffness[law] * modal.offset[law] + laws.tangent.offset[law]
+        )
     shown.start[at] = t
     shown.kept[INTERVALS] += 1

@@ -10,9 +10,9 @@ On a branch, and on one side of w = 0, the force therefore has a power series, o
           k\,(1 + b p_0)\,r_k = \sum_{j=1}^{k-1} (k - j)\,p_j\,(a\,d_{k-j} - b\,w_{k-j}) .
 
 The first part is the tangent at the start of the step, a spring as of any law (see `springs`), among the
-unknowns without mass, too.  The rest :math:`q r_k` follows from the motion up to k - 1: a known force.
-Dashpots in proportion to the tangent have forces in proportion to the rate of f, so a rest as well.  Every
-step begins with the closed form of the law, so that no error adds up.
+unknowns without mass, too.  The remainder :math:`q r_k` follows from the motion up to k - 1: a known force.
+Dashpots in proportion to the tangent have forces in proportion to the rate of f, so a remainder as well.
+Every step begins with the closed form of the law, so that no error adds up.
 
 The series of p is a product where n is a whole number.  Where it is not, it follows from that of w (see
 `curved`), which converges up to w = 0 only: around that the power is left out as long as it changes the
@@ -43,7 +43,7 @@ POWER_TRUNCATION = 1e-13  #: error of w by truncating the series of the power, a
 CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
 #: bits of the largest whole power computed by multiplication; larger ones matter near w = y only
 MAX_POWER_BITS = 7
-W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.numbers`
+W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.constants`
 
 
 def allocate(smooth: Flags, terms: int) -> Smooth:
@@ -52,15 +52,15 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
     n = len(laws)
     return Smooth(
         laws=laws,
-        number=places(laws, len(smooth)),
-        numbers=np.zeros((n, 7)),
+        index_of=places(laws, len(smooth)),
+        constants=np.zeros((n, 7)),
         bent=np.zeros(n, bool),
         low=np.zeros(n),
         high=np.zeros(n),
         share=np.zeros((n, 2 * MAX_POWER_BITS, terms)),
         power=np.zeros((n, terms)),
         part=np.zeros((n, terms)),
-        rest=np.zeros((n, terms)),
+        remainder=np.zeros((n, terms)),
         force=np.zeros((n, terms)),
     )
 
@@ -70,7 +70,7 @@ def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
     otherwise laws at rest would reverse for ever with the rounding of other laws' rates.
     """
     for r in range(len(smooth.laws)):
-        i, creep = smooth.laws[r], CREEP * abs(smooth.numbers[r, Y]) / length
+        i, creep = smooth.laws[r], CREEP * abs(smooth.constants[r, Y]) / length
         laws.largest.rate[i] = max(laws.largest.rate[i], creep)
 
 
@@ -84,10 +84,10 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
     series are valid.
     """
     for r in range(len(smooth.laws)):
-        i, numbers = smooth.laws[r], smooth.numbers[r]
+        i, constants = smooth.laws[r], smooth.constants[r]
         d = laws.now.deformation[i]
         force, tangent, _, _ = curved_force(laws, rules, i, d, 0.0)
-        numbers[W], numbers[Y], numbers[N], numbers[A], numbers[B], k, numbers[Q] = smooth_of(
+        constants[W], constants[Y], constants[N], constants[A], constants[B], k, constants[Q] = smooth_of(
             rules,
             laws.definition.rule[i],
             parameters(laws.definition.parameters, i),
@@ -96,15 +96,15 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
             d,
             force,
         )
-        x, n, most = numbers[W] / numbers[Y], numbers[N], max(abs(numbers[A]), abs(numbers[B]))
+        x, n, most = constants[W] / constants[Y], constants[N], max(abs(constants[A]), abs(constants[B]))
         smooth.low[r], smooth.high[r], smooth.bent[r] = 0.0 if x > ZERO else -np.inf, np.inf, most > 0.0
         if most > 0.0 and not is_product(n):
             near = (POWER_LEFT_OUT * (n + 1.0) / most) ** (1.0 / (n + 1.0))
             smooth.bent[r] = x > 0.75 * near
             smooth.low[r] = 0.5 * near if smooth.bent[r] else -near
             smooth.high[r] = np.inf if smooth.bent[r] else near
-        numbers[SLOPE] = (tangent - k) / numbers[Q] if smooth.bent[r] else 1.0
-        laws.tangent.stiffness[i] = k + numbers[Q] * numbers[SLOPE]
+        constants[SLOPE] = (tangent - k) / constants[Q] if smooth.bent[r] else 1.0
+        laws.tangent.stiffness[i] = k + constants[Q] * constants[SLOPE]
         laws.tangent.damping[i] = proportional_damping(laws, i, laws.tangent.stiffness[i])
         laws.tangent.offset[i] = force - laws.tangent.stiffness[i] * d
 
@@ -138,20 +138,20 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
 def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
     """Compute the coefficients `k` of deformation, force and power of smooth law `r` from the motion."""
     smooth, i = series.smooth, series.smooth.laws[r]
-    numbers, share, d = smooth.numbers[r], smooth.share[r], deformation_term(laws, series, k, top, i)
+    constants, share, d = smooth.constants[r], smooth.share[r], deformation_term(laws, series, k, top, i)
     series.deformation[i, k] = d
-    smooth.force[r, k] = laws.tangent.stiffness[i] * d + numbers[Q] * smooth.rest[r, k]
-    smooth.part[r, k] = numbers[SLOPE] * d + smooth.rest[r, k]
+    smooth.force[r, k] = laws.tangent.stiffness[i] * d + constants[Q] * smooth.remainder[r, k]
+    smooth.part[r, k] = constants[SLOPE] * d + smooth.remainder[r, k]
     if k == 0:
         smooth.force[r, 0] += laws.tangent.offset[i]
-        smooth.part[r, 0] = numbers[W] + numbers[SLOPE] * (d - laws.now.deformation[i])
-    share[0, k] = smooth.part[r, k] / numbers[Y]
+        smooth.part[r, 0] = constants[W] + constants[SLOPE] * (d - laws.now.deformation[i])
+    share[0, k] = smooth.part[r, k] / constants[Y]
     if not smooth.bent[r]:
         smooth.power[r, k] = 0.0
-    elif is_product(numbers[N]):
-        smooth.power[r, k] = whole_power_term(share, int(numbers[N]), k)
+    elif is_product(constants[N]):
+        smooth.power[r, k] = whole_power_term(share, int(constants[N]), k)
     else:
-        smooth.power[r, k] = power_term(numbers[N], share[0, 0], share[0], smooth.power[r], k)
+        smooth.power[r, k] = power_term(constants[N], share[0, 0], share[0], smooth.power[r], k)
 
 
 def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
@@ -160,22 +160,22 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
     """
     smooth = series.smooth
     for r in range(len(smooth.laws)):
-        smooth.rest[r, k] = 0.0
+        smooth.remainder[r, k] = 0.0
         if k == 0:
             continue
         take_term(laws, series, r, k - 1, top)
-        numbers, d = smooth.numbers[r], series.deformation[smooth.laws[r]]
+        constants, d = smooth.constants[r], series.deformation[smooth.laws[r]]
         power, part = smooth.power[r], smooth.part[r]
         total = 0.0
         for j in range(1, k):
-            total += (k - j) * power[j] * (numbers[A] * d[k - j] - numbers[B] * part[k - j])
-        smooth.rest[r, k] = total / (k * (1.0 + numbers[B] * power[0]))
+            total += (k - j) * power[j] * (constants[A] * d[k - j] - constants[B] * part[k - j])
+        smooth.remainder[r, k] = total / (k * (1.0 + constants[B] * power[0]))
 
 
-def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
+def dashpot_remainder(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
     """Coefficient `k` of the dashpot force of smooth law `r` beyond that of its tangent."""
-    rate = (k + 1) / h * smooth.rest[r, k + 1]
-    force: float = laws.definition.tangent_damping[smooth.laws[r]] * smooth.numbers[r, Q] * rate
+    rate = (k + 1) / h * smooth.remainder[r, k + 1]
+    force: float = laws.definition.tangent_damping[smooth.laws[r]] * smooth.constants[r, Q] * rate
     return force
 
 
@@ -184,19 +184,21 @@ def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
     the coefficients `k` + 2.
     """
     for r in range(len(smooth.laws)):
-        rest = smooth.numbers[r, Q] * smooth.rest[r, k] + dashpot_rest(laws, smooth, r, k, h)
-        add_row(laws.definition.rows, smooth.laws[r], -h * h * rest, new)
+        remainder = smooth.constants[r, Q] * smooth.remainder[r, k] + dashpot_remainder(
+            laws, smooth, r, k, h
+        )
+        add_row(laws.definition.rows, smooth.laws[r], -h * h * remainder, new)
 
 
 def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     """Relative error of w/y at the place `s` that comes from truncating the series of its power."""
-    numbers, share = smooth.numbers[r], smooth.share[r, 0]
+    constants, share = smooth.constants[r], smooth.share[r, 0]
     x, power = 0.0, 0.0
     for k in range(terms - 1, -1, -1):
         x = x * s + share[k]
         power = power * s + smooth.power[r, k]
-    whole = (x if is_product(numbers[N]) else max(x, 0.0)) ** numbers[N]
-    lacks: float = max(abs(numbers[A]), abs(numbers[B])) * abs(whole - power) * abs(x - share[0])
+    whole = (x if is_product(constants[N]) else max(x, 0.0)) ** constants[N]
+    lacks: float = max(abs(constants[A]), abs(constants[B])) * abs(whole - power) * abs(x - share[0])
     return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
 
 
@@ -221,7 +223,7 @@ def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> Locat
     event.
     """
     smooth, p = series.smooth, series.polynomial[POLYNOMIAL]
-    r = smooth.number[i]
+    r = smooth.index_of[i]
     for sign in (-1.0, 1.0):
         limit = smooth.low[r] if sign < 0.0 else smooth.high[r]
         if abs(limit) < np.inf:
@@ -235,7 +237,7 @@ def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> Locat
 
 def shorten_for_bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> None:
     """Shorten the first step in which the power of smooth law `i` is no longer negligible."""
-    r = smooth.number[i]
+    r = smooth.index_of[i]
     if smooth.high[r] < np.inf:
-        far = smooth.high[r] * abs(smooth.numbers[r, Y])
+        far = smooth.high[r] * abs(smooth.constants[r, Y])
         lengths.next = min(lengths.next, FIRST_STEP * far / abs(laws.now.rate[i]))

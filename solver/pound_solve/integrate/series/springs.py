@@ -44,7 +44,7 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
     squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in slices]
     return Springs(
         row=row.astype(np.uint32),
-        number=places(row, n),
+        index_of=places(row, n),
         rows=Rows(
             np.append(first, len(keys)).astype(np.uint32), (keys % n).astype(np.uint32), np.zeros(len(keys))
         ),
@@ -74,8 +74,8 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
         for j in range(len(moved)):
             moved[j, i] = linear.inputs[j, i]
     for i in range(len(definition.rule)):
-        k, offset, rubs = tangent.stiffness[i], tangent.offset[i], friction.number[i]
-        if rigid.number[i] >= 0 or curved.number[i] >= 0 or (rubs >= 0 and friction.side[rubs] != 0.0):
+        k, offset, rubs = tangent.stiffness[i], tangent.offset[i], friction.index_of[i]
+        if rigid.index_of[i] >= 0 or curved.index_of[i] >= 0 or (rubs >= 0 and friction.side[rubs] != 0.0):
             offset = 0.0
         for q in range(springs.pair_pointers[i], springs.pair_pointers[i + 1]):
             values[springs.pair_places[q]] += k * springs.pair_values[q]

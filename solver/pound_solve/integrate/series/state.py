@@ -29,7 +29,7 @@ class Springs(NamedTuple):
     ----------
     row : ndarray, shape (n_rows,)
         Unknowns that laws hold; all, where some have no mass.
-    number : ndarray, shape (n,)
+    index_of : ndarray, shape (n,)
         Place of an unknown in `row`, -1 for others.
     rows : Rows
         Sum of ``k b b^T`` in these rows, and K where some have no mass.
@@ -47,7 +47,7 @@ class Springs(NamedTuple):
     """
 
     row: Place
-    number: Index
+    index_of: Index
     rows: Rows
     stiffness: Array
     pair_pointers: Place
@@ -72,7 +72,7 @@ class Massless(NamedTuple):
         Rows of C over all unknowns, for the unknowns without mass and for those with mass.
     laws : ndarray, shape (n_holding,)
         Laws that hold an unknown without mass, ascending.
-    law_number : ndarray, shape (n_laws,)
+    index_of_law : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     rows : Rows
         Deformations of these laws over the unknowns without mass.
@@ -105,7 +105,7 @@ class Massless(NamedTuple):
     damping: Rows
     heavy_damping: Rows
     laws: Index
-    law_number: Index
+    index_of_law: Index
     rows: Rows
     pattern: Pattern
     column: Index
@@ -130,19 +130,19 @@ class Rigid(NamedTuple):
     Attributes
     ----------
     laws : ndarray, shape (n_rigid,)
-    number : ndarray, shape (n_laws,)
+    index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     gap : ndarray, shape (n_rigid,)
     velocity_change : ndarray, shape (n_rigid, n)
         Change of the velocities for unit impulses.
-    held : ndarray, shape (n_rigid,)
-        The closed contacts, in the first `n_held` places.
-    n_held : ndarray, shape (1,)
-    is_held : ndarray, shape (n_rigid,)
+    closed : ndarray, shape (n_rigid,)
+        The closed contacts, in the first `n_closed` places.
+    n_closed : ndarray, shape (1,)
+    is_closed : ndarray, shape (n_rigid,)
     inverse : ndarray, shape (n_rigid, n_rigid)
-        Inverse of G over the closed contacts `held`.
+        Inverse of G over the closed contacts `closed`.
     violation : ndarray, shape (n_rigid,)
-        Scratch: violation of the constraints by the present coefficients, by place in `held`.
+        Scratch: violation of the constraints by the present coefficients, by place in `closed`.
     force : ndarray, shape (n_rigid, TERMS + 1)
         Coefficients of the forces.
     largest : ndarray, shape (n_rigid,)
@@ -150,12 +150,12 @@ class Rigid(NamedTuple):
     """
 
     laws: Index
-    number: Index
+    index_of: Index
     gap: Array
     velocity_change: Array
-    held: Index
-    n_held: Index
-    is_held: Flags
+    closed: Index
+    n_closed: Index
+    is_closed: Flags
     inverse: Array
     violation: Array
     force: Array
@@ -168,9 +168,9 @@ class Curved(NamedTuple):
     Attributes
     ----------
     laws : ndarray, shape (n_curved,)
-    number : ndarray, shape (n_laws,)
+    index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
-    numbers : ndarray, shape (n_curved, 6)
+    constants : ndarray, shape (n_curved, 6)
         Numbers that `Rule.powers` returns on the present branch.
     phase : ndarray, shape (n_curved,)
         APART, PRESSED or RELEASED, see `curved`: whether a force acts.
@@ -183,8 +183,8 @@ class Curved(NamedTuple):
     """
 
     laws: Index
-    number: Index
-    numbers: Array
+    index_of: Index
+    constants: Array
     phase: Index
     power: Array
     force: Array
@@ -197,7 +197,7 @@ class Friction(NamedTuple):
     Attributes
     ----------
     laws : ndarray, shape (n_friction,)
-    number : ndarray, shape (n_laws,)
+    index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     normal : ndarray, shape (n_friction,)
         The laws of the contacts.
@@ -214,7 +214,7 @@ class Friction(NamedTuple):
     """
 
     laws: Index
-    number: Index
+    index_of: Index
     normal: Index
     side: Array
     pressing: Flags
@@ -229,9 +229,9 @@ class Smooth(NamedTuple):
     Attributes
     ----------
     laws : ndarray, shape (n_smooth,)
-    number : ndarray, shape (n_laws,)
+    index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
-    numbers : ndarray, shape (n_smooth, 7)
+    constants : ndarray, shape (n_smooth, 7)
         w, y, n, a, b and q of `Rule.smooth`, and dw/dd, at the start of the step.
     bent : ndarray, shape (n_smooth,)
         Whether the power is not negligible.
@@ -239,20 +239,20 @@ class Smooth(NamedTuple):
         Range of w/y in which the series is valid.
     share : ndarray, shape (n_smooth, 2 BITS, TERMS + 1)
         Coefficients of w/y, and of its powers on the way to n.
-    power, part, rest, force : ndarray, shape (n_smooth, TERMS + 1)
+    power, part, remainder, force : ndarray, shape (n_smooth, TERMS + 1)
         Coefficients of p and w, of the part of w beyond the tangent, and of the forces.
     """
 
     laws: Index
-    number: Index
-    numbers: Array
+    index_of: Index
+    constants: Array
     bent: Flags
     low: Array
     high: Array
     share: Array
     power: Array
     part: Array
-    rest: Array
+    remainder: Array
     force: Array
 
 
@@ -262,25 +262,25 @@ class Viscous(NamedTuple):
     Attributes
     ----------
     laws : ndarray, shape (n_viscous,)
-    number : ndarray, shape (n_laws,)
+    index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
-    numbers : ndarray, shape (n_viscous, 4)
+    constants : ndarray, shape (n_viscous, 4)
         c, with the sign of the rate, and n; rate up to which the force is linear; rate of the tangent.
     light : ndarray
         Dampers that hold unknowns without mass.
     fast : ndarray, shape (n_viscous,)
         Whether the force is a series.
-    rate, rest, force : ndarray, shape (n_viscous, TERMS + 1)
+    rate, remainder, force : ndarray, shape (n_viscous, TERMS + 1)
         Coefficients of the rate's magnitude, of the force beyond the tangent, and of the force.
     """
 
     laws: Index
-    number: Index
-    numbers: Array
+    index_of: Index
+    constants: Array
     light: Index
     fast: Flags
     rate: Array
-    rest: Array
+    remainder: Array
     force: Array
 
 
@@ -340,7 +340,7 @@ class Modal(NamedTuple):
         Their places in the order of elimination.
     to_modes, from_modes : ndarray, shape (n_parts, 2, 2 n_modes, n) and (n_parts, 2, n, 2 n_modes)
         Real, then imaginary parts of the modes from displacements and velocities, and these from them.
-    held : ndarray, shape (n_parts, 2 n_modes, n)
+    static_positions : ndarray, shape (n_parts, 2 n_modes, n)
         Static positions of the modes under unit constant loads.
     growth : ndarray, shape (n_parts, 2 n_cells + 1, 2, n_modes)
         Real and imaginary parts of the free modes' factors at the ends and the middles of the cells.
@@ -350,7 +350,7 @@ class Modal(NamedTuple):
         Distance of a free mode of size one from its chord over a cell, at most.
     followed : ndarray, shape (n_parts, n_followed)
         Numbers of what is followed: deformations of the laws, then monitored outputs.
-    place : ndarray, shape (n_parts, n_all_followed)
+    index_of : ndarray, shape (n_parts, n_all_followed)
         Place in a part of each followed quantity, -1 where the part does not have it.
     turn : ndarray, shape (n_parts, 2, n_modes)
         Real and imaginary parts of the eigenvalues times the length of a cell.
@@ -364,7 +364,7 @@ class Modal(NamedTuple):
         Numbers of the unknowns that envelopes look at.
     motion : ndarray, shape (n_parts, 3, n_shown, n_x)
         Their displacements, velocities and accelerations on x.
-    modes, rest : ndarray, shape (n_parts, 2 n_modes)
+    modes, equilibrium : ndarray, shape (n_parts, 2 n_modes)
         Modal coordinates, and their static position under the present constant loads.
     offset : ndarray, shape (n_followed,)
         Values of the followed quantities in that static position.
@@ -382,12 +382,12 @@ class Modal(NamedTuple):
     unknowns: Index
     to_modes: Array
     from_modes: Array
-    held: Array
+    static_positions: Array
     growth: Array
     steady: Array
     bend: Array
     followed: Index
-    place: Index
+    index_of: Index
     turn: Array
     share: Array
     rows: Array
@@ -397,7 +397,7 @@ class Modal(NamedTuple):
     shown: Index
     motion: Array
     modes: Array
-    rest: Array
+    equilibrium: Array
     offset: Array
     x: Array
     departure: Array
@@ -423,9 +423,9 @@ class Shown(NamedTuple):
         Their highest powers; all others are zero.
     begin, length : ndarray, shape (n_steps,)
         Time of the start, and to where the step was taken.
-    x, rest : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
-        `Modal.x` and `Modal.rest` at their starts.
-    held : ndarray, shape (n_intervals, n_acting)
+    x, equilibrium : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
+        `Modal.x` and `Modal.equilibrium` at their starts.
+    constant_forces : ndarray, shape (n_intervals, n_acting)
         Forces of the laws where the modes come to rest.
     start : ndarray, shape (n_intervals,)
         Times.
@@ -440,8 +440,8 @@ class Shown(NamedTuple):
     begin: Array
     length: Array
     x: Array
-    rest: Array
-    held: Array
+    equilibrium: Array
+    constant_forces: Array
     start: Array
 
 

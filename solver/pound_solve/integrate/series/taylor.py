@@ -139,7 +139,7 @@ class Taylor(KernelEngine):
 
     def _allocate(self, monitored: MonitoredOutputs, tolerance: float | None) -> state.Series:
         """Arrays of the series, whose parts are empty where nothing in the system needs them."""
-        system, laws, held, o = self.system, self.laws, self.massless, self.order
+        system, laws, o = self.system, self.laws, self.order
         n, n_inputs, n_laws, terms = (
             system.size,
             system.inputs.shape[1],
@@ -151,7 +151,7 @@ class Taylor(KernelEngine):
         collides = np.array([s.role.collides for s in self.springs], bool)
         is_damper = is_curved & np.array([s.role is Role.DAMPER for s in self.springs], bool)
         is_smooth = np.array([s.law.rule.smooth is not None for s in self.springs], bool)
-        which, acting = self.place[np.flatnonzero(self.recorder.shown)], self.recorder.acting
+        which, acting = self.inverse_order[np.flatnonzero(self.recorder.shown)], self.recorder.acting
         modal = modal_tables.allocate(
             system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), which
         )
@@ -167,16 +167,16 @@ class Taylor(KernelEngine):
             inverse=np.divide(1.0, mass, out=np.zeros(n), where=mass > 0.0),
             gauss=gauss_rules(expansion.MAX_TERMS // expansion.UNCHECKED_TERMS + 1),
             springs=springs.allocate(
-                n, laws.definition.rows, self.linear.inputs, whole if len(held.unknown) else None
+                n, laws.definition.rows, self.linear.inputs, whole if len(self.massless.unknown) else None
             ),
-            massless=held,
+            massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, n_laws, terms),
             curved=curved.allocate(is_curved & collides, terms),
             friction=friction.allocate(
                 laws.friction.coupled, laws.friction.normal_law[laws.friction.coupled], n_laws, terms
             ),
             smooth=smooth.allocate(is_smooth, terms),
-            viscous=viscous.allocate(is_damper, held.law_number >= 0, terms),
+            viscous=viscous.allocate(is_damper, self.massless.index_of_law >= 0, terms),
             strings=strings.allocate(len(self.members.parameters), terms),
             damped=self._damped(terms),
             modal=modal,
@@ -241,7 +241,7 @@ class Taylor(KernelEngine):
     def _strike(self, instants: RigidInstants) -> bool:
         """Let the rigid contact at fault strike, or part."""
         present, law = instants.run, int(self.state.fault)
-        if present.branches[law].held:
+        if present.branches[law].constrains:
             present.transition(
                 law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
             )
@@ -261,7 +261,7 @@ class Taylor(KernelEngine):
                 return
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
-        known = (self.massless.law_number < 0) & (self.series.friction.number < 0)
+        known = (self.massless.index_of_law < 0) & (self.series.friction.index_of < 0)
         present.hand_back_impact(np.flatnonzero(known))
         self._hold(instants.rounding)
 
@@ -314,14 +314,17 @@ class Taylor(KernelEngine):
 
     def _loose(self) -> str:
         """Which unknown without mass is not held, and why."""
-        fault, held = int(self.state.fault), self.massless
-        name, n = self.system.name(int(self.order[fault])), int(np.flatnonzero(held.unknown == fault)[0])
-        if held.damped[n]:
-            whole = massless.undamped_unknowns(self.laws, held)
-            names = [self.system.name(i) for i in sorted(self.order[held.unknown[whole]].tolist())]
+        fault = int(self.state.fault)
+        name, n = (
+            self.system.name(int(self.order[fault])),
+            int(np.flatnonzero(self.massless.unknown == fault)[0]),
+        )
+        if self.massless.damped[n]:
+            whole = massless.undamped_unknowns(self.laws, self.massless)
+            names = [self.system.name(i) for i in sorted(self.order[self.massless.unknown[whole]].tolist())]
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
-        if held.pivots[STIFFNESS, n] < 0.0:
+        if self.massless.pivots[STIFFNESS, n] < 0.0:
             return self.system.loose(self._softest(), softens=True)
         return self.system.loose(int(self.order[fault]))
 

@@ -21,7 +21,7 @@ from pound_solve.integrate.series.curved import (
 from pound_solve.integrate.series.force_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
-from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.rigid import is_closed
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Extent, Series
 from pound_solve.integrate.series.viscous import turn_event
@@ -30,7 +30,7 @@ from pound_solve.laws.automaton import GAP
 
 def parting_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
-    r, p = series.rigid.number[i], series.polynomial[POLYNOMIAL]
+    r, p = series.rigid.index_of[i], series.polynomial[POLYNOMIAL]
     still = EVENT_TOLERANCE * series.rigid.largest[r]
     copy_force(series, terms, i, -1.0, p)
     if p[0] > still:  # the force has jumped
@@ -41,9 +41,9 @@ def parting_event(series: Series, terms: int, end: float, i: int) -> LocatedEven
 
 def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
     """The instant at which curved contact `i` begins or ceases to have a force, or the `first` event."""
-    curved, r = series.curved, series.curved.number[i]
+    curved, r = series.curved, series.curved.index_of[i]
     phase, d, p = curved.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
-    if curved.numbers[r, K] == 0.0:
+    if curved.constants[r, K] == 0.0:
         return first
     sign, overlap = 1.0, touch_overlap(laws, i)
     if phase == APART:  # where nothing has moved yet, the step tells how far
@@ -55,7 +55,7 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
     p[0] -= sign * (laws.definition.parameters[i, GAP] + overlap)
     at = first_rise(series.polynomial, terms, first.time, 0.0)
     first = earlier(first, i, TOUCHES if phase == APART else PARTS, at)
-    if phase == RELEASED or (phase == PRESSED and curved.numbers[r, PULLS] == 0.0):
+    if phase == RELEASED or (phase == PRESSED and curved.constants[r, PULLS] == 0.0):
         sign = 1.0 if phase == RELEASED else -1.0
         copy_force(series, terms, i, sign, p)
         at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * curved.largest[r])
@@ -67,7 +67,7 @@ def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent
     """The first event of law `i` in a step, in lengths of the step, see `none`."""
     coefficients = laws.events.coefficients
     terms, h, end = extent.terms, extent.h, extent.end
-    if series.friction.number[i] >= 0:
+    if series.friction.index_of[i] >= 0:
         return friction_event(laws, series, extent, i)
     first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
     far, faster = size(d, i, terms), rate_size(d, i, terms) / h
@@ -75,7 +75,7 @@ def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent
         on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
         if on_d == 0.0 and on_v == 0.0:
             continue
-        if is_held(series.rigid, i):
+        if is_closed(series.rigid, i):
             return parting_event(series, terms, end, i)
         scale = abs(on_d) * laws.largest.deformation[i] + abs(on_v) * laws.largest.rate[i] + abs(constant)
         most = on_d * d[i, 0] + on_v * d[i, 1] / h + constant + abs(on_d) * far + abs(on_v) * faster
@@ -89,11 +89,11 @@ def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent
                 p[k] += on_v * (k + 1) / h * d[i, k + 1]
         at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)
         first = earlier(first, i, e, at)
-    if series.smooth.number[i] >= 0:
+    if series.smooth.index_of[i] >= 0:
         return bend_event(series, terms, first, i)
-    if series.viscous.number[i] >= 0:
+    if series.viscous.index_of[i] >= 0:
         return turn_event(series, terms, h, first, i)
-    return phase_event(laws, series, terms, first, i) if series.curved.number[i] >= 0 else first
+    return phase_event(laws, series, terms, first, i) if series.curved.index_of[i] >= 0 else first
 
 
 def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:

@@ -2,7 +2,7 @@ r"""Dampers whose force is a power of the rate, in a power series: kernels.
 
 The force of a damper (see `Rule.powers`), :math:`f = \pm c\,x^n` at the rate :math:`x = |\dot d|`, has a
 power series wherever it moves.  Euler's recurrence (see `curved`) splits into the tangent at the start of
-the step, a linear dashpot, and a rest that is known from the terms before,
+the step, a linear dashpot, and a remainder that is known from the terms before,
 
 .. math:: f_k = n c\,x_0^{n-1}\,\frac{k+1}{h}\,d_{k+1} \pm r_k, \qquad
           r_k = \frac{1}{k x_0} \sum_{j=1}^{k-1} (n j - k + j)\, x_j\, |f|_{k-j} .
@@ -37,7 +37,7 @@ SLOW_RATE_OF_UNIT = 1e-12  #: the same, of the rate one
 DEAD_BAND = 1e-3  #: share of this rate between the two events, lest they follow one another
 RATE_CONVERGED = 1e-6  #: share of a rate that Newton's iteration changes last: it leaves the square of that
 RATE_ROUNDING = 1e-15  #: share of the velocities whose difference a rate is
-LIMIT, RATE = 2, 3  #: columns of `Viscous.numbers`, beside K and N
+LIMIT, RATE = 2, 3  #: columns of `Viscous.constants`, beside K and N
 
 
 def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
@@ -48,12 +48,12 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
     n = len(laws)
     return Viscous(
         laws=laws,
-        number=places(laws, len(viscous)),
-        numbers=np.zeros((n, 4)),
+        index_of=places(laws, len(viscous)),
+        constants=np.zeros((n, 4)),
         light=np.flatnonzero(light[laws]),
         fast=np.zeros(n, bool),
         rate=np.zeros((n, terms)),
-        rest=np.zeros((n, terms)),
+        remainder=np.zeros((n, terms)),
         force=np.zeros((n, terms)),
     )
 
@@ -62,46 +62,50 @@ def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
     """Replace the branches of the dampers by their present tangents."""
     tangent = laws.tangent
     for r in range(len(viscous.laws)):
-        i, numbers = viscous.laws[r], viscous.numbers[r]
-        numbers[K], numbers[N], _, _, _, _ = powers_of(
+        i, constants = viscous.laws[r], viscous.constants[r]
+        constants[K], constants[N], _, _, _, _ = powers_of(
             rules,
             laws.definition.rule[i],
             parameters(laws.definition.parameters, i),
             laws.state.branch[i],
             internal(laws.state.internal, i),
         )
-        viscous.fast[r], numbers[RATE] = False, laws.now.rate[i]
-        if numbers[K] == 0.0:  # the branch is linear
+        viscous.fast[r], constants[RATE] = False, laws.now.rate[i]
+        if constants[K] == 0.0:  # the branch is linear
             continue
-        c, n, x = abs(numbers[K]), numbers[N], numbers[RATE] if numbers[K] > 0.0 else -numbers[RATE]
+        c, n, x = (
+            abs(constants[K]),
+            constants[N],
+            constants[RATE] if constants[K] > 0.0 else -constants[RATE],
+        )
         share = 1.0 / max(n, 1.0)
-        numbers[LIMIT] = (
+        constants[LIMIT] = (
             max(SLOW_RATE_OF_UNIT**share, SLOW_RATE**share * laws.largest.rate[i]) if n != 1.0 else np.inf
         )
-        viscous.fast[r] = x > numbers[LIMIT]
+        viscous.fast[r] = x > constants[LIMIT]
         if viscous.fast[r]:
             tangent.damping[i] = n * c * x ** (n - 1.0)
-            tangent.offset[i] = (1.0 - n) * numbers[K] * x**n
+            tangent.offset[i] = (1.0 - n) * constants[K] * x**n
         else:
-            tangent.damping[i] = c if n == 1.0 else c * numbers[LIMIT] ** (n - 1.0)
+            tangent.damping[i] = c if n == 1.0 else c * constants[LIMIT] ** (n - 1.0)
             tangent.offset[i] = 0.0
 
 
 def is_fast(viscous: Viscous, i: int) -> bool:
     """Whether law `i` is a damper whose force is a series."""
-    return bool(viscous.number[i] >= 0 and viscous.fast[viscous.number[i]])
+    return bool(viscous.index_of[i] >= 0 and viscous.fast[viscous.index_of[i]])
 
 
 def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> None:
     """Compute the coefficients `k` of rate and force of damper `r` from the motion."""
     viscous, i = series.viscous, series.viscous.laws[r]
-    numbers, sign = viscous.numbers[r], 1.0 if viscous.numbers[r, K] > 0.0 else -1.0
+    constants, sign = viscous.constants[r], 1.0 if viscous.constants[r, K] > 0.0 else -1.0
     x = sign * (k + 1) / h * deformation_term(laws, series, k + 1, top, i)
     if k == 0:
-        x = max(x, numbers[LIMIT])
-        viscous.force[r, 0] = numbers[K] * x ** numbers[N]
+        x = max(x, constants[LIMIT])
+        viscous.force[r, 0] = constants[K] * x ** constants[N]
     else:
-        viscous.force[r, k] = sign * laws.tangent.damping[i] * x + viscous.rest[r, k]
+        viscous.force[r, k] = sign * laws.tangent.damping[i] * x + viscous.remainder[r, k]
     viscous.rate[r, k] = x
 
 
@@ -114,13 +118,13 @@ def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
         if not viscous.fast[r]:
             continue
         if k == 0:
-            viscous.rest[r, 0] = 0.0
+            viscous.remainder[r, 0] = 0.0
             continue
         take_rate(laws, series, r, k - 1, h, top)
-        n, x, force, total = viscous.numbers[r, N], viscous.rate[r], viscous.force[r], 0.0
+        n, x, force, total = viscous.constants[r, N], viscous.rate[r], viscous.force[r], 0.0
         for j in range(1, k):
             total += (n * j - (k - j)) * x[j] * force[k - j]
-        viscous.rest[r, k] = total / (k * x[0])
+        viscous.remainder[r, k] = total / (k * x[0])
 
 
 def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> None:
@@ -129,7 +133,7 @@ def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> Non
     """
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
-            add_row(laws.definition.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
+            add_row(laws.definition.rows, viscous.laws[r], -h * h * viscous.remainder[r, k], new)
 
 
 def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
@@ -150,8 +154,8 @@ def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int
     event.
     """
     viscous, d, p = series.viscous, series.deformation[i], series.polynomial[POLYNOMIAL]
-    r = viscous.number[i]
-    k, limit = viscous.numbers[r, K], viscous.numbers[r, LIMIT]
+    r = viscous.index_of[i]
+    k, limit = viscous.constants[r, K], viscous.constants[r, LIMIT]
     if k == 0.0 or limit == np.inf:
         return first
     sign = -1.0 if viscous.fast[r] else 1.0
@@ -168,11 +172,14 @@ def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
     """
     rows = laws.definition.rows
     for r in viscous.light:
-        i, numbers = viscous.laws[r], viscous.numbers[r]
-        if numbers[K] != 0.0 and numbers[N] != 1.0:
+        i, constants = viscous.laws[r], viscous.constants[r]
+        if constants[K] != 0.0 and constants[N] != 1.0:
             v, size = laws.now.rate[i], 0.0
             for q in range(rows.pointers[i], rows.pointers[i + 1]):
                 size += abs(rows.values[q] * velocity[rows.columns[q]])
-            if abs(v - numbers[RATE]) > RATE_CONVERGED * max(abs(v), numbers[LIMIT]) + RATE_ROUNDING * size:
+            if (
+                abs(v - constants[RATE])
+                > RATE_CONVERGED * max(abs(v), constants[LIMIT]) + RATE_ROUNDING * size
+            ):
                 return False
     return True

@@ -23,15 +23,15 @@ def add_law_losses(
     definition, tangent = laws.definition, laws.tangent
     update_branch_forces(laws, series, extent.terms, s, extent.h)
     for i in range(len(definition.rule)):
-        drag, curved = tangent.damping[i], series.curved.number[i]
+        drag, curved = tangent.damping[i], series.curved.index_of[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
         pressed = definition.contact[i] and (tangent.stiffness[i] != 0.0 or tangent.offset[i] != 0.0)
-        curves = overlaps or series.viscous.number[i] >= 0
+        curves = overlaps or series.viscous.index_of[i] >= 0
         sliding = is_sliding(series.friction, i)
         if drag != 0.0 or moved or pressed or curves or sliding:
             d, v = law_at(series, extent.terms, s, extent.h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
-            if series.smooth.number[i] >= 0 or (moved and series.viscous.number[i] >= 0):
+            if series.smooth.index_of[i] >= 0 or (moved and series.viscous.index_of[i] >= 0):
                 linearise_law(laws, rules, i, d, v)
                 drag = tangent.damping[i]
             if sliding:

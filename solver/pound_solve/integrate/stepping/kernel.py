@@ -264,9 +264,9 @@ def take_steps(
     """
     run = sim.run
     why, tried = NEWTON, False
-    if run.rest >= 0.0:
+    if run.remaining_step >= 0.0:
         resume_after_jump(sim, rules)
-        length, run.rest = run.rest, -1.0
+        length, run.remaining_step = run.remaining_step, -1.0
     else:
         last = min(count - 1, run.step + most)
         first, fresh = run.step, run.updates == 0

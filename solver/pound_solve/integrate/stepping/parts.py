@@ -116,7 +116,7 @@ def pass_event(
     if run.same_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
         run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
     if run.fell >= 0:
-        run.rest = left
+        run.remaining_step = left
         return FALL
     return DONE
 

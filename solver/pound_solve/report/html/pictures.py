@@ -92,12 +92,12 @@ def _structure(results: Results) -> Iterator[Picture]:
     s, note, shift = DrawnStructure(results, apart()), "", dict[int, Array]()
     traces: list[Trace] = []
     if results.holds("node/u"):
-        found = displacements(results)
-        s, shift = found.structure, found.shift(found.row)
+        displaced = displacements(results)
+        s, shift = displaced.structure, displaced.shift(displaced.row)
         note = (
-            f"The displacements are those at {results.time[found.row]:.6g} {s.units.time}, "
-            f"when the largest is {found.largest:.5g} {s.units.length}. "
-            f"Displacements and gaps are drawn {found.factor:.3g} times as large."
+            f"The displacements are those at {results.time[displaced.row]:.6g} {s.units.time}, "
+            f"when the largest is {displaced.largest:.5g} {s.units.length}. "
+            f"Displacements and gaps are drawn {displaced.factor:.3g} times as large."
         )
         traces.append(_line("displaced", s.path(shift), "#0b4f8a"))
     traces.insert(0, _line("at rest", s.path(), "#b0b0b0"))

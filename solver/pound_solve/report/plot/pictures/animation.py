@@ -59,14 +59,14 @@ class Film:
 
 def film(results: Results, choice: Choice) -> Film:
     """Make the frames of the animation at equal intervals, interpolated between the stored instants."""
-    found, t = displacements(results, choice.span(results)), results.time[choice.span(results)]
+    displaced, t = displacements(results, choice.span(results)), results.time[choice.span(results)]
     time = np.linspace(t[0], t[-1], min(FRAMES, max(2, len(t))))
-    columns = found.drawn.reshape(len(t), -1).T
+    columns = displaced.drawn.reshape(len(t), -1).T
     moved = np.column_stack([np.interp(time, t, column) for column in columns])
-    closed = [_closed(results, c.name, time) for c in found.structure.contacts]
+    closed = [_closed(results, c.name, time) for c in displaced.structure.contacts]
     return Film(
-        found.structure, results.title, found.factor, found.nodes, time,
-        moved.reshape(len(time), len(found.nodes), 2), np.array(closed, bool).reshape(-1, len(time)).T,
+        displaced.structure, results.title, displaced.factor, displaced.nodes, time,
+        moved.reshape(len(time), len(displaced.nodes), 2), np.array(closed, bool).reshape(-1, len(time)).T,
     )  # fmt: skip
 
 

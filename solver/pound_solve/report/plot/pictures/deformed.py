@@ -11,19 +11,19 @@ from pound_solve.results import Results
 
 def deformed(results: Results, choice: Choice) -> Any:
     """Draw the displacements at an instant, by default that of the largest one."""
-    found = geometry.displacements(results)
-    s, at = found.structure, found.row if choice.time is None else choice.instant(results)
+    displaced = geometry.displacements(results)
+    s, at = displaced.structure, displaced.row if choice.time is None else choice.instant(results)
     when = f"{results.time[at]:.4g} {s.units.time}"
     what = f"at {when}" if choice.time is not None else f"when they are largest, at {when}"
     figure = style.figure(*s.shape(), title=f"Displacements {what}")
     axes = figure.add_subplot()
-    moved = found.shift(at)
+    moved = displaced.shift(at)
     s.frame(axes, 0.06 + geometry.SHARE)
     s.draw(axes, color="0.8", linewidth=0.8)
     s.draw(axes, moved, color=style.BLUE, linewidth=1.3)
     s.draw_contacts(axes, moved)
     axes.set_title(
-        f"displacements and gaps {found.factor:.3g} times as large; grey: at rest; red: contacts"
+        f"displacements and gaps {displaced.factor:.3g} times as large; grey: at rest; red: contacts"
     )
     return figure
 
