@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pound_solve.integrate.kernels.corotational import add_tangent
 from pound_solve.integrate.kernels.state import Simulation
-from pound_solve.numerics.ldl import factor
+from pound_solve.numerics.ldl import factor as factorise
 
 
 def factorise_effective_mass(
-    sim: Simulation, on_mass: float, on_damping: float, on_stiffness: float, at: int
+    sim: Simulation, on_mass: float, on_damping: float, on_stiffness: float, factor: int
 ) -> int:
-    """Factorise the sum of M, C and K times factors, laws and corotational members included, into row `at`
-    of the factors; return -1 or the unknown whose pivot vanishes.
+    """Factorise the sum of M, C and K times factors, laws and corotational members included, into row
+    `factor` of `Step.factors`; return -1 or the unknown whose pivot vanishes.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition = laws.definition
@@ -27,4 +27,4 @@ def factorise_effective_mass(
         members = sim.members
         for c in range(len(members.parameters)):
             add_tangent(linear, members, step, c, members.tangent, on_stiffness, False)
-    return factor(linear.pattern, step.matrix, step.factors[at], step.pivots[at], step.row)
+    return factorise(linear.pattern, step.matrix, step.factors[factor], step.pivots[factor], step.row)

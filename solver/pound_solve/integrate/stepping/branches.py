@@ -16,7 +16,7 @@ from pound_solve.integrate.kernels.laws import (
 from pound_solve.integrate.kernels.recording import log_transition, store_motion, track_peaks
 from pound_solve.integrate.kernels.state import WHOLE, Scheme, Simulation
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
-from pound_solve.integrate.stepping.step import MAX_UPDATES, update_factor
+from pound_solve.integrate.stepping.factor import MAX_UPDATES, update_factor
 from pound_solve.laws.functions import Tables
 from pound_solve.loading.excitation import CLOCK_ROUNDING
 

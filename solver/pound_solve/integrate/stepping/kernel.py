@@ -42,15 +42,11 @@ from pound_solve.integrate.kernels.state import (
     piece_of,
 )
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import resume_after_jump
+from pound_solve.integrate.stepping.factor import MAX_UPDATES, factorise_step, update_factor
 from pound_solve.integrate.stepping.parts import step_in_parts
-from pound_solve.integrate.stepping.step import (
-    MAX_UPDATES,
-    accept_trial,
-    factorise_step,
-    try_step,
-    update_factor,
-)
+from pound_solve.integrate.stepping.step import try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
 

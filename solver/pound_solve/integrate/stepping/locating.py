@@ -11,7 +11,8 @@ from pound_solve.integrate.events.within_step import event_value, first_event, t
 from pound_solve.integrate.kernels.consistency import NEARLY_MET
 from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Piece, Scheme, Simulation
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.stepping.step import factorise_step, restore_start_tangents, try_step
+from pound_solve.integrate.stepping.factor import factorise_step
+from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import next_trial
 

@@ -20,15 +20,11 @@ from pound_solve.integrate.kernels.state import (
     Scheme,
     Simulation,
 )
+from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import change_branches
+from pound_solve.integrate.stepping.factor import MAX_UPDATES, factorise_step
 from pound_solve.integrate.stepping.locating import locate_event
-from pound_solve.integrate.stepping.step import (
-    MAX_UPDATES,
-    accept_trial,
-    factorise_step,
-    restore_start_tangents,
-    try_step,
-)
+from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
 from pound_solve.laws.functions import Tables
 
 MAX_HALVINGS = 25
@@ -47,7 +43,7 @@ def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int
 
 
 def solve_part(
-    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, part: float, at: int, tried: bool
+    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, part: float, factor: int, tried: bool
 ) -> tuple[int, float, int]:
     """Solve a part of a step at most as long as `part`, halved until Newton's iterations converge.
 
@@ -57,24 +53,24 @@ def solve_part(
         DONE or what failed.
     part : float
         Length of the part that is solved.
-    at : int
-        Which factor it was solved with.
+    factor : int
+        Row of the factor that it was solved with.
     """
     laws, run = sim.laws, sim.run
     for halvings in range(MAX_HALVINGS + 1):
-        if at == PART:
+        if factor == PART:
             # from here on, trials change the tangents of curved laws, but not the factor
             if laws.definition.curved.any():
                 run.updates = MAX_UPDATES + 1
             why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:
-                return why, part, at
-        if tried or try_step(sim, rules, scheme, piece.coefs, run.time + part - piece.begin, part, at):
-            return DONE, part, at
+                return why, part, factor
+        if tried or try_step(sim, rules, scheme, piece.coefs, run.time + part - piece.begin, part, factor):
+            return DONE, part, factor
         run.updates = MAX_UPDATES + 1
         restore_start_tangents(sim, rules)
-        part, at = 0.5 * part, PART
-    return NEWTON, part, at
+        part, factor = 0.5 * part, PART
+    return NEWTON, part, factor
 
 
 def end_part_at_event(
@@ -93,12 +89,12 @@ def end_part_at_event(
     return why, event
 
 
-def accept_part(sim: Simulation, rules: Tables, scheme: Scheme, part: float, at: int) -> None:
+def accept_part(sim: Simulation, rules: Tables, scheme: Scheme, part: float, factor: int) -> None:
     """Take the motion at the end of a part over."""
-    accept_trial(sim, rules, scheme, part, at)
+    accept_trial(sim, rules, scheme, part, factor)
     sim.run.time += part
     track_peaks(sim, sim.run.time, part)
-    if at == PART:
+    if factor == PART:
         store_motion(sim, rules, sim.run.time)
 
 
@@ -133,19 +129,19 @@ def step_in_parts(
     """
     laws, run = sim.laws, sim.run
     left = length
-    at = WHOLE if abs(length - h) <= 1e-9 * h else PART
+    factor = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
         if len(sim.buffers.log) - run.logged <= len(laws.friction.coupled):
             return CROWD
         part = min(left, run.longest_part)
-        at = at if part == left else PART
-        why, part, at = solve_part(sim, rules, scheme, piece, part, at, tried)
+        factor = factor if part == left else PART
+        why, part, factor = solve_part(sim, rules, scheme, piece, part, factor, tried)
         if why != DONE:
             return why
         tried = False
         event = first_event(laws, sim.step, part)
         if event.law >= 0:
-            at = PART
+            factor = PART
             why, event = end_part_at_event(sim, rules, scheme, piece, part, h, event)
             if why != DONE:
                 return why
@@ -153,9 +149,9 @@ def step_in_parts(
         else:
             run.longest_part *= 2.0
         if part > 0.0:
-            accept_part(sim, rules, scheme, part, at)
+            accept_part(sim, rules, scheme, part, factor)
             left -= part
-        at = PART
+        factor = PART
         if event.law >= 0:
             why = pass_event(sim, rules, scheme, h, event, left)
             if why != DONE:

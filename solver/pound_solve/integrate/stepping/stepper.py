@@ -36,7 +36,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.release import release
 from pound_solve.integrate.stepping import kernel
-from pound_solve.integrate.stepping.step import MAX_UPDATES
+from pound_solve.integrate.stepping.factor import MAX_UPDATES
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
 

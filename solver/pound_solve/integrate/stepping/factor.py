@@ -1,0 +1,31 @@
+"""The factor of A, the effective mass of a step, made anew or updated as a law changes its tangent.
+
+`factor` is a row of `Step.factors`: `WHOLE` or `PART`.
+"""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
+from pound_solve.integrate.kernels.state import Scheme, Simulation
+from pound_solve.numerics.ldl import update
+
+MAX_UPDATES = 200  #: updates of rank one before a factor is made anew
+
+
+def factorise_step(sim: Simulation, scheme: Scheme, h: float, factor: int) -> int:
+    """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
+    on_mass = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
+    return factorise_effective_mass(sim, on_mass, scheme.gamma * h, scheme.beta * h * h, factor)
+
+
+def update_factor(sim: Simulation, i: int, change: float, factor: int) -> bool:
+    """Add ``change b b^T`` of law `i` to a factor; False where it must be made anew."""
+    step = sim.step
+    rows = sim.laws.definition.rows
+    if change == 0.0 or rows.pointers[i] == rows.pointers[i + 1]:
+        return True
+    first = len(step.row)
+    for q in range(rows.pointers[i], rows.pointers[i + 1]):
+        step.row[rows.columns[q]] += rows.values[q]
+        first = min(first, rows.columns[q])
+    return update(sim.linear.pattern, step.factors[factor], step.pivots[factor], step.row, first, change)
