@@ -134,8 +134,8 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
         for i in massless.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in massless.laws:
-            laws.now.deformation[i] = deformation_term(laws, series, 0, top, i)
-            laws.now.rate[i] = deformation_term(laws, series, 1, top, i)
+            laws.now.deformation[i] = deformation_term(laws.definition, series, 0, top, i)
+            laws.now.rate[i] = deformation_term(laws.definition, series, 1, top, i)
         if not tangents_settled(laws, series.viscous, now.velocity):
             run.stale = 1
             continue

@@ -138,7 +138,7 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         i = curved.laws[r]
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
-            d[m] = deformation_term(laws, series, m, top, i)
+            d[m] = deformation_term(laws.definition, series, m, top, i)
         x = d[0] - laws.definition.parameters[i, GAP] - curved.constants[r, SHIFT]
         force = force_term(curved.constants[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force

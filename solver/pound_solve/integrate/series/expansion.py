@@ -66,7 +66,7 @@ def expand_deformations(laws: Laws, series: Series, terms: int, top: int) -> Non
     """Coefficients of the deformations up to `terms`; the inputs have `top` of them."""
     for k in range(terms + 1):
         for i in range(len(laws.definition.rule)):
-            series.deformation[i, k] = deformation_term(laws, series, k, top, i)
+            series.deformation[i, k] = deformation_term(laws.definition, series, k, top, i)
 
 
 def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
@@ -126,12 +126,13 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
                     new[i] += springs.inputs[j, i] * push
     for q in range(springs.n_dashpots[0]):
         law = springs.dashpots[q]
-        force = rate * laws.tangent.damping[law] * deformation_term(laws, series, k + 1, top, law)
+        term = deformation_term(laws.definition, series, k + 1, top, law)
+        force = rate * laws.tangent.damping[law] * term
         add_row(laws.definition.rows, law, -force, new)
     add_contacts(laws, series, k, h, top, new)
     add_friction(laws, series, k, h, top, new)
     add_rests(laws, series.smooth, k, h, new)
-    add_drags(laws, series.viscous, k, h, new)
+    add_drags(laws.definition, series.viscous, k, h, new)
     add_strings(sim.members, series, k, h, top, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:

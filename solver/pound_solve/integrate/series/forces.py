@@ -3,7 +3,7 @@ dampers."""
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.state import Laws, LawTangent
 from pound_solve.integrate.series.curved import PRESSED, enter_curved, has_force
 from pound_solve.integrate.series.friction import is_sliding, side_of, update_friction
 from pound_solve.integrate.series.rigid import is_closed
@@ -19,7 +19,7 @@ def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
     if series.curved.index_of[i] >= 0:
         enter_curved(laws, rules, series.curved, i)
     if series.friction.index_of[i] >= 0:
-        side_of(laws, series.friction, i)
+        side_of(laws.state, series.friction, i)
 
 
 def has_series(series: Series, i: int) -> bool:
@@ -60,7 +60,9 @@ def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: A
         copy_force(series, terms, i, 1.0, out)
         if r >= 0:
             for k in range(terms - 1):
-                out[k] += damping * (k + 1) / h * d[k + 1] + dashpot_remainder(laws, smooth, r, k, h)
+                out[k] += damping * (k + 1) / h * d[k + 1] + dashpot_remainder(
+                    laws.definition, smooth, r, k, h
+                )
         return
     acts = 1.0 if series.curved.index_of[i] < 0 else 0.0  # which presses nothing now
     for k in range(terms + 1):
@@ -92,10 +94,10 @@ def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: fl
         )
 
 
-def count_largest(laws: Laws, series: Series) -> None:
+def count_largest(tangent: LawTangent, series: Series) -> None:
     """Update the largest force of each rigid and curved contact."""
     rigid, curved = series.rigid, series.curved
     for r in range(len(rigid.laws)):
-        rigid.largest[r] = max(rigid.largest[r], abs(laws.tangent.offset[rigid.laws[r]]))
+        rigid.largest[r] = max(rigid.largest[r], abs(tangent.offset[rigid.laws[r]]))
     for r in range(len(curved.laws)):
-        curved.largest[r] = max(curved.largest[r], abs(laws.tangent.offset[curved.laws[r]]))
+        curved.largest[r] = max(curved.largest[r], abs(tangent.offset[curved.laws[r]]))

@@ -14,7 +14,7 @@ from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import curved_force, linear_force
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.state import Laws, LawState
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.force_events import LIFT
@@ -46,9 +46,9 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
     )
 
 
-def side_of(laws: Laws, friction: Friction, i: int) -> None:
+def side_of(state: LawState, friction: Friction, i: int) -> None:
     """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 where it does not."""
-    at = laws.state.branch[i]
+    at = state.branch[i]
     friction.side[friction.index_of[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
 
@@ -65,9 +65,10 @@ def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
     if row >= 0:
         force: float = curved.force[row, k] if curved.phase[row] == PRESSED else 0.0
         return force
-    linear: float = tangent.stiffness[j] * deformation_term(laws, series, k, top, j)
+    linear: float = tangent.stiffness[j] * deformation_term(laws.definition, series, k, top, j)
     if tangent.damping[j] != 0.0:
-        linear += tangent.damping[j] * (k + 1) / h * deformation_term(laws, series, k + 1, top, j)
+        term = deformation_term(laws.definition, series, k + 1, top, j)
+        linear += tangent.damping[j] * (k + 1) / h * term
     return linear + tangent.offset[j] if k == 0 else linear
 
 

@@ -96,7 +96,7 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
         largest.deformation[i] = max(largest.deformation[i], abs(d))
         largest.rate[i] = max(largest.rate[i], abs(v))
     update_branch_forces(laws, series, terms, end, h)
-    count_largest(laws, series)
+    count_largest(laws.tangent, series)
 
 
 def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
@@ -163,7 +163,7 @@ def answer_event(
         series.friction.pressing[r] = not series.friction.pressing[r]
         return DONE
     if kind == BENDS:
-        shorten_for_bend(laws, series.smooth, lengths, event.law)
+        shorten_for_bend(laws.now, series.smooth, lengths, event.law)
         return DONE
     if kind == TURNS:
         sim.run.stale = 1

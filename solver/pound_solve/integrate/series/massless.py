@@ -29,7 +29,7 @@ from pound_solve.integrate.kernels.allocation import (
 )
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import add_row, row_product
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
+from pound_solve.integrate.kernels.state import Laws, LawTangent, LinearSystem, Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.smooth import Q, dashpot_remainder
 from pound_solve.integrate.series.springs import deformation_term, load_term
@@ -105,13 +105,13 @@ def allocate(
     )
 
 
-def form_matrix(laws: Laws, massless: Massless, which: int) -> None:
+def form_matrix(tangent: LawTangent, massless: Massless, which: int) -> None:
     """Fill in C or K (`which`) of the unknowns without mass, with the laws on their present branches."""
     for q in range(len(massless.matrix)):
         massless.matrix[q] = massless.on_pattern[which, q]
     for n in range(len(massless.laws)):
         i = massless.laws[n]
-        coefficient = laws.tangent.damping[i] if which == DAMPING else laws.tangent.stiffness[i]
+        coefficient = tangent.damping[i] if which == DAMPING else tangent.stiffness[i]
         for q in range(massless.pair_pointers[n], massless.pair_pointers[n + 1]):
             massless.matrix[massless.pair_places[q]] += coefficient * massless.pair_values[q]
 
@@ -125,7 +125,7 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
         -1, or the number of one that nothing holds, or that would snap through, by K; one that is held by
         dashpots between such unknowns alone, by C.
     """
-    form_matrix(laws, massless, DAMPING)
+    form_matrix(laws.tangent, massless, DAMPING)
     massless.counts[DAMPING] = massless.counts[STIFFNESS] = 0
     for i in range(len(massless.unknown)):
         massless.damped[i] = massless.matrix[massless.pattern.ap[i]] != 0.0
@@ -134,7 +134,7 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
         massless.counts[which] += 1
     for which in range(2):
         if which == STIFFNESS:
-            form_matrix(laws, massless, STIFFNESS)
+            form_matrix(laws.tangent, massless, STIFFNESS)
         for q in range(len(massless.matrix)):
             i, j = massless.pattern.ai[q], massless.column[q]
             if massless.damped[i] != (which == DAMPING) or massless.damped[j] != (which == DAMPING):
@@ -154,7 +154,7 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
 
 def undamped_unknowns(laws: Laws, massless: Massless) -> Index:
     """Numbers of the unknowns of order one that take part in the motion which dashpots resist least."""
-    form_matrix(laws, massless, DAMPING)
+    form_matrix(laws.tangent, massless, DAMPING)
     c = np.zeros((len(massless.unknown), len(massless.unknown)))
     c[massless.pattern.ai, massless.column] = c[massless.column, massless.pattern.ai] = massless.matrix
     at = np.flatnonzero(massless.damped)
@@ -212,12 +212,12 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
         if massless.index_of_law[i] >= 0:
-            force = k / h * laws.tangent.damping[i] * deformation_term(laws, series, k, top, i)
+            force = k / h * laws.tangent.damping[i] * deformation_term(laws.definition, series, k, top, i)
             add_row(massless.rows, massless.index_of_law[i], -force, x)
     for r in range(len(series.smooth.laws)):
         n = massless.index_of_law[series.smooth.laws[r]]
         if n >= 0:
-            add_row(massless.rows, n, -dashpot_remainder(laws, series.smooth, r, k - 1, h), x)
+            add_row(massless.rows, n, -dashpot_remainder(laws.definition, series.smooth, r, k - 1, h), x)
     solve_order(massless, DAMPING)
     for q in range(massless.counts[DAMPING]):
         c[k, massless.unknown[members[q]]] = x[members[q]] * (h / k)
@@ -247,7 +247,7 @@ def joints_jump(laws: Laws, series: Series, top: int) -> bool:
     for i in massless.laws:
         d = laws.now.deformation[i]
         most = max(most, abs(d), laws.largest.deformation[i])
-        far = max(far, abs(deformation_term(laws, series, 0, top, i) - d))
+        far = max(far, abs(deformation_term(laws.definition, series, 0, top, i) - d))
     return far > DEFORMATION_JUMP * most
 
 

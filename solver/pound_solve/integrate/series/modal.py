@@ -24,7 +24,7 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME_LENGTH
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Piece, Simulation, Step
+from pound_solve.integrate.kernels.state import BranchEvents, Laws, LinearSystem, Piece, Simulation, Step
 from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, expand_inputs
 from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Extent, Modal, Series
@@ -206,13 +206,13 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
     return terms
 
 
-def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
+def may_change(events: BranchEvents, modal: Modal, cell: int, i: int) -> bool:
     """Whether law `i` may leave its branch within a cell, by the bounds of its deformation, not of its
     rate.
     """
-    coefficients = laws.events.coefficients
+    coefficients = events.coefficients
     low, high = cell_bounds(modal, cell, i)
-    for e in range(laws.events.n_events[i]):
+    for e in range(events.n_events[i]):
         on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
         if on_v != 0.0 or (on_d != 0.0 and not max(on_d * low, on_d * high) + constant <= 0.0):
             return True
@@ -226,7 +226,7 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
     h = modal.length[0] / cells
     for cell in range(cells):
         for i in range(len(laws.definition.rule)):
-            if may_change(laws, modal, cell, i):
+            if may_change(laws.events, modal, cell, i):
                 terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
                 if terms == 0 or event_of(laws, series, Extent(t + cell * h, h, terms, 1.0), i).law >= 0:
                     return False
@@ -336,7 +336,7 @@ def take_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float) ->
     if not count_peaks(sim, series, n_inputs, run.time):
         return False
     add_interval_works(modal, n_inputs, sim.works)
-    keep_interval(sim.laws, series, run.time)
+    keep_interval(sim.laws.tangent, series, run.time)
     advance_modes(modal, n_inputs)
     run.time = goal
     run.steps += 1

@@ -63,7 +63,7 @@ def hold_contacts(laws: Laws, series: Series, k: int, h: float, top: int) -> Non
     n = rigid.n_closed[0]
     for q in range(n):
         r = rigid.closed[q]
-        off = deformation_term(laws, series, k, top, rigid.laws[r])
+        off = deformation_term(laws.definition, series, k, top, rigid.laws[r])
         rigid.violation[q] = off - rigid.gap[r] if k == 0 else off
     for q in range(n):
         r, x = rigid.closed[q], 0.0

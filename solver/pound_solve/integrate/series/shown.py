@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.state import Laws, LawTangent
 from pound_solve.integrate.series.forces import whole_force
 from pound_solve.integrate.series.state import Extent, Modal, Series, Shown
 from pound_solve.numerics.types import Index
@@ -76,7 +76,7 @@ def has_room(shown: Shown) -> bool:
     return bool(shown.kept[INTERVALS] < len(shown.start))
 
 
-def keep_interval(laws: Laws, series: Series, t: float) -> None:
+def keep_interval(tangent: LawTangent, series: Series, t: float) -> None:
     """Keep the modes at the start of an interval, the time `t`."""
     shown, modal = series.shown, series.modal
     if not shown.is_needed[0]:
@@ -89,8 +89,6 @@ def keep_interval(laws: Laws, series: Series, t: float) -> None:
             shown.equilibrium[at, b, i] = modal.equilibrium[b, i]
     for i in range(len(shown.acting)):
         law = shown.acting[i]
-        shown.constant_forces[at, i] = (
-            laws.tangent.stiffness[law] * modal.offset[law] + laws.tangent.offset[law]
-        )
+        shown.constant_forces[at, i] = tangent.stiffness[law] * modal.offset[law] + tangent.offset[law]
     shown.start[at] = t
     shown.kept[INTERVALS] += 1

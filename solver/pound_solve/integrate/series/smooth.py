@@ -28,7 +28,7 @@ from pound_solve.integrate.events.protocol import LocatedEvent, earlier
 from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import curved_force, internal, parameters, proportional_damping
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.state import LawDefinition, LawExtremes, LawMotion, Laws
 from pound_solve.integrate.series.curved import FIRST_STEP, power_term, right_part
 from pound_solve.integrate.series.force_events import BENDS
 from pound_solve.integrate.series.springs import deformation_term
@@ -65,13 +65,13 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
     )
 
 
-def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
+def count_creep(largest: LawExtremes, smooth: Smooth, length: float) -> None:
     """Raise the largest rates, which others are compared with, to a creep over the `length` of the run:
     otherwise laws at rest would reverse for ever with the rounding of other laws' rates.
     """
     for r in range(len(smooth.laws)):
         i, creep = smooth.laws[r], CREEP * abs(smooth.constants[r, Y]) / length
-        laws.largest.rate[i] = max(laws.largest.rate[i], creep)
+        largest.rate[i] = max(largest.rate[i], creep)
 
 
 def is_product(n: float) -> bool:
@@ -138,7 +138,8 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
 def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
     """Compute the coefficients `k` of deformation, force and power of smooth law `r` from the motion."""
     smooth, i = series.smooth, series.smooth.laws[r]
-    constants, share, d = smooth.constants[r], smooth.share[r], deformation_term(laws, series, k, top, i)
+    constants, share = smooth.constants[r], smooth.share[r]
+    d = deformation_term(laws.definition, series, k, top, i)
     series.deformation[i, k] = d
     smooth.force[r, k] = laws.tangent.stiffness[i] * d + constants[Q] * smooth.remainder[r, k]
     smooth.part[r, k] = constants[SLOPE] * d + smooth.remainder[r, k]
@@ -172,10 +173,10 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
         smooth.remainder[r, k] = total / (k * (1.0 + constants[B] * power[0]))
 
 
-def dashpot_remainder(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
+def dashpot_remainder(definition: LawDefinition, smooth: Smooth, r: int, k: int, h: float) -> float:
     """Coefficient `k` of the dashpot force of smooth law `r` beyond that of its tangent."""
     rate = (k + 1) / h * smooth.remainder[r, k + 1]
-    force: float = laws.definition.tangent_damping[smooth.laws[r]] * smooth.constants[r, Q] * rate
+    force: float = definition.tangent_damping[smooth.laws[r]] * smooth.constants[r, Q] * rate
     return force
 
 
@@ -184,8 +185,8 @@ def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
     the coefficients `k` + 2.
     """
     for r in range(len(smooth.laws)):
-        remainder = smooth.constants[r, Q] * smooth.remainder[r, k] + dashpot_remainder(
-            laws, smooth, r, k, h
+        force = smooth.constants[r, Q] * smooth.remainder[r, k] + dashpot_remainder(
+            laws.definition, smooth, r, k, h
         )
         add_row(laws.definition.rows, smooth.laws[r], -h * h * remainder, new)
 
@@ -235,9 +236,9 @@ def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> Locat
     return first
 
 
-def shorten_for_bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> None:
+def shorten_for_bend(now: LawMotion, smooth: Smooth, lengths: Lengths, i: int) -> None:
     """Shorten the first step in which the power of smooth law `i` is no longer negligible."""
     r = smooth.index_of[i]
     if smooth.high[r] < np.inf:
         far = smooth.high[r] * abs(smooth.constants[r, Y])
-        lengths.next = min(lengths.next, FIRST_STEP * far / abs(laws.now.rate[i]))
+        lengths.next = min(lengths.next, FIRST_STEP * far / abs(now.rate[i]))

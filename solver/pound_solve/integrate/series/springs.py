@@ -12,7 +12,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.allocation import coupled_pairs, places
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
+from pound_solve.integrate.kernels.state import LawDefinition, Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
 from pound_solve.numerics.ldl import pointers
 from pound_solve.numerics.matrices import Matrix, entries
@@ -105,10 +105,10 @@ def load_term(springs: Springs, series: Series, k: int, top: int, i: int) -> flo
     return load
 
 
-def deformation_term(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
+def deformation_term(definition: LawDefinition, series: Series, k: int, top: int, i: int) -> float:
     """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
-    d = row_product(laws.definition.rows, i, series.motion[k])
+    d = row_product(definition.rows, i, series.motion[k])
     if k < top:
         for j in range(series.inputs.shape[1]):
-            d += laws.definition.inputs[i, j] * series.inputs[k, j]
+            d += definition.inputs[i, j] * series.inputs[k, j]
     return d

@@ -123,7 +123,7 @@ class Taylor(KernelEngine):
             curved.enter_curved(self.laws, self.rules, self.series.curved, i)
         viscous.linearise_dampers(self.laws, self.rules, self.series.viscous)
         smooth.linearise_smooth(self.laws, self.rules, self.series.smooth)
-        smooth.count_creep(self.laws, self.series.smooth, length)
+        smooth.count_creep(self.laws.largest, self.series.smooth, length)
         self._hold()
 
     def _without_mass(self) -> state.Massless:
@@ -216,7 +216,7 @@ class Taylor(KernelEngine):
         self.begin(march.march)
         self._at_instant(RigidInstants.begin)
         for i in self.series.friction.laws.tolist():
-            friction.side_of(self.laws, self.series.friction, i)
+            friction.side_of(self.laws.state, self.series.friction, i)
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))

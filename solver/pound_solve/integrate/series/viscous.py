@@ -24,7 +24,7 @@ from pound_solve.integrate.events.protocol import LocatedEvent, earlier
 from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.state import LawDefinition, Laws
 from pound_solve.integrate.series.curved import K, N, right_part
 from pound_solve.integrate.series.force_events import TURNS
 from pound_solve.integrate.series.springs import deformation_term
@@ -100,7 +100,7 @@ def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
     """Compute the coefficients `k` of rate and force of damper `r` from the motion."""
     viscous, i = series.viscous, series.viscous.laws[r]
     constants, sign = viscous.constants[r], 1.0 if viscous.constants[r, K] > 0.0 else -1.0
-    x = sign * (k + 1) / h * deformation_term(laws, series, k + 1, top, i)
+    x = sign * (k + 1) / h * deformation_term(laws.definition, series, k + 1, top, i)
     if k == 0:
         x = max(x, constants[LIMIT])
         viscous.force[r, 0] = constants[K] * x ** constants[N]
@@ -127,13 +127,13 @@ def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
         viscous.remainder[r, k] = total / (k * x[0])
 
 
-def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> None:
+def add_drags(definition: LawDefinition, viscous: Viscous, k: int, h: float, new: Array) -> None:
     """Add the coefficients `k` of the dampers' forces beyond their tangents to the right side `new` of the
     coefficients `k` + 2.
     """
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
-            add_row(laws.definition.rows, viscous.laws[r], -h * h * viscous.remainder[r, k], new)
+            add_row(definition.rows, viscous.laws[r], -h * h * viscous.remainder[r, k], new)
 
 
 def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
