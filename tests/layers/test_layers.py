@@ -18,7 +18,7 @@ DECK, LEGACY, SOLVER = (
     ROOT / name for name in ("parser/pound_deck", "parser/pound_legacy", "solver/pound_solve")
 )
 
-#: rooms from the bottom to the top: a module may import its own room and those below
+#: layers, the lowest first: a layer may import only from itself and from layers below it
 ROOMS = (
     "version",
     "deck",
@@ -44,7 +44,7 @@ ROOMS = (
     "cli",
     "__main__",
 )
-#: folders within a room, likewise; what a room holds beside them may import all of them
+#: folders and modules within a layer, likewise; other modules of the layer may import all of them
 WITHIN = {
     "loading": ("records", "motions", "forces"),
     "laws": (
@@ -335,7 +335,7 @@ def test_imports_go_down_within_a_room(name):
 
 @pytest.mark.parametrize("name", [x for x in ROOMS if (SOLVER / x).is_dir()])
 def test_parts_of_a_room_import_each_other_one_way(name):
-    """Files and folders of a room, each folder as one part."""
+    """Files and folders of a layer, each folder as one part."""
     needs = {}
     for path in (SOLVER / name).rglob("*.py"):
         part = path.relative_to(SOLVER / name).parts[0].removesuffix(".py")
