@@ -21,7 +21,7 @@ from pound_solve.integrate.series.curved import add_contacts, any_overlap, conta
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold_contacts
-from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
+from pound_solve.integrate.series.smooth import add_remainders, find_rests, smooth_right_up_to
 from pound_solve.integrate.series.springs import add_product, deformation_term
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.strings import add_strings
@@ -131,7 +131,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
         add_row(laws.definition.rows, law, -force, new)
     add_contacts(laws, series, k, h, top, new)
     add_friction(laws, series, k, h, top, new)
-    add_rests(laws, series.smooth, k, h, new)
+    add_remainders(laws, series.smooth, k, h, new)
     add_drags(laws.definition, series.viscous, k, h, new)
     add_strings(sim.members, series, k, h, top, new)
     below = 1.0 / ((k + 1) * (k + 2))

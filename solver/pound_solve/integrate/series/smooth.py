@@ -180,7 +180,7 @@ def dashpot_remainder(definition: LawDefinition, smooth: Smooth, r: int, k: int,
     return force
 
 
-def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
+def add_remainders(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
     """Add the coefficients `k` of the smooth laws' forces beyond their tangents to the right side `new` of
     the coefficients `k` + 2.
     """
@@ -188,7 +188,7 @@ def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
         force = smooth.constants[r, Q] * smooth.remainder[r, k] + dashpot_remainder(
             laws.definition, smooth, r, k, h
         )
-        add_row(laws.definition.rows, smooth.laws[r], -h * h * remainder, new)
+        add_row(laws.definition.rows, smooth.laws[r], -h * h * force, new)
 
 
 def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
