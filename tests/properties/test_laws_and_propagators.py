@@ -136,7 +136,7 @@ def test_energy_balances(seed: int, tau: float) -> None:
     u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(2, n))
     q, g = propagator.state_of(u, v), propagator.load_forcing(p)
     work_integrals = WorkIntegrals(propagator, c, np.eye(n), [])
-    found = work_integrals.over(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
+    found = work_integrals.over_intervals(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
     energies = []
     for at in (q, propagator.at(q, g, tau)):
         x, y = (propagator.u_q @ at).real, (propagator.v_q @ at).real

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from decks import scene_of, solved, structure_of
 from pound_solve.analyses import static
+from pound_solve.analyses.contact_constraints import ContactConstraints
 from pound_solve.analyses.tangent_solution import InstabilityError
-from pound_solve.analyses.ties import Ties
 from pound_solve.integrate.rigid.contacts import ACCELERATION_ROUNDING, RigidContacts, linear_forces
 from pound_solve.numerics.types import Array
 from verification.cases import run_text
@@ -277,8 +277,8 @@ def test_any_row_of_masses_finds_its_equilibrium(seed: int, n: int) -> None:
 
 def test_ties_of_dependent_rows_share_evenly() -> None:
     rows = np.array([[1.0, -1.0, 0.0], [2.0, -2.0, 0.0], [0.0, 1.0, 0.0]])
-    ties = Ties(np.arange(3), rows)
-    assert ties.whole(np.array([0.3, 0.7, 2.0])) == pytest.approx([0.0, 0.0, 2.0])
+    ties = ContactConstraints(np.arange(3), rows)
+    assert ties.expand(np.array([0.3, 0.7, 2.0])) == pytest.approx([0.0, 0.0, 2.0])
     force = ties.forces(np.array([5.0, 1.0, 0.0]))
     assert force == pytest.approx([1.0, 2.0, 6.0], rel=1e-14)
 

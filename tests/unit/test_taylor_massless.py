@@ -344,10 +344,10 @@ def test_a_joint_of_a_large_structure_that_snaps_through_is_named(method: str) -
 def test_the_cure_is_that_of_what_snaps_through() -> None:
     dofs = (7, 0), (7, 2), (4, 4)
     stub = SimpleNamespace(dofs=dofs, name=lambda i: label(dofs[i]))
-    told = [ReducedSystem.loose(stub, i, softens=True).rpartition("; ")[2] for i in range(3)]
+    told = [ReducedSystem.explain_massless(stub, i, softens=True).rpartition("; ")[2] for i in range(3)]
     assert told[0] == "give it weight" and told[1] == "give the joints WR in WEIGHTS"
     assert told[2] == "give element 4 a flatter falling branch, or a longer LP"
-    assert "element 4 rotation inside J has no mass and nothing" in ReducedSystem.loose(stub, 2)
+    assert "element 4 rotation inside J has no mass and nothing" in ReducedSystem.explain_massless(stub, 2)
 
 
 def test_the_force_of_a_contact_that_meets_a_node_without_mass() -> None:

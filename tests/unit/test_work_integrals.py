@@ -35,7 +35,7 @@ def measure(
 ) -> Work:
     """Work over one interval."""
     ps = None if p is None else p[None]
-    out = work_integrals.over(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
+    out = work_integrals.over_intervals(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
     return Work(
         float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.laws]
     )
@@ -161,10 +161,10 @@ def test_many_intervals_at_once(kind: str, degree: int) -> None:
     gs = np.stack([polynomial.shift(case.g, i * h) for i in range(n)])
     coefs = np.stack([polynomial.shift(case.coefs, i * h) for i in range(n)])
     qs = case.propagator.march(case.q, gs, np.full(n, h))[:, :-1]
-    several = case.work_integrals.over(qs, gs, np.full(n, h), coefs, case.constant)
+    several = case.work_integrals.over_intervals(qs, gs, np.full(n, h), coefs, case.constant)
     whole = case.measure(n * h)
     lengths = h * np.array([1.0, 0.4, 1.0, 1e-3, 1.0, 0.4])
-    cut = case.work_integrals.over(qs, gs, lengths, coefs, case.constant)
+    cut = case.work_integrals.over_intervals(qs, gs, lengths, coefs, case.constant)
     assert several.damping.shape == several.input.shape == several.laws[0][1].shape == (n,)
     assert several.damping.sum() == pytest.approx(whole.damping, rel=1e-12)
     assert several.input.sum() == pytest.approx(whole.input, rel=1e-12)

@@ -271,7 +271,7 @@ def monitored(structure: Structure, system: ReducedSystem) -> MonitoredOutputs:
     rows = structure.dofs.rows(
         [(((c["J"], way), (c["I"], way)), (1.0, -1.0)) for c, way in zip(cards, ways)]
     )
-    return MonitoredOutputs([c["NAME"] for c in cards], *system.over(rows))
+    return MonitoredOutputs([c["NAME"] for c in cards], *system.reduce_rows(rows))
 
 
 def output_interval(model: Model, loading: Loading, end: float) -> float:

@@ -74,11 +74,11 @@ class LoadPattern:
         """Forces at the present point of a path; a modal PATTERN follows the present tangent stiffness."""
         if self.by_mode:
             try:
-                tied = path.ties.among
-                vibration = modes.solve(tied(path.tangent()), tied(self.structure_mass), SOUGHT)
+                reduced = path.constraints.reduced_matrix
+                vibration = modes.solve(reduced(path.tangent()), reduced(self.structure_mass), SOUGHT)
             except np.linalg.LinAlgError:
                 return self.forces  # a part without mass has become a mechanism
-            stiff = path.ties.whole(vibration.shapes[:, vibration.omega > 0.0])
+            stiff = path.constraints.expand(vibration.shapes[:, vibration.omega > 0.0])
             if stiff.shape[1] >= self._stiff:  # otherwise a motion has lost its resistance
                 self._stiff = stiff.shape[1]
                 effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2

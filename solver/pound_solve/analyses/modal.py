@@ -138,8 +138,8 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
     vibration = structure.vibration(sought)
     ground = structure.ground[:, :n]
     total = moving_mass(
-        structure.tied(structure.initial_stiffness),
-        structure.tied(structure.mass),
+        structure.constrained(structure.initial_stiffness),
+        structure.constrained(structure.mass),
         ground if structure.basis is None else ground @ structure.basis,
     )
     c = structure.initial_damping[:n, :n]

@@ -17,9 +17,9 @@ definite (Murty 1974: the least-index pivots of a linear complementarity problem
 releases suddenly (it fractures) is redistributed to the others at constant control.  Curved laws make the
 segments curved: Newton's method finds their points, and the events are bracketed.
 
-A closed rigid contact ties its nodes (see `ties`); its event occurs when its force falls to zero.  If a
-loaded mechanism moves towards a touching contact, that contact closes first: the ground supports a body
-that lies on it.
+A closed rigid contact constrains its nodes (see `contact_constraints`); its event occurs when its force
+falls to zero.  If a loaded mechanism moves towards a touching contact, that contact closes first: the ground
+supports a body that lies on it.
 
 References
 ----------
@@ -37,8 +37,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pound_solve.analyses.contact_constraints import ContactConstraints
 from pound_solve.analyses.tangent_solution import InstabilityError, solve_under_control, solve_under_load
-from pound_solve.analyses.ties import Ties
 from pound_solve.laws.automaton import K, Law, State
 from pound_solve.numerics.matrices import Matrix, by_rows, dense, gathered
 from pound_solve.numerics.modes import scaling
@@ -160,7 +160,7 @@ class EquilibriumPath:
         self._longest_increment = self._next_increment = np.inf
         self._rates_key = np.zeros(0)  # stiffnesses of the last rates
         self._rates: Rates | None = None
-        self.ties = self._closed()
+        self.constraints = self._closed()
 
     def deformations(self, u: Array, factor: float) -> Array:
         """Deformation of every law, shape (n_laws,)."""
@@ -234,7 +234,7 @@ class EquilibriumPath:
         self.branches[i] = law.branch(self.states[i])
         released = force - law.force(self.states[i], d)[0]
         if law.rigid:  # it opens without force
-            self.ties = self._closed()
+            self.constraints = self._closed()
         elif abs(released) > FORCE_JUMP * (
             abs(force) + abs(law.p[K]) * float(self._deformation_terms(self.u)[i])
         ):
@@ -331,20 +331,22 @@ class EquilibriumPath:
         terms: its deformation or, of a closed rigid contact, its force.
         """
         now, size = self.deformations(u, factor), self._deformation_terms(u)
-        if len(self.ties):
-            now[self.ties.laws], size[self.ties.laws] = self._reactions(u, factor)
+        if len(self.constraints):
+            now[self.constraints.laws], size[self.constraints.laws] = self._reactions(u, factor)
         return now, size
 
     def _reactions(self, u: Array, factor: float) -> tuple[Array, Array]:
         """Forces of the closed rigid contacts, shape (n_closed,), and the magnitudes of their terms."""
         residual, terms = self._residual(u, factor)
-        known = np.array([self.branches[i].force0 for i in self.ties.laws])
-        return known - self.ties.forces(residual + self._released), self.ties.magnitudes(terms)
+        known = np.array([self.branches[i].force0 for i in self.constraints.laws])
+        return known - self.constraints.forces(residual + self._released), self.constraints.magnitudes(
+            terms
+        )
 
-    def _closed(self) -> Ties:
-        """Ties of the rigid contacts that are closed."""
+    def _closed(self) -> ContactConstraints:
+        """Constraints of the rigid contacts that are closed."""
         constrained = np.array([i for i, b in enumerate(self.branches) if b.constrains], np.intp)
-        return Ties(constrained, dense(self.rows[constrained]))
+        return ContactConstraints(constrained, dense(self.rows[constrained]))
 
     def rates(self, u: Array, factor: float) -> Rates:
         """Rates of displacements, load factor and event arguments (see `_arguments`), with the rounding
@@ -356,7 +358,7 @@ class EquilibriumPath:
         stiffness = self._stiffnesses(self.deformations(u, factor))
         control = np.zeros(len(u)) if self.control is None else self.control
         key = np.concatenate(
-            [stiffness, self._released, self.load, control, [self.sign], self.ties.laws], dtype=float
+            [stiffness, self._released, self.load, control, [self.sign], self.constraints.laws], dtype=float
         )
         if self._rates is None or self.curved or not np.array_equal(key, self._rates_key):
             self._rates_key, self._rates = key, self._rates_with(u, stiffness)
@@ -373,17 +375,19 @@ class EquilibriumPath:
         noise = np.maximum(
             RATE_ROUNDING * terms, SOLUTION_ROUNDING * fastest * (np.abs(self.rows) @ self._root)
         )
-        if at := list(self.ties.laws):
+        if at := list(self.constraints.laws):
             k, unit_load = self._stiffness(u, stiffness), self._unit_load(stiffness)
-            rate[at] = self.ties.forces(self._released + factor_rate * unit_load - k @ du)
+            rate[at] = self.constraints.forces(self._released + factor_rate * unit_load - k @ du)
             most = np.abs(self._released) + np.abs(factor_rate * unit_load) + np.abs(k) @ np.abs(du)
-            noise[at] = RATE_ROUNDING * self.ties.magnitudes(most)
+            noise[at] = RATE_ROUNDING * self.constraints.magnitudes(most)
         return Rates(du, factor_rate, rate, noise)
 
     def _move(self, u: Array, factor: float) -> None:
         self.applied = self.applied + (factor - self.factor) * self.load
         self.u, self.factor = u, factor
-        for i, force in zip(self.ties.laws, self._reactions(u, factor)[0].tolist() if self.ties else ()):
+        for i, force in zip(
+            self.constraints.laws, self._reactions(u, factor)[0].tolist() if self.constraints else ()
+        ):
             self.states[i] = (*self.states[i][:3], (force,))
             self.branches[i] = self.laws[i].law.branch(self.states[i])
         self._visits.clear()
@@ -458,7 +462,7 @@ class EquilibriumPath:
         last = np.inf
         for _ in range(ITERATIONS):
             residual, size = self._residual(u, factor)
-            error = _relative_size(self.ties.along(residual), size)
+            error = _relative_size(self.constraints.reduced_vector(residual), size)
             if not np.isfinite(error):
                 return None
             try:
@@ -487,19 +491,21 @@ class EquilibriumPath:
     def _linear(self, u: Array, stiffness: Array, force: Array, change: float) -> tuple[Array, float]:
         """Changes of displacements and load factor for a `force` and a `change` of the control."""
         k = self._stiffness(u, stiffness)
-        along = self.ties.along
-        k, unit_load, force = self.ties.among(k), along(self._unit_load(stiffness)), along(force)
+        constraints = self.constraints
+        k, force = constraints.reduced_matrix(k), constraints.reduced_vector(force)
+        unit_load = constraints.reduced_vector(self._unit_load(stiffness))
         try:
             if self.control is None:
                 load = force + change * unit_load
                 x, factor_rate = solve_under_load(self.structure, k, load, unit_load), change
             else:
-                x, factor_rate = solve_under_control(k, unit_load, along(self.control), force, change)
+                control = constraints.reduced_vector(self.control)
+                x, factor_rate = solve_under_control(k, unit_load, control, force, change)
         except InstabilityError as err:
             if err.motion is not None:
-                err.motion = self.ties.whole(err.motion)
+                err.motion = self.constraints.expand(err.motion)
             raise
-        return self.ties.whole(x), factor_rate
+        return self.constraints.expand(x), factor_rate
 
     def _unit_load(self, stiffness: Array) -> Array:
         """Force per load factor, including that of the applied deformations, shape (n_free,)."""

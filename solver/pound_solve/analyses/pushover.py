@@ -46,7 +46,7 @@ from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import building, buildings
-from pound_solve.structure.standing_alone import standing_alone
+from pound_solve.structure.extract_building import extract_building
 from pound_solve.structure.structure import Structure
 
 FURTHEST = 0.2  #: target over the height of the control node above its base
@@ -214,7 +214,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
     """
     nodes = _own(structure, card)
     if nodes is not None and card["NEIGHBOURS"] == "NO":
-        structure = standing_alone(structure, nodes)
+        structure = extract_building(structure, nodes)
         state = static.solve(structure)
         structure = structure.stressed(state.axial).displaced(state.u)
     n, by_load = structure.n_free, card["CONTROL"] == "FORCE"

@@ -105,7 +105,9 @@ class Quantities:
         """Add the motion of nodes."""
         system = self.system
         dofs, place = system.structure.dofs, system.structure.model.nodes
-        of_u, on_inputs, at_rest = system.over(dofs.matrix([(n, d) for n in nodes for d in range(3)]))
+        of_u, on_inputs, at_rest = system.reduce_rows(
+            dofs.matrix([(n, d) for n in nodes for d in range(3)])
+        )
         # motion of the nodes with the ground: x, y, and a rotation about the origin
         x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
         ridden = np.zeros((len(nodes), 3, 3))
@@ -124,9 +126,11 @@ class Quantities:
     def _add_outputs(self, outputs: Sequence[Output]) -> None:
         """Add the forces of members."""
         system, dofs = self.system, self.system.structure.dofs
-        of_u, on_inputs, constant = system.over(dofs.rows([(o.dofs, o.u_row.tolist()) for o in outputs]))
+        of_u, on_inputs, constant = system.reduce_rows(
+            dofs.rows([(o.dofs, o.u_row.tolist()) for o in outputs])
+        )
         rows = [(o.dofs, () if o.v_row is None else o.v_row.tolist()) for o in outputs]
-        of_v, on_rates, _ = system.over(dofs.rows(rows))
+        of_v, on_rates, _ = system.reduce_rows(dofs.rows(rows))
         constant = np.array([o.constant for o in outputs]) + constant
         self._add("output", {0: of_u, 1: of_v}, {0: on_inputs, 1: on_rates}, constant)
         self._shares = system.corotational.shares([(o.element, o.quantity) for o in outputs])

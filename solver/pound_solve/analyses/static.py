@@ -82,7 +82,7 @@ def solve(structure: Structure) -> StaticState:
     axial = structure.axial(np.append(state.u, pad))
     path = resumed(structure, state)
     k, pressed = path.tangent(), resumed(structure.stressed(axial), state).tangent()
-    factor = buckling(path.ties.among(k), path.ties.among(pressed - k))
+    factor = buckling(path.constraints.reduced_matrix(k), path.constraints.reduced_matrix(pressed - k))
     if factor <= 1.0:
         raise InstabilityError(
             f"the structure buckles: its buckling load factor is {factor:.6g}, which is below 1"
@@ -129,8 +129,10 @@ def after(structure: Structure, state: StaticState) -> Structure:
     stay closed in its modes (for MODAL AFTER=STATIC).
     """
     initial, path = structure.initial_stiffness, resumed(structure, state)
-    k = initial - structure.framed(initial) + structure.framed(path.tangent())
-    return replace(structure, initial_stiffness=k, basis=path.ties.basis if len(path.ties) else None)
+    k = initial - structure.free_block(initial) + structure.free_block(path.tangent())
+    return replace(
+        structure, initial_stiffness=k, basis=path.constraints.basis if len(path.constraints) else None
+    )
 
 
 def buckling(k: Matrix, geometric: Matrix) -> float:

@@ -18,9 +18,14 @@ from pound_solve.structure.checks.hinges import facing
 from pound_solve.structure.checks.loads import misloaded, unloaded
 from pound_solve.structure.checks.masses import immovable, massless, roof_without_mass
 from pound_solve.structure.checks.materials import impossible_materials
-from pound_solve.structure.checks.mechanisms import hasty, loose, standing, untimely
+from pound_solve.structure.checks.mechanisms import (
+    coarse_steps,
+    find_mechanisms,
+    implausible_periods,
+    supported_parts,
+)
 from pound_solve.structure.checks.members import doubled, misjudged, misshapen
-from pound_solve.structure.checks.supports import adrift, unmoved_feet
+from pound_solve.structure.checks.supports import unmoved_feet, unsupported
 from pound_solve.structure.checks.weights import far, misarmed, misweighed, outsized
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.structure import Structure
@@ -66,19 +71,19 @@ def too_many(structure: Structure) -> list[Diagnostic]:
 
 def unsteady(structure: Structure) -> list[Diagnostic]:
     """Report buildings that are mechanisms; if there are none, those that could move as a rigid body."""
-    return loose(structure, standing(structure)) or adrift(structure)
+    return find_mechanisms(structure, supported_parts(structure)) or unsupported(structure)
 
 
 def misbuilt(structure: Structure) -> list[Diagnostic]:
     """Report buildings that are `unsteady`, for each the first implausible one of height, period and
     weight, and values inconsistent with their periods.
     """
-    parts, first = standing(structure), dict[str, Diagnostic]()
-    wrong = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
+    parts, first = supported_parts(structure), dict[str, Diagnostic]()
+    wrong = (*outsized(structure), *implausible_periods(structure, parts), *misweighed(structure))
     for name, diagnostic in wrong:
         first.setdefault(name, diagnostic)
-    diagnostics = [*(loose(structure, parts) or adrift(structure)), *first.values()]
-    for check in (hasty, misdamped, frequencies_in_hertz, contact_stiffnesses):
+    diagnostics = [*(find_mechanisms(structure, parts) or unsupported(structure)), *first.values()]
+    for check in (coarse_steps, misdamped, frequencies_in_hertz, contact_stiffnesses):
         diagnostics += check(structure, parts)
     return diagnostics
 

@@ -13,7 +13,7 @@ def side(at: int) -> float:
     return 1.0 if at % 2 == 1 else -1.0
 
 
-def pair(first: int, s: float) -> int:
+def on_side(first: int, s: float) -> int:
     """Branch of a side, `first` being the positive one's."""
     return first if s > 0.0 else first + 1
 

@@ -27,7 +27,7 @@ Function = Callable[..., Any]
 
 
 COMPILING = "compiling the kernels, once for this version: a minute or two"
-FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in `loose` kernels
+FASTMATH = {"contract", "reassoc"}  #: reorderings that `reorder_sums` allows
 
 
 @cache
@@ -87,9 +87,9 @@ def subscripts(function: Function) -> set[str]:
     }
 
 
-def loose(function: Function) -> Function:
+def reorder_sums(function: Function) -> Function:
     """Mark a kernel whose sums may be taken in another order, several terms at once."""
-    vars(function)["loose"] = True
+    vars(function)["reorder_sums"] = True
     return function
 
 
@@ -154,7 +154,7 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     if inner:  # Python never calls it: it needs no wrapper, and a name of its own in the cache
         twin.__qualname__ += INNER
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
-    if "loose" in vars(function):
+    if "reorder_sums" in vars(function):
         how["fastmath"] = FASTMATH
     with compiling():
         kernel: Function = module.njit(*([] if signature is None else [signature]), **how)(twin)

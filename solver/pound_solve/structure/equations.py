@@ -49,7 +49,7 @@ def released(structure: Structure) -> Structure:
     for share in structure.proportional:
         damping = damping + between_nodes(bare, share)
     whole = replace(bare, damping=damping, laws=structure.laws)  # the laws include changes by damping
-    return whole.stressed(structure.carried)
+    return whole.stressed(structure.axial_forces)
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class Equations:
         #: displacements of the fixed columns from the inputs
         self._prescribed = np.zeros((free.dofs.size - self.n, system.excitation.coefs.shape[2]))
         self._prescribed[[c - self.n for c in self._moved]] = system.support_inputs
-        blocks = ((g.dofs, x * g.matrix) for g, x in zip(whole.geometric, whole.carried.tolist()))
+        blocks = ((g.dofs, x * g.matrix) for g, x in zip(whole.geometric, whole.axial_forces.tolist()))
         self._geometric = free.dofs.assembled(blocks)
         self._ground = self._damping_to_ground()
         #: see `rigid_motions`

@@ -113,7 +113,7 @@ class ReducedSystem:
             free = (free.T + self.expand_constant).T
         return np.concatenate([free, self.support_inputs @ s])
 
-    def over(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
+    def reduce_rows(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
         """Convert rows over all columns of the structure to rows over unknowns and over inputs, and
         constants.
         """
@@ -165,7 +165,7 @@ class ReducedSystem:
         """Name of an unknown in words."""
         return label(self.dofs[index])
 
-    def loose(self, index: int, softens: bool = False) -> str:
+    def explain_massless(self, index: int, softens: bool = False) -> str:
         """Explains in words why a massless unknown has no equilibrium, and the remedy.
 
         Parameters

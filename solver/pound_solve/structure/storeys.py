@@ -93,7 +93,7 @@ def drift_sums(system: ReducedSystem, buildings: Sequence[Building]) -> LinearSu
         for (low, share), (high, above), foot, top in zip(means, means[1:], b.levels, b.levels[1:]):
             values = np.concatenate([above, -share]) / (top - foot)
             rows.append(([(n, 0) for n in (*high, *low)], values.tolist()))
-    of_u, on_inputs, constant = system.over(system.structure.dofs.rows(rows))
+    of_u, on_inputs, constant = system.reduce_rows(system.structure.dofs.rows(rows))
     return _sums(
         system, [of_u, 0.0 * of_u, 0.0 * of_u], [on_inputs, 0.0 * on_inputs, 0.0 * on_inputs], constant
     )
@@ -103,7 +103,7 @@ def acceleration_sums(system: ReducedSystem, buildings: Sequence[Building]) -> L
     """Mean total acceleration of every floor along x, weighted by mass."""
     floors = [f for b in buildings for f in b.floors]
     rows = [([(n, 0) for n in f.nodes], f.shares.tolist()) for f in floors]
-    of_a, on_inputs, constant = system.over(system.structure.dofs.rows(rows))
+    of_a, on_inputs, constant = system.reduce_rows(system.structure.dofs.rows(rows))
     ridden = np.array([[1.0, 0.0, -f.level] for f in floors]).reshape(-1, 3) @ system.acceleration_inputs
     nothing = 0.0 * of_a
     return _sums(system, [nothing, nothing, of_a], [ridden, 0.0 * on_inputs, on_inputs], 0.0 * constant)

@@ -61,7 +61,7 @@ class Structure:
     damping_texts : list of (Card, str)
     proportional : tuple of Proportional
         Damping between nodes other than the dashpots of elements.
-    carried : ndarray, shape (n_geometric,)
+    axial_forces : ndarray, shape (n_geometric,)
         Axial forces in the geometric stiffness [F].
     mass_blocks : tuple of MassBlock
         Matrices that add up to `mass`.
@@ -92,7 +92,7 @@ class Structure:
     parts: dict[int, Parts]
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
     proportional: tuple[Proportional, ...] = ()
-    carried: Array = field(default_factory=lambda: np.zeros(0))
+    axial_forces: Array = field(default_factory=lambda: np.zeros(0))
     basis: Matrix | None = None
     remarks: list[Diagnostic] = field(default_factory=list)
 
@@ -115,10 +115,10 @@ class Structure:
         """The `count` slowest modes of the initial structure, contacts open, or more; None: all."""
         if "free_vibration" in self.__dict__:
             return self.free_vibration
-        slowest = modes.solve(self.tied(self.initial_stiffness), self.tied(self.mass), count)
+        slowest = modes.solve(self.constrained(self.initial_stiffness), self.constrained(self.mass), count)
         return slowest if self.basis is None else replace(slowest, shapes=self.basis @ slowest.shapes)
 
-    def tied(self, k: Matrix) -> Matrix:
+    def constrained(self, k: Matrix) -> Matrix:
         """Part of a matrix over all columns from which modes are computed, shape (n_free, n_free)."""
         free = k[: self.n_free, : self.n_free]
         return free if self.basis is None else self.basis.T @ free @ self.basis
@@ -146,7 +146,7 @@ class Structure:
             stiffness=self.stiffness + matrix,
             initial_stiffness=self.initial_stiffness + matrix,
             outputs=outputs,
-            carried=axial,
+            axial_forces=axial,
         )
 
     def displaced(self, u: Array) -> Structure:
@@ -154,10 +154,10 @@ class Structure:
         if not self.corotational:
             return self
         pad = np.zeros(len(self.dofs.moved))
-        k = self.initial_stiffness + self.framed(self.corotational.stiffness(np.append(u, pad)))
+        k = self.initial_stiffness + self.free_block(self.corotational.stiffness(np.append(u, pad)))
         return replace(self, initial_stiffness=k)
 
-    def framed(self, k: Matrix) -> Matrix:
+    def free_block(self, k: Matrix) -> Matrix:
         """Part of a matrix over all columns or over the unknowns that belongs to the unknowns; zeros
         elsewhere.
         """

@@ -67,7 +67,9 @@ class DeferredWork:
             *arrays, loads = zip(*entries)
             qs, gs, lengths, input_coefs, place = (np.concatenate(x) for x in arrays)
             forces = None if loads[0] is None else np.concatenate(loads)
-            works = part.work.over(qs.T, gs, lengths, input_coefs, self.constant[part.unknowns], forces)
+            works = part.work.over_intervals(
+                qs.T, gs, lengths, input_coefs, self.constant[part.unknowns], forces
+            )
             new[place + 1, 0] += works.input
             new[place + 1, 1] += works.damping
             for law, loss in works.laws:

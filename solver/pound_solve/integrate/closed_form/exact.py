@@ -121,7 +121,7 @@ class Exact(EventDrivenRun):
             self.subsystems.update(self.branches, self.u, self.v, self._charge)
         except Mechanism as err:
             worst = int(np.argmax(np.abs(err.shape)))
-            raise self.stop("A501", self.system.loose(worst, err.softens)) from None
+            raise self.stop("A501", self.system.explain_massless(worst, err.softens)) from None
         reaction_row = self.subsystems.reaction_row
         events = EventFunctions(self.branches, reaction_row)
         self.search = Search(events, *monitored_functions(self.tracker, self.branches, reaction_row))

@@ -92,7 +92,7 @@ class Laplace(EventDrivenRun):
                 )
             except Mechanism as err:
                 worst = int(np.argmax(np.abs(err.shape)))
-                raise self.stop("A501", system.loose(worst, err.softens)) from None
+                raise self.stop("A501", system.explain_massless(worst, err.softens)) from None
             fastest = dynamic.spectral_radius
             if fastest * self.dt > 1.0:
                 why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"

@@ -131,7 +131,7 @@ class WorkIntegrals:
             coefs[k + 1] = (eigenvalues * coefs[k] + (g[k] if k < len(g) else 0.0)) / (k + 1)
         return coefs
 
-    def over(
+    def over_intervals(
         self,
         qs: NDArray[Any],
         gs: NDArray[Any],

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.numerics.jit import loose
+from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 
 MAX_HALVINGS = 44  #: halvings of a cell, at most
@@ -34,7 +34,7 @@ def room(terms: int) -> tuple[int, int]:
     return MAX_HALVINGS + 2, terms + 3
 
 
-@loose
+@reorder_sums
 def size(p: Array, row: int, terms: int) -> float:
     """Bound of the change of the polynomial in a row from its value at 0, over [0, 1]."""
     total = 0.0
@@ -43,7 +43,7 @@ def size(p: Array, row: int, terms: int) -> float:
     return total
 
 
-@loose
+@reorder_sums
 def rate_size(p: Array, row: int, terms: int) -> float:
     """Bound of the change of the polynomial's derivative in a row from its value at 0, over [0, 1]."""
     total = 0.0

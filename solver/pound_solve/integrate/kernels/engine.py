@@ -218,9 +218,9 @@ class KernelEngine(ABC):
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
             return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy) + cause)
         if why == PIVOT:
-            return self.stop("A501", self.system.loose(int(self.order[fault])))
+            return self.stop("A501", self.system.explain_massless(int(self.order[fault])))
         if why == CHATTER and (snaps := self._without_branch(fault)) is not None:
-            return self.stop("A501", self.system.loose(snaps, softens=True))
+            return self.stop("A501", self.system.explain_massless(snaps, softens=True))
         place, last = "the members' turning", ""
         if fault >= 0:
             s = self.springs[fault]

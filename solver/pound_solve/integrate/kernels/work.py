@@ -11,7 +11,7 @@ from pound_solve.integrate.kernels.state import (
     MemberState,
     MotionState,
 )
-from pound_solve.numerics.jit import loose
+from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 
 
@@ -59,7 +59,7 @@ def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
     return force
 
 
-@loose
+@reorder_sums
 def mean_damping_power(now: MotionState, trial: MotionState) -> float:
     """Three times the mean power that the dashpots of the structure take in a step."""
     loss = 0.0
@@ -71,7 +71,7 @@ def mean_damping_power(now: MotionState, trial: MotionState) -> float:
     return loss
 
 
-@loose
+@reorder_sums
 def mean_load_power(now: MotionState, trial: MotionState) -> float:
     """Six times the mean power that the loads put in, in a step."""
     work = 0.0

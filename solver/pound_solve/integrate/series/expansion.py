@@ -26,7 +26,7 @@ from pound_solve.integrate.series.springs import add_product, deformation_term
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.strings import add_strings
 from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
-from pound_solve.numerics.jit import loose
+from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
@@ -37,7 +37,7 @@ UNSEEN_ENERGY = 1e-13  #: share of its energy that a term may carry that works n
 MAX_GROWTH = 2.0  #: how much longer than the last a step may be
 
 
-@loose
+@reorder_sums
 def dot(a: Array, b: Array) -> float:
     """Product of two vectors."""
     total = 0.0

@@ -30,7 +30,7 @@ from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Extent, Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
 from pound_solve.integrate.tracker import Extremes
-from pound_solve.numerics.jit import loose
+from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 
 SERIES_ROUNDING = 1e-16  #: share of the terms of a series that is rounding
@@ -38,7 +38,7 @@ UNKNOWNS, MODES, FOLLOWED, SHOWN = range(4)  #: columns of `Modal.counts`
 DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_modes`
 
 
-@loose
+@reorder_sums
 def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, before: float) -> None:
     """Set the first `rows` of `out` to the product of a matrix and a vector plus `before` times what they
     were.
@@ -161,7 +161,7 @@ def cell_bounds(modal: Modal, cell: int, i: int) -> tuple[float, float]:
     return min(begin, end) - modal.apart[i], max(begin, end) + modal.apart[i]
 
 
-@loose
+@reorder_sums
 def next_powers(re: Array, im: Array, turn: Array, share: float) -> tuple[float, float]:
     """Multiply complex numbers by the `turn` of each times a share; return their real sum, and the sum of
     their sizes.

@@ -302,7 +302,7 @@ class Taylor(KernelEngine):
         if why == SHORT:
             return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
         if why == LOOSE:
-            return self.stop("A501", self._loose())
+            return self.stop("A501", self._explain_massless())
         if why == RUNAWAY:
             return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy))
         if why == CHATTER:
@@ -312,7 +312,7 @@ class Taylor(KernelEngine):
             return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
 
-    def _loose(self) -> str:
+    def _explain_massless(self) -> str:
         """Which unknown without mass is not held, and why."""
         fault = int(self.state.fault)
         name, n = (
@@ -325,8 +325,8 @@ class Taylor(KernelEngine):
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
         if self.massless.pivots[STIFFNESS, n] < 0.0:
-            return self.system.loose(self._softest(), softens=True)
-        return self.system.loose(int(self.order[fault]))
+            return self.system.explain_massless(self._softest(), softens=True)
+        return self.system.explain_massless(int(self.order[fault]))
 
     def _softest(self) -> int:
         """Unknown without mass that moves most in the softest motion of those without mass and dashpot."""

@@ -38,7 +38,7 @@ from pound_solve.laws.automaton import (
     below,
     linear,
 )
-from pound_solve.laws.mirror import inward, pair, side
+from pound_solve.laws.mirror import inward, on_side, side
 
 # parameters of a law, after a stiffness of zero: dashpot and exponent; for both directions the largest
 # forces, the rates at which they are reached, and the ends of the play
@@ -70,7 +70,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 def engaged(p: Numbers, v: float) -> int:
     """Branch of a damper that moves at the rate `v`."""
     s = 1.0 if v >= 0.0 else -1.0
-    return pair(LIMITED if s * v > (p[FAST] if s > 0.0 else p[FAST_MINUS]) else MOVING, s)
+    return on_side(LIMITED if s * v > (p[FAST] if s > 0.0 else p[FAST_MINUS]) else MOVING, s)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -81,8 +81,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if event == (1 if at >= LIMITED else 2):
         return PLAY, m
     if at >= LIMITED:
-        return pair(MOVING, s), m
-    return (pair(MOVING, -s) if event == 0 else pair(LIMITED, s)), m
+        return on_side(MOVING, s), m
+    return (on_side(MOVING, -s) if event == 0 else on_side(LIMITED, s)), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

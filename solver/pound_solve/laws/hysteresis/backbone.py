@@ -43,7 +43,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import FY, FY_MINUS, K, Numbers, linear, passes
-from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import need_both_sides, on_side, outward, side, turns_inward
 from pound_solve.laws.refusal import ItemError
 
 # branches of the positive side; those of the negative side are one more
@@ -276,7 +276,7 @@ def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Num
     plus, minus = ductilities_with(m, s, x)
     m = (plus, minus, x, 0.0, m[CHANGES])
     slope, _, _ = strength_line(p, governing_ductility(p, m, s), x)
-    return pair(WEAKENING if slope < 0.0 else YIELDING, s), m
+    return on_side(WEAKENING if slope < 0.0 else YIELDING, s), m
 
 
 def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
@@ -285,7 +285,7 @@ def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
     """
     k, r, s = p[K], p[R], side(at)
     mu = governing_ductility(p, m, s)
-    slope, value, end = strength_line(p, mu, mu if at == pair(WEAKENING, s) else BEFORE)
+    slope, value, end = strength_line(p, mu, mu if at == on_side(WEAKENING, s) else BEFORE)
     scale = (1.0 - r) * strength_by_cycles(p, m, s)
     return (r + scale * slope) * k, yield_force(p, s) * scale * value, end
 

@@ -18,7 +18,7 @@ from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import FY, FY_MINUS, K, Numbers, above, below, linear, passes
 from pound_solve.laws.hysteresis.backbone import R_FIELD as RATIO_TO_INITIAL
 from pound_solve.laws.hysteresis.backbone import R
-from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import need_both_sides, on_side, outward, side, turns_inward
 
 # branches of the positive side; those of the negative side are one more
 ELASTIC, CRACKED, YIELDING = 0, 1, 3
@@ -136,4 +136,4 @@ def backbone_branch(p: Numbers, at: int) -> Numbers:
 
 def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of a side."""
-    return pair(YIELDING if x >= yield_point(p, s)[0] else CRACKED, s), m
+    return on_side(YIELDING if x >= yield_point(p, s)[0] else CRACKED, s), m

@@ -42,7 +42,7 @@ from pound_solve.laws.hysteresis.imk import (
     variables_of_side,
     virgin,
 )
-from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
 LIMIT, MEETS, ONTO = 2, 3, 4  #: internal variables of a side: strength limit; place of meeting; line there
@@ -136,7 +136,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         m, _, fails = end_excursion(p, m, -s, d)
         onto, d_met = bound_met(p, -s, m)
         m = replace_side(m, -s, (*variables_of_side(m, -s)[:MEETS], d_met, float(onto)))
-        return (FAILED if fails else pair(ELASTIC, -s)), m
+        return (FAILED if fails else on_side(ELASTIC, -s)), m
     if kind == ELASTIC:
         following, d_next = int(of_side[ONTO]), of_side[MEETS]
     elif event == 1:
@@ -147,11 +147,11 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         ku = softened(p, m, f)
         limit = min(of_side[LIMIT], f) if kind >= FALLING else of_side[LIMIT]
         m = replace_side(m, s, (*of_side[:LIMIT], limit, s * d, float(kind)))
-        return pair(ELASTIC, s), (*m[:KU], ku, m[KU_BEFORE], d - s * f / ku, *m[DONE:])
+        return on_side(ELASTIC, s), (*m[:KU], ku, m[KU_BEFORE], d - s * f / ku, *m[DONE:])
     no_strength = following == RESIDUAL and residual(p, s) == 0.0
     if no_strength or 0.0 < ultimate(p, s) < d_next:
         return FAILED, m
-    return pair(following, s), m
+    return on_side(following, s), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

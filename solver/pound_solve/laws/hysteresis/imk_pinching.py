@@ -59,7 +59,7 @@ from pound_solve.laws.hysteresis.imk import (
     variables_of_side,
     virgin,
 )
-from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 ELASTIC, HARDENING, FALLING, RESIDUAL, UNLOADING = 1, 3, 5, 7, 9
 #: reloading, by the points between which it goes
@@ -222,8 +222,8 @@ def enter_side(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers
     if fails or peak(p, s, m)[1] <= 0.0:
         return FAILED, m
     if break_point(p, s, m)[0]:
-        return pair(FOOT_BREAK, s), m
-    return pair(FOOT_LOCAL if passes_local_peak(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
+        return on_side(FOOT_BREAK, s), m
+    return on_side(FOOT_LOCAL if passes_local_peak(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -237,9 +237,9 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         no_strength = following == RESIDUAL and residual(p, s) == 0.0
         if no_strength or 0.0 < ultimate(p, s) < d_next:
             return FAILED, m
-        return pair(following, s), m
+        return on_side(following, s), m
     if kind == ELASTIC:
-        return pair(ELASTIC, -s), m
+        return on_side(ELASTIC, -s), m
     if kind == UNLOADING:
         return enter_side(p, m, -s, d)
     k, _, f0 = present[:3]
@@ -247,7 +247,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     ku = softened(p, m, f)
     of_side = variables_of_side(m, s)
     m = replace_side(m, s, (*of_side[:PEAK], max(of_side[PEAK], s * d), s * d, f))
-    return pair(UNLOADING, s), (*m[:KU], ku, *m[KU_BEFORE:])
+    return on_side(UNLOADING, s), (*m[:KU], ku, *m[KU_BEFORE:])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

@@ -35,7 +35,7 @@ from pound_solve.laws.hysteresis.backbone import (
     yield_branch,
     yield_force,
 )
-from pound_solve.laws.mirror import inward, outward, pair, side
+from pound_solve.laws.mirror import inward, on_side, outward, side
 
 SECANT = 5
 
@@ -63,8 +63,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return enter_backbone(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < SECANT:
-        return next_branch(p, at, m) if event == 1 else (pair(SECANT, s), reversed_at(p, at, m, d))
-    return enter_backbone(p, m, s, largest_ductility(m, s)) if event == 0 else (pair(SECANT, -s), m)
+        return next_branch(p, at, m) if event == 1 else (on_side(SECANT, s), reversed_at(p, at, m, d))
+    return enter_backbone(p, m, s, largest_ductility(m, s)) if event == 0 else (on_side(SECANT, -s), m)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

@@ -37,7 +37,7 @@ from pound_solve.laws.hysteresis.backbone import (
     yield_branch,
     yield_force,
 )
-from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import inward, on_side, outward, side, turns_inward
 
 UNLOADING, RELOADING = 5, 7
 
@@ -86,18 +86,18 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         plus, minus, d, f, changes = reversed_at(p, at, m, d)
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return pair(UNLOADING, s), (plus, minus, d, f, changes)
+        return on_side(UNLOADING, s), (plus, minus, d, f, changes)
     plus, minus, d0, f0 = m[:CHANGES]
     if at < RELOADING:
         if event == 1:
             d = d0 - f0 / unloading(p, largest_ductility(m, s))
-            return pair(RELOADING, -s), (plus, minus, d, 0.0, m[CHANGES])
+            return on_side(RELOADING, -s), (plus, minus, d, 0.0, m[CHANGES])
         # also after a reversal on the backbone: the reloading line from there ends where it begins
-        return pair(RELOADING, s), m
+        return on_side(RELOADING, s), m
     k, end = reloading(p, m, s)
     if event == 1:
         return enter_backbone(p, m, s, end)
-    return pair(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0), m[CHANGES])
+    return on_side(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0), m[CHANGES])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

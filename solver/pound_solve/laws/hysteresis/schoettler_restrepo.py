@@ -60,7 +60,7 @@ from pound_solve.laws.hysteresis.cracking import (
     peak,
     yield_point,
 )
-from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 # branches of the positive side, after those of the backbone; those of the negative side are one more
 UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 5, 7, 9, 11
@@ -114,7 +114,7 @@ def passes_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
 
 def loading_branch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
     """Line that a side follows from a point on as it is loaded: to the pinch point or to the peak."""
-    return pair(TO_PINCH if passes_pinch(p, s, m, x, f) else TO_PEAK, s)
+    return on_side(TO_PINCH if passes_pinch(p, s, m, x, f) else TO_PEAK, s)
 
 
 def loading_end(p: Numbers, m: Numbers, at: int) -> Point:
@@ -160,7 +160,7 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numb
     m = with_origin(m, x, 0.0)
     xc, fc = corner(s, m)
     if m[INNER] != 0.0 and x < xc and 0.0 < fc <= unloading_of_side(p, s, m) * (xc - x):
-        return pair(TO_CORNER, s), m
+        return on_side(TO_CORNER, s), m
     return loading_branch(p, s, m, x, 0.0), m
 
 
@@ -192,13 +192,13 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return begin_loading(p, m, -s, -(m[X_REVERSAL] - m[F_REVERSAL] / unloading_of_side(p, s, m)))
     k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
-        return pair(UNLOADING, s), reversed_at(p, at, m, s * d, s * (k * d + f0))
+        return on_side(UNLOADING, s), reversed_at(p, at, m, s * d, s * (k * d + f0))
     if at < YIELDING:
-        return pair(YIELDING, s), m
+        return on_side(YIELDING, s), m
     x, f = loading_end(p, m, at)
     if x >= peak(p, s, m)[0]:
         return enter_backbone(p, m, s, x)
-    return loading_branch(p, s, m, x, f) if at < TO_PINCH else pair(TO_PEAK, s), with_origin(m, x, f)
+    return loading_branch(p, s, m, x, f) if at < TO_PINCH else on_side(TO_PEAK, s), with_origin(m, x, f)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

@@ -65,7 +65,7 @@ from pound_solve.laws.hysteresis.cracking import (
     peak,
     yield_point,
 )
-from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 # branches of the positive side, after those of the backbone; those of the negative side are one more
 UNLOADING, SLIPPING, TO_PEAK = 5, 7, 9
@@ -171,7 +171,7 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float
     if x_largest < xy and (f > 0.0 or fy * (x_largest - zero) > peak(p, s, m)[1] * (xy - zero)):
         plus, minus = deformations_with(m, s, xy)
     m = (plus, minus, zero, x, f, *m[X_REVERSAL:])
-    return pair(SLIPPING if slips(p, s, m) else TO_PEAK, s), m
+    return on_side(SLIPPING if slips(p, s, m) else TO_PEAK, s), m
 
 
 def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
@@ -198,13 +198,13 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return begin_loading(p, m, -s, -end_of_unloading(p, m, s), crack_point(p, -s)[1], m[SLOPE])
     k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
-        return pair(UNLOADING, s), reversed_at(p, m, at, s * d, s * (k * d + f0))
+        return on_side(UNLOADING, s), reversed_at(p, m, at, s * d, s * (k * d + f0))
     if at < YIELDING:
-        return pair(YIELDING, s), m
+        return on_side(YIELDING, s), m
     x = loading_end(p, m, at)
     if at >= TO_PEAK:
         return enter_backbone(p, m, s, x)
-    return pair(TO_PEAK, s), (*m[:X_ORIGIN], x, slip_stiffness(p, s, m) * (x - m[ZERO]), *m[X_REVERSAL:])
+    return on_side(TO_PEAK, s), (*m[:X_ORIGIN], x, slip_stiffness(p, s, m) * (x - m[ZERO]), *m[X_REVERSAL:])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

@@ -53,7 +53,7 @@ from pound_solve.laws.automaton import (
     below,
     linear,
 )
-from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import inward, need_both_sides, on_side, outward, side, turns_inward
 from pound_solve.laws.refusal import ItemError
 
 SLACK, FAILED, UNLOADING = 0, 1, 2
@@ -149,13 +149,13 @@ def upper_end(p: Numbers, s: float, m: Numbers, foot: float) -> tuple[float, flo
     onto_line, end = pinch_end(p, s, m)
     meets = (f0 + ku * foot) / (ku - slope)
     if meets <= end:
-        return float(pair(PINCHED, s)), meets
+        return float(on_side(PINCHED, s)), meets
     if onto_line:
         _, k, f = reloading(p, s, m)
         # parallel only if the two coincide
-        return float(pair(RELOADING, s)), (f + ku * foot) / (ku - k) if ku > k * (1.0 + 1e-9) else meets
+        return float(on_side(RELOADING, s)), (f + ku * foot) / (ku - k) if ku > k * (1.0 + 1e-9) else meets
     _, _, _, _, (k2, f2) = backbone(p, s)
-    return float(pair(BEYOND, s)), (f2 + ku * foot) / (ku - k2)
+    return float(on_side(BEYOND, s)), (f2 + ku * foot) / (ku - k2)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -203,8 +203,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return (int(m[UPPER]) if event == 0 else int(m[LOWER])), m
     s = side(at)
     if at < YIELDING:
-        back = SLACK if is_slack(p) else pair(ELASTIC, -s)
-        return (pair(YIELDING, s) if event == 0 else back), m
+        back = SLACK if is_slack(p) else on_side(ELASTIC, -s)
+        return (on_side(YIELDING, s) if event == 0 else back), m
     if at < PINCHED:
         if event == 0:
             gap, _, _, _, _ = backbone(p, s)
@@ -214,15 +214,15 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
             else:
                 m = (m[MOST], max(most, m[MOST_MINUS]), 0.0, 0.0, 0.0, 0.0, 0.0)
         elif at < BEYOND:
-            return pair(BEYOND, s), m
+            return on_side(BEYOND, s), m
         else:
             return FAILED, m
     elif event == 1:
         if at < RELOADING:
             onto_line, _ = pinch_end(p, s, m)
-            return pair(RELOADING if onto_line else BEYOND, s), m
+            return on_side(RELOADING if onto_line else BEYOND, s), m
         (target, _, _), (_, _, du, _, _) = reloading(p, s, m), backbone(p, s)
-        return pair(YIELDING if target < du else BEYOND, s), m
+        return on_side(YIELDING if target < du else BEYOND, s), m
     k, _, f0 = branch(p, at, m)[:3]
     return unload(p, at, m, s, d, k * d + f0)
 
@@ -238,7 +238,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     s = -1.0 if f > 0.0 else 1.0
     ku = unloading(p)
     slope, f0 = pinched(p)
-    if at == pair(PINCHED, s):
+    if at == on_side(PINCHED, s):
         on_line = f
     else:
         on_line = s * min((f0 + slope * s * (d - f / ku)) / (1.0 - slope / ku), 0.0)

@@ -28,7 +28,7 @@ SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 FASTEST: Final = 1000.0
 
 
-def loose(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def find_mechanisms(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings of members whose nodes can move although their base is held, as with too many pins."""
     problems = list[Diagnostic]()
     for b, part in parts:
@@ -38,7 +38,7 @@ def loose(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[
     return problems
 
 
-def untimely(
+def implausible_periods(
     structure: Structure, parts: Sequence[tuple[Building, Part]]
 ) -> Iterator[tuple[str, Diagnostic]]:
     """Names of buildings whose first period is implausible for their height, with the warning.
@@ -77,7 +77,7 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
 
 
-def hasty(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Histories of fewer than `FEWEST` steps in the first period of every building, and output intervals
     longer than that period.
     """
@@ -97,7 +97,7 @@ def hasty(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[
     return problems
 
 
-def standing(structure: Structure) -> list[tuple[Building, Part]]:
+def supported_parts(structure: Structure) -> list[tuple[Building, Part]]:
     """Buildings with a height that the ground shakes along x, with their stiffness, where it can be
     computed.
     """

@@ -26,7 +26,7 @@ ENDS_AT_I: Final = (INSIDE[0], INSIDE[2])
 ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is zero
 
 
-def adrift(structure: Structure) -> list[Diagnostic]:
+def unsupported(structure: Structure) -> list[Diagnostic]:
     """Directions in which nothing connects the structure, or one of its buildings, to the shaken ground."""
     problems = []
     for way, card in shaken(structure.model).items():

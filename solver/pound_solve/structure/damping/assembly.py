@@ -92,7 +92,7 @@ def _matrices(structure: Structure, group: Group) -> list[Matrix]:
     matrices = []
     if group.relative is not None:
         n = structure.n_free
-        matrices.append(structure.framed(group.relative))
+        matrices.append(structure.free_block(group.relative))
         if len(structure.dofs.moved):
             matrices.append(_at_supports(structure, group.relative[:n, :n]))
     if group.proportional is not None:

@@ -10,7 +10,7 @@ from pound_solve.structure.assembly import assemble
 from pound_solve.structure.structure import Structure
 
 
-def standing_alone(structure: Structure, nodes: Collection[int]) -> Structure:
+def extract_building(structure: Structure, nodes: Collection[int]) -> Structure:
     """The building formed by some nodes as a structure, without other buildings, contacts with them, and
     damping.
     """

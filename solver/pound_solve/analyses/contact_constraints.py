@@ -1,4 +1,4 @@
-r"""Closed rigid contacts in statics: ties between unknowns, and the tie forces.
+r"""Closed rigid contacts in statics: constraints on the unknowns, and the forces of the contacts.
 
 With the rows B of the closed contacts, rates of displacement obey :math:`B\dot u = 0`.  In each row one
 unknown follows the others, :math:`u = Z u`, and equilibrium along the remaining motions is
@@ -18,7 +18,7 @@ from pound_solve.numerics.types import Array, Index
 DEPENDENT = 1e-12  #: share of a row that is left of one that depends on others
 
 
-class Ties:
+class ContactConstraints:
     """Constraints that closed rigid contacts impose on the unknowns.
 
     Parameters
@@ -59,21 +59,21 @@ class Ties:
     def __len__(self) -> int:
         return len(self.laws)
 
-    def among(self, matrix: Matrix) -> Matrix:
-        """A matrix of the unknowns, shape (n, n), reduced to the motions that the ties allow: Z^T A Z."""
+    def reduced_matrix(self, matrix: Matrix) -> Matrix:
+        """A matrix of the unknowns, shape (n, n), reduced to the motions that are free: Z^T A Z."""
         return self.basis.T @ matrix @ self.basis if len(self) else matrix
 
-    def along(self, force: Array) -> Array:
-        """Forces on the unknowns, shape (n,), reduced to the motions that the ties allow."""
+    def reduced_vector(self, force: Array) -> Array:
+        """Forces on the unknowns, shape (n,), reduced to the motions that are free: Z^T p."""
         return np.asarray(self.basis.T @ force) if len(self) else force
 
-    def whole(self, u: Array) -> Array:
-        """Motions of all unknowns, shape (n,) or (n, count)."""
+    def expand(self, u: Array) -> Array:
+        """Motions of all unknowns from those that are free, shape (n,) or (n, count): Z u."""
         return np.asarray(self.basis @ u) if len(self) else u
 
-    def forces(self, rest: Array) -> Array:
-        """Forces of the contacts, shape (n_closed,), that balance the force `rest` on the unknowns."""
-        return np.asarray(self._forces @ rest)
+    def forces(self, residual: Array) -> Array:
+        """Forces of the contacts, shape (n_closed,), that balance the force `residual` on the unknowns."""
+        return np.asarray(self._forces @ residual)
 
     def magnitudes(self, terms: Array) -> Array:
         """Magnitudes of those forces' terms for the absolute `terms` of the forces on the unknowns."""
