@@ -264,7 +264,7 @@ def law_arrays(
         saved=state.SavedState(np.zeros(count, bool), np.zeros((count, 3 + internal.shape[1]))),
         tangent=state.LawTangent(np.zeros(count), np.zeros(count), np.zeros(count)),
         events=state.BranchEvents(
-            np.zeros(count, np.int64), np.zeros((count, EVENTS, 3)), np.full(count, -1)
+            np.zeros(count, np.int64), np.zeros((count, EVENTS, 3)), np.full(count, -1, np.int64)
         ),
         friction=friction,
         now=state.LawMotion(d, v),

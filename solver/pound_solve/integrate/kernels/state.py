@@ -224,7 +224,7 @@ class Corotational(NamedTuple):
 
 
 class LawDefinition(NamedTuple):
-    """What the laws are: constant through a run.  Arrays of one number a law have shape (n_laws,).
+    """Constants of the laws through a run.  Arrays of one number per law have shape (n_laws,).
 
     Attributes
     ----------
@@ -263,7 +263,7 @@ class LawDefinition(NamedTuple):
 
 
 class LawState(NamedTuple):
-    """What the laws remember of their past.  Arrays of one number a law have shape (n_laws,).
+    """Branches and memory of the laws.  Arrays of one number per law have shape (n_laws,).
 
     Attributes
     ----------
@@ -274,7 +274,7 @@ class LawState(NamedTuple):
     internal : ndarray, shape (n_laws, VARIABLES + 2)
         Internal variables of the rule; the last two serve the secant stiffness (`TURN`, `STIFFNESS`).
     dashpot_loss : ndarray
-        Energy lost in the law's dashpot so far [F L].
+        Energy lost in the law's dashpot so far [F L]; a `SavedState` does not have it.
     """
 
     branch: Index
@@ -285,15 +285,15 @@ class LawState(NamedTuple):
 
 
 class SavedState(NamedTuple):
-    """States of the laws to go back to: after a trial, or at the start of a step that is not cut at events.
+    """States of the laws to go back to: from a trial, or to the start of a step that is not cut at events.
 
     Attributes
     ----------
     in_step : ndarray of bool, shape (n_laws,)
-        Whether the state at the start of the present step is kept here, as the law has left its branch
-        since; only used where steps are not cut at events.
+        Whether the law has left its branch in the present step, so that `values` has its state at the
+        start of the step; only used where steps are not cut at events.
     values : ndarray, shape (n_laws, 3 + VARIABLES + 2)
-        The branch, where it was entered, the work up to there, the internal variables.
+        Branch, deformation and work at its entry, internal variables (see `LawState`).
     """
 
     in_step: Flags
@@ -403,7 +403,7 @@ class CollisionForces(NamedTuple):
 
 
 class Laws(NamedTuple):
-    """The laws: what they are, the state they are in, and what follows from it at the present instant.
+    """The laws: their constants, their state, and what follows from it at the present instant.
 
     Attributes
     ----------
