@@ -11,7 +11,7 @@ from pound_solve.loading.motions.base import Piecewise
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 
-#: share of a time, and of the unit of time, by which rounding may put it beside a break
+#: tolerance, relative to the time and to the unit of time, within which a time coincides with a break
 CLOCK_ROUNDING = 1e-13
 
 
@@ -31,7 +31,7 @@ class Excitation:
 
     @classmethod
     def of(cls, inputs: Sequence[Piecewise], breaks: Array) -> Excitation:
-        """Inputs on `breaks`, which contain all their own."""
+        """Inputs on `breaks`, which include the breaks of all inputs."""
         degree = max((s.degree for s in inputs), default=0)
         coefs = np.zeros((len(breaks) - 1, degree + 1, len(inputs)))
         for j, s in enumerate(inputs):
@@ -46,7 +46,7 @@ class Excitation:
 
     @property
     def active(self) -> Flags:
-        """Which inputs are ever different from zero, shape (n_inputs,)."""
+        """Flags of the inputs that are not identically zero, shape (n_inputs,)."""
         return np.asarray(np.abs(self.coefs).max(axis=(0, 1), initial=0.0) > 0)
 
     def piece(self, t: float) -> int:
@@ -97,7 +97,7 @@ class Excitation:
         return np.asarray(polynomial.shift(coefs.swapaxes(0, 1), since[:, None]).swapaxes(0, 1))
 
     def jumps(self) -> Flags:
-        """Which inputs jump, from zero at t = 0 or between two intervals."""
+        """Flags of the inputs that jump, from zero at t = 0 or between two intervals, shape (n_inputs,)."""
         powers = np.diff(self.breaks)[:, None] ** np.arange(self.degree + 1)
         ends = np.einsum("pk,pkj->pj", powers, self.coefs)
         before = np.concatenate([np.zeros((1, ends.shape[1])), ends[:-1]])

@@ -66,12 +66,12 @@ class Intensity(NamedTuple):
 
 
 def intensity(acceleration: Piecewise, gravity: float) -> Intensity:
-    """Intensity measures of a ground that begins at rest.
+    """Intensity measures of a ground motion that begins at rest.
 
     Parameters
     ----------
     acceleration : Piecewise, [L/T^2]
-        A curved one is taken as its `chords`.
+        A curved one is replaced by its `chords`.
     gravity : float, [L/T^2]
         Of the Arias intensity, in the same units.
 

@@ -75,7 +75,7 @@ class Piecewise:
         """Values at some times, same shape as `t`; zero outside (both end points are inside)."""
         t = np.asarray(t, dtype=np.float64)
         i = self.piece(t)
-        # held to the intervals: far outside a high power would overflow before it is thrown away
+        # clipped to the intervals: far outside, high powers would overflow before they are discarded
         held = np.clip(t, self.start, self.end)
         inside = (t >= self.start) & (t <= self.end)
         return np.where(inside, _horner(self.coefs[:, i], held - self.breaks[i]), 0.0)[()]
@@ -93,7 +93,7 @@ class Piecewise:
         return self.coefs[:, i].copy() if t0 is None else shift(self.coefs[:, i], t0 - self.breaks[i])
 
     def on(self, breaks: ArrayLike) -> Piecewise:
-        """The same function written on other breaks, zero where they reach beyond its own.
+        """The same function on other breaks, zero outside its own interval.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class Piecewise:
         Raises
         ------
         ValueError
-            An own break is missing, so that one polynomial would have to stand for two.
+            `breaks` lacks a break of the function, so that one polynomial would have to replace two.
         """
         new = np.asarray(breaks, dtype=np.float64)
         inner = self.breaks[(self.breaks > new[0]) & (self.breaks < new[-1])]
@@ -111,7 +111,7 @@ class Piecewise:
         gap = np.minimum(inner - new[near - 1], new[near] - inner)
         if (gap > 1e-9 * (new[-1] - new[0])).any():
             raise ValueError("the new breaks leave out one of the old")
-        # middles, because a new break may lie a rounding error to the wrong side of an old one
+        # midpoints, because a new break may lie on the wrong side of an old one by rounding
         middle = 0.5 * (new[:-1] + new[1:])
         i = self.piece(middle)
         coefs = shift(self.coefs[:, i], new[:-1] - self.breaks[i])
@@ -124,7 +124,7 @@ class Piecewise:
         return self.on(merged(span, 1e-12 * (abs(start) + abs(end))))
 
     def delayed(self, by: float, lead: ArrayLike = (0.0,)) -> Piecewise:
-        """The function `by` later; itself without a delay.
+        """The function delayed by `by`; itself without a delay.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class Piecewise:
         return Piecewise(np.concatenate(([self.start], self.breaks + by)), coefs)
 
     def extended(self, t_end: float, tail: ArrayLike = (0.0,)) -> Piecewise:
-        """The function with one more interval up to `t_end`; itself when it reaches that far already.
+        """The function with one more interval up to `t_end`; itself if it ends no earlier.
 
         Parameters
         ----------
@@ -203,13 +203,13 @@ class Piecewise:
     def integral(self, initial: float = 0.0) -> Piecewise:
         """Continuous antiderivative that is `initial` at the first break; its degree is one higher.
 
-        A function that acts beyond the last break (the velocity of a ground that has come to a steady
-        motion) needs :meth:`extended` first.
+        A function that acts beyond the last break (such as the velocity of a ground in steady motion) needs
+        :meth:`extended` first.
         """
         powers = np.arange(1.0, len(self.coefs) + 1.0)
         coefs = np.vstack((np.zeros(self.coefs.shape[1]), self.coefs / powers[:, None]))
         gains = _horner(coefs, np.diff(self.breaks))
-        # thousands of gains: summed in long double where there is one, lest their roundings add up
+        # sums of thousands of increments: long double, where available, limits the rounding
         sums = np.longdouble(initial) + np.cumsum(gains, dtype=np.longdouble)
         coefs[0, 0] = initial
         coefs[0, 1:] = sums[:-1]
@@ -225,7 +225,7 @@ class Piecewise:
         i = int(sampled.argmax())
         polynomial = np.polynomial.Polynomial(self.coefs[:, i] * width[i] ** np.arange(self.degree + 1))
         slope = polynomial.deriv()
-        # high powers that are rounding would make roots() ill-posed; a constant has no turning point
+        # high powers of rounding size would make roots() ill-posed; a constant has no turning point
         roots = slope.trim(1e-15 * np.abs(slope.coef).max()).roots() if self.degree > 1 else np.empty(0)
         turns = roots[np.isreal(roots)].real
         at = np.concatenate(([0.0, 1.0], turns[(turns > 0) & (turns < 1)]))
@@ -243,7 +243,7 @@ class Piecewise:
 
 
 def merged(times: ArrayLike, tolerance: float) -> Array:
-    """Times in order, those left out that lie within `tolerance` of the one before; first and last stay.
+    """Sorted times without those within `tolerance` of their predecessor; the first and the last are kept.
 
     Parameters
     ----------

@@ -5,9 +5,9 @@ The oscillator of circular frequency :math:`\omega` and damping ratio :math:`\xi
 .. math:: \ddot u + 2\xi\omega\dot u + \omega^2 u = -a(t), \qquad
           \lambda = -\xi\omega + i\omega_d, \quad \omega_d = \omega\sqrt{1-\xi^2},
 
-is one complex equation, :math:`\dot z = \lambda z - a` with :math:`z = \dot u - \bar\lambda u`.  On a
-straight line :math:`a = a_0 + a_1 s` its solution is closed, the recurrence of Nigam and Jennings (1969) in
-complex form:
+satisfies one complex equation, :math:`\dot z = \lambda z - a` with :math:`z = \dot u - \bar\lambda u`.  On
+a straight line :math:`a = a_0 + a_1 s` its solution is closed, the recurrence of Nigam and Jennings (1969)
+in complex form:
 
 .. math:: z(s) = e^{\lambda s} z_0 - s\,\bigl(a_0 K_0(\lambda s) + a_1 s K_1(\lambda s)\bigr)
 
@@ -39,10 +39,10 @@ from pound_solve.loading.piecewise import Piecewise
 from pound_solve.numerics.phi import duhamel
 from pound_solve.numerics.types import Array, Complex, Index
 
-BLOCK: Final = 2**17  #: numbers of one kind that are held at a time, at most
-MOST: Final = 2**22  #: intervals into which an acceleration is divided for short periods, at most
-LINES: Final = 16  #: straight lines for an interval of a curved acceleration, at most
-EQUAL: Final = 12  #: digits in which steps that are taken for equal agree
+BLOCK: Final = 2**17  #: largest number of elements of a work array
+MOST: Final = 2**22  #: most intervals into which an acceleration is divided for short periods
+LINES: Final = 16  #: most straight lines for an interval of a curved acceleration
+EQUAL: Final = 12  #: digits to which equal steps agree
 ENOUGH: Final = 1e-10  #: of an interval, to which the instant of a peak is found: the peak has its square
 
 
@@ -84,7 +84,7 @@ def response_spectrum(
     Parameters
     ----------
     acceleration : Piecewise, [L/T^2]
-        Of what carries the oscillators; a curved one is taken as its `lines`.
+        Acceleration of the base of the oscillators; a curved one is replaced by its `lines`.
     periods : array_like, shape (n,), [T]
         Undamped periods, above zero.
     damping : array_like, shape (m,), [-]

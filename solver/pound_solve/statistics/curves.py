@@ -14,22 +14,28 @@ from pound_solve.numerics.types import Array
 from pound_solve.results.sweep_file import DONE, RUN, STOPPED, Sweep
 from pound_solve.statistics.incremental import Point
 
-LEVELS: Final = ("sa", "pga", "scale")  #: variables that tell how strong a record is, the best first
+LEVELS: Final = (
+    "sa",
+    "pga",
+    "scale",
+)  #: variables that measure the strength of a record, in order of preference
 FRACTILES: Final = (0.16, 0.5, 0.84)  #: shares of the records, or runs, in tables and pictures
-PARAM: Final = "PARAM "  #: how the description of a PARAM's variable begins
+PARAM: Final = "PARAM "  #: prefix of the description of a PARAM's variable
 COLLAPSE: Final = "collapse"  #: demand that is infinite where a run stopped early, else zero
-NEEDED: Final = "needed_gap"  #: demand that is infinite where something met: more than the gap, not known
+NEEDED: Final = (
+    "needed_gap"  #: demand that is infinite for runs with a collision: above the gap, but unknown
+)
 
 
 class Asked(NamedTuple):
-    """Quantity that is taken as the demand.
+    """Quantity used as the demand.
 
     Attributes
     ----------
     quantity : str
         Of a sweep, or `COLLAPSE`.
     label : str
-        The one of its labels that counts; empty for the largest of all.
+        Label to use; empty for the largest value over all labels.
     """
 
     quantity: str
@@ -37,7 +43,7 @@ class Asked(NamedTuple):
 
 
 class CurveError(Exception):
-    """Raised where a sweep does not hold what is asked for; the message says why."""
+    """Raised if a sweep lacks the requested data; the message states which."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +53,14 @@ class Curve:
     Attributes
     ----------
     case : str
-        PARAMs and deck, as far as they differ in the sweep.
+        PARAMs and deck, those that differ within the sweep.
     record : str
     points : tuple of Point
         In the order of their levels.
     left_out : int
         Runs that failed or have not ended.
     from_rest : bool
-        Whether the demand grows in proportion to the level before anything yields or meets.
+        Whether the demand is proportional to the level before the first yielding or collision.
     """
 
     case: str
@@ -72,7 +78,7 @@ class Curve:
         values: Iterable[float],
         from_rest: bool = False,
     ) -> Self:
-        """Make a curve of some runs from their levels and demands; runs of demand NaN count as left out."""
+        """Make a curve from the levels and demands of runs; runs with demand NaN count as left out."""
         pairs = sorted(zip(levels, values))
         points = tuple(Point(float(x), float(d)) for x, d in pairs if not math.isnan(d))
         return cls(case, record, points, len(pairs) - len(points), from_rest)
@@ -109,7 +115,7 @@ def unit_of(sweep: Sweep, asked: Asked) -> str:
 
 
 def demand(status: str, reached: float, values: Mapping[str, float], asked: Asked) -> float:
-    """Demand of one run: infinite where it stopped on its way or needed a wider gap, NaN where it has none.
+    """Demand of one run: infinite if it stopped early or needed a wider gap, NaN if it has none.
 
     Parameters
     ----------
@@ -118,13 +124,13 @@ def demand(status: str, reached: float, values: Mapping[str, float], asked: Aske
     reached : float
         Last time of its history; NaN without one.
     values : mapping of str to float
-        The quantity that is asked for, by its labels.
+        Values of the requested quantity by label.
     asked : Asked
 
     Raises
     ------
     CurveError
-        The run has not the label that is asked for.
+        The run lacks the requested label.
     """
     if status == STOPPED and math.isfinite(reached):
         return math.inf
@@ -145,7 +151,7 @@ def demands(sweep: Sweep, asked: Asked) -> Array:
     Raises
     ------
     CurveError
-        The sweep has not the quantity or the label.
+        The sweep lacks the quantity or the label.
     """
     there = [n for n, v in sweep.variables.items() if n != RUN and v.values.dtype.kind in "fi"]
     if asked.quantity not in (COLLAPSE, *there):
@@ -170,9 +176,9 @@ def _rows(sweep: Sweep, quantity: str) -> Iterator[Mapping[str, float]]:
 
 
 def widest_known(sweep: Sweep) -> dict[str, float]:
-    """Widest gap of every case for which its runs tell whether they needed it; infinite without collisions.
+    """Widest gap of each case whose exceedance is known for all runs; infinite without collisions.
 
-    A collision changes the motion: a run in which something met needed more than its smallest gap.
+    A collision changes the motion: a run with a collision needed more than its smallest gap.
     """
     widest = dict.fromkeys(cases(sweep), math.inf)
     columns = (sweep[name] for name in ("status", NEEDED, "given_gap"))
@@ -198,7 +204,7 @@ def _short(value: object) -> str:
 
 
 def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
-    """Every record of every case, in the order of the sweep.
+    """Return one curve per record and case, in the order of the sweep.
 
     Raises
     ------

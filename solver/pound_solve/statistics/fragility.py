@@ -1,4 +1,4 @@
-r"""Lognormal fragility from analyses: most likely parameters and their intervals of confidence.
+r"""Lognormal fragility from analyses: maximum likelihood estimates and their confidence intervals.
 
 The probability that a limit is exceeded at an intensity x is
 
@@ -6,23 +6,23 @@ The probability that a limit is exceeded at an intensity x is
 
 with the median :math:`\theta` and the dispersion :math:`\beta`.  Each kind of data has its likelihood:
 
-* capacities, one a record: the intensity at which the limit is reached, or two between which it is; that of
-  a record that never reached it lies beyond the largest intensity it was run at (a censored sample), and
-  that of one that reached it in its first run below the lowest;
+* capacities, one per record: the intensity at which the limit is reached, or two intensities that bracket
+  it.  The capacity of a record that never reached the limit lies above its largest intensity (a censored
+  sample); that of a record whose first run reached it lies below its lowest;
 * stripes: z of n runs at one intensity exceeded the limit (Baker 2015, Earthquake Spectra 31: 579-599);
 * a cloud: the demand D of runs at any intensities follows :math:`\ln D = a + b\ln x + \sigma\varepsilon`
   (Cornell et al. 2002, J. Struct. Eng. 128: 526-533), so that :math:`\ln\theta = (\ln d - a)/b` for the
   limit d, and :math:`\beta = \sigma/b`.
 
-The interval of a parameter is that of its profile likelihood: the values at which the largest
-log-likelihood, all else free, is below its maximum by less than :math:`c/2`,
+The interval of a parameter follows from its profile likelihood: it contains the values at which the
+log-likelihood, maximised over the other parameter, is below its maximum by less than :math:`c/2`,
 
 .. math:: c = n\ln\Bigl(1 + \frac{t^2}{\nu}\Bigr),
 
 with Student's quantile t of :math:`\nu` degrees of freedom in place of the usual quantile of
 :math:`\chi_1^2`, to which c converges.  For the median of capacities that are all known, and for that of a
 cloud, this is the exact interval (there Student's, here Fieller's).  For the dispersion of small samples it
-keeps its level much better than :math:`\chi_1^2` does.
+has a coverage much closer to its level than with :math:`\chi_1^2`.
 """
 
 from __future__ import annotations
@@ -40,18 +40,18 @@ from scipy.stats import t as student
 
 from pound_solve.numerics.types import Array
 
-LEAST: Final = 1e-4  #: dispersion that is looked at; no structure has less
-MOST: Final = 1e2  #: likewise, the largest
-FAR: Final = 30.0  #: logarithms from the data to which a median is looked for
-SURE: Final = 1e-10  #: to which a parameter is found, relative
+LEAST: Final = 1e-4  #: smallest dispersion searched; no structure has less
+MOST: Final = 1e2  #: largest dispersion searched
+FAR: Final = 30.0  #: distance of the median from the data up to which it is searched, in logarithms
+SURE: Final = 1e-10  #: relative accuracy of a parameter
 
 
 class FragilityError(Exception):
-    """Data that do not determine a fragility; the message says why."""
+    """Raised if the data do not determine a fragility; the message states why."""
 
 
 class Interval(NamedTuple):
-    """Ends of an interval of confidence; infinite, or zero, where the data give no bound."""
+    """Ends of a confidence interval; infinite, or zero, where the data give no bound."""
 
     low: float
     high: float
@@ -59,17 +59,17 @@ class Interval(NamedTuple):
 
 @dataclass(frozen=True)
 class Fragility:
-    """A lognormal fragility and what it rests on.
+    """A lognormal fragility, its confidence intervals and the size of its sample.
 
     Attributes
     ----------
     median, dispersion : float
-        Intensity of probability one half, standard deviation of its logarithm.
+        Intensity at probability one half, standard deviation of the logarithm of the capacity.
     median_interval, dispersion_interval : Interval
     level : float
-        Of confidence of both, and of `interval`.
+        Confidence level of both intervals, and of `interval`.
     count : int
-        Runs or records that the fit rests on.
+        Number of runs or records fitted.
     """
 
     median: float
@@ -90,7 +90,7 @@ class Fragility:
         return self.median * math.exp(self.dispersion * float(ndtri(probability)))
 
     def interval(self, probability: float) -> Interval:
-        """Interval of confidence of the intensity at which a probability is reached."""
+        """Confidence interval of the intensity at which a probability is reached."""
         return _of_quantile(self.data, float(ndtri(probability)), math.log(self.median), self.level)
 
 
@@ -105,7 +105,7 @@ class Likelihood:
     count : int
         Independent observations.
     freedom : int
-        Degrees of freedom that are left for the dispersion.
+        Degrees of freedom left for the dispersion.
     low, high : float
         Logarithms of the intensities between which the data lie.
     """
@@ -123,7 +123,7 @@ def from_capacities(
     within: Sequence[tuple[float, float]] = (),
     level: float = 0.95,
 ) -> Fragility:
-    """Fragility from one capacity a record.
+    """Fragility from one capacity per record.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def from_capacities(
     never : array_like, shape (m,)
         Largest intensities of records that did not reach it.
     within : sequence of pairs
-        Intensities between which others reached it; the lower may be zero.
+        Pairs of intensities that bracket the capacities of other records; the lower may be zero.
     level : float
         Of confidence.
 
@@ -170,7 +170,7 @@ def _log_between(low: Array, high: Array) -> Array:
     """Logarithm of the probability that a normal variable lies between two values, the lower of which may
     be minus infinity.
     """
-    flip = low > 0.0  # differences of what is nearly one have no digits
+    flip = low > 0.0  # differences of numbers close to one lose all digits
     low, high = np.where(flip, -high, low), np.where(flip, -low, high)
     whole = log_ndtr(high)
     with np.errstate(divide="ignore"):
@@ -269,7 +269,7 @@ def _fit(data: Likelihood, level: float) -> Fragility:
 
 
 def _drop(data: Likelihood, level: float) -> float:
-    """Drop of the log-likelihood from its maximum to the ends of an interval of confidence."""
+    """Drop of the log-likelihood from its maximum to the ends of a confidence interval."""
     t = student.ppf(0.5 + 0.5 * level, data.freedom)
     return float(0.5 * data.count * math.log1p(t**2 / data.freedom))
 
@@ -304,7 +304,7 @@ def _exponentials(ends: tuple[float, float]) -> Interval:
 
 
 def _highest(of: Callable[[float], float], low: float, high: float) -> float:
-    """Place of the only maximum of a function between two limits: on a coarse grid, then refined."""
+    """Location of the only maximum of a function between two limits: on a coarse grid, then refined."""
     places = np.linspace(low, high, 33)
     best = int(np.argmax([of(x) for x in places]))
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
@@ -315,7 +315,7 @@ def _highest(of: Callable[[float], float], low: float, high: float) -> float:
 def _ends(
     of: Callable[[float], float], at: float, limits: tuple[float, float], drop: float
 ) -> tuple[float, float]:
-    """Places below and above the maximum at `at` where a function is lower by `drop`; else infinite."""
+    """Points below and above the maximum at `at` where a function is lower by `drop`; else infinite."""
     least = of(at) - drop
     ends = []
     for limit in limits:

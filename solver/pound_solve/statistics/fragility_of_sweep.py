@@ -1,4 +1,4 @@
-"""Fragilities fitted to the runs of a sweep: how likely a demand exceeds a limit, for every case."""
+"""Fragilities of each case of a sweep: the probability that a demand exceeds a limit, over the level."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from pound_solve.statistics.fragility import (
 )
 from pound_solve.statistics.incremental import Rules, capacity
 
-#: only a run that stops brings the structure down; a limit of the demand is a limit of its own
+#: only a run that stops counts as collapse; limits of the demand are given separately
 STOPS: Final = Rules(step=1.0, slope=0.0)
-FEW: Final = 10  #: data below which a remark says so
-FEWEST: Final = 3  #: levels of a record that make a curve
+FEW: Final = 10  #: number of data below which a remark warns
+FEWEST: Final = 3  #: fewest levels of a record that make a curve
 
 
 class Fitted(NamedTuple):
-    """One fragility, or why there is none.
+    """One fragility, or the reason why none could be fitted.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Fitted(NamedTuple):
     fragility : Fragility or None
     remark : str
     observed : tuple of (level, exceeded, runs)
-        Counts at every level.
+        Numbers of runs at each level.
     """
 
     case: str
@@ -86,7 +86,7 @@ METHODS: Final[Mapping[str, Callable[[Sequence[Curve], float, float], Fragility]
 
 
 def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, int], ...]:
-    """Every level, the number of runs there that reach the limit, and the number of all runs there."""
+    """Return for each level the number of runs that reach the limit, and the number of all runs."""
     points = [p for c in records for p in c.points]
     return tuple(
         (x, sum(p.demand >= limit for p in points if p.level == x), sum(p.level == x for p in points))
@@ -95,8 +95,8 @@ def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, in
 
 
 def suited(records: Sequence[Curve]) -> str:
-    """Name of the method for some curves: capacities where each record has at least `FEWEST` levels, else
-    stripes where all have the same levels, two at least, else a cloud.
+    """Name of the default method: capacities if each record has at least `FEWEST` levels, else stripes if
+    all records have the same two or more levels, else a cloud.
     """
     levels = [tuple(p.level for p in c.points) for c in records if c.points]
     if levels and min(map(len, levels)) >= FEWEST:
@@ -117,14 +117,14 @@ def fit(
     limits : sequence of float
         Of the demand; collapse has none.
     method : str
-        One of `METHODS`; empty for the one that suits each case.
+        One of `METHODS`; empty for the default of each case, see `suited`.
     level : float
         Of confidence.
 
     Raises
     ------
     CurveError
-        The sweep does not hold the demand, or no limit is given.
+        The sweep lacks the demand, or no limit is given.
     """
     if asked.quantity == COLLAPSE:
         limits = (math.inf,)
@@ -147,7 +147,7 @@ def fit(
 def _fitted(
     case: str, records: Sequence[Curve], limit: float, method: str, level: float, known: float
 ) -> Fitted:
-    """Fragility of one limit; none, with a remark, for a limit above `known`, up to which the runs tell."""
+    """Fragility of one limit; none, with a remark, for limits above `known`, where it is unknown."""
     remarks, fragility = [], None
     try:
         if known < limit:

@@ -1,17 +1,17 @@
-r"""Incremental dynamic analysis: the levels at which one record is run, one after the other.
+r"""Incremental dynamic analysis: the sequence of levels at which one record is run.
 
 The rules are those of Vamvatsikos and Cornell (2002, Earthquake Engng Struct. Dyn. 31: 491-514; 2004,
 Earthquake Spectra 20: 523-553), hunt and fill:
 
 1. the hunt: steps that grow by a constant amount, :math:`\Delta_i = \Delta + (i - 1)\,\delta`, until a run
    collapses or the highest level is reached;
-2. the bracket: a third of the way from the highest level that stands to the lowest that collapses, until
-   they are close;
-3. the fill: the middle of the widest gap between levels that stand, as long as runs are left.
+2. the bracket: a third of the way from the highest level without collapse to the lowest with collapse,
+   until they are close;
+3. the fill: the middle of the widest interval between levels without collapse, as long as runs are left.
 
-A run collapses where it stops, where its demand reaches a limit, or where the curve has gone flat: its
-slope from the run below is less than a share of that of its first point (FEMA 350 takes a fifth).  The next
-level follows from the points alone, so that an analysis that was interrupted goes on as it would have.
+A run counts as collapse if it stops, if its demand reaches a limit, or if the curve is flat: its slope from
+the run below is less than a fraction of the initial slope (FEMA 350: a fifth).  The next level depends on
+the points alone, so that an interrupted analysis resumes without a difference.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-#: how a point counts
+#: verdicts on a point
 STANDS, STOPPED, BEYOND, FLAT = "stands", "stopped", "beyond the limit", "flat"
 THIRD: Final = 1.0 / 3.0
-SAME: Final = 1e-9  #: levels that are closer, relatively, are one
+SAME: Final = 1e-9  #: relative difference below which two levels are the same
 
 
 class Point(NamedTuple):
@@ -38,7 +38,7 @@ class Point(NamedTuple):
     level : float
         Intensity.
     demand : float
-        What the structure is asked for; infinite where the run stopped.
+        Infinite if the run stopped early.
     """
 
     level: float
@@ -47,22 +47,22 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Rules:
-    """Rules by which levels are chosen and collapse is judged.
+    """Rules that select levels and define collapse.
 
     Attributes
     ----------
     step, growth : float
-        First step of the hunt, and by how much each next one is longer.
+        First step of the hunt, and increment of each further step.
     top : float
         Highest level.
     runs : int
-        Of one record, at most.
+        Largest number of runs per record.
     close : float
-        Bracket of the collapse, relative to its lower end, that is close enough.
+        Relative width of the bracket of collapse at which it is accepted.
     limit : float
         Demand that counts as collapse.
     slope : float
-        Share of the first slope below which the curve is flat; 0 for never.
+        Fraction of the initial slope below which the curve is flat; 0 for never.
     """
 
     step: float
@@ -97,7 +97,7 @@ def ends(points: Sequence[Point], rules: Rules) -> list[str]:
 
 
 def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:
-    """Levels between which a record brings the structure down.
+    """Bracket of the collapse level of a record.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:
     Returns
     -------
     stands, falls : float
-        The highest that stands below the lowest that collapses, and the latter, infinite where none does.
+        Highest level without collapse below the lowest with collapse, and the latter; infinite if none.
     """
     stands = 0.0
     for point, end in zip(points, ends(points, rules)):

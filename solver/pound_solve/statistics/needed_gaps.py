@@ -1,4 +1,4 @@
-"""Gaps that the runs of a sweep needed, beside the rules for separations, contact by contact.
+"""Gaps that the runs of a sweep needed, compared with separation rules, contact by contact.
 
 The runs whose gaps stayed open tell the gap that each of them needed.  A run in which something met needed
 more than its smallest gap; it counts as contact up to there, and nothing is said of wider gaps.
@@ -18,7 +18,7 @@ from pound_solve.statistics.curves import CurveError, cases, measure
 from pound_solve.statistics.fragility import Fragility, FragilityError, from_capacities
 from pound_solve.statistics.separation import RULES, Peaks
 
-ANY: Final = "any"  #: contact that stands for all, where a deck has several
+ANY: Final = "any"  #: name of all contacts together, in a deck with several
 DIGITS: Final = 4  #: of probabilities by a distribution
 NEEDS: Final = ("needed_gap", "given_gap", "peak_i", "peak_j", "correlation")
 

@@ -1,7 +1,7 @@
-"""The course of an incremental dynamic analysis: rounds of runs, each one level further on every record.
+"""Incremental dynamic analysis as rounds of runs, each with the next level of every record.
 
-The levels of the study are the first ones.  What has ended is in the journal, and the next levels follow
-from it, so that an analysis that was interrupted goes on where it was.
+The levels of the study are the first ones.  The next levels follow from the runs in the journal, so that an
+interrupted analysis resumes.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from pound_solve.sweep.study.run import Run
 
 TABLE: Final = "ida"  #: of a study
 DEMAND: Final = "storey_drift"
-LIMIT: Final = 0.1  #: of the demand by default, if that is the default
+LIMIT: Final = 0.1  #: default limit of the default demand
 ITEMS: Final = ("demand", "label", "step", "growth", "top", "runs", "close", "limit", "slope")
 
 
 @dataclass(frozen=True)
 class Aim:
-    """Demand of an incremental analysis, and the rules by which its levels are chosen.
+    """Demand of an incremental analysis, and the rules that select its levels.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Aim:
 
 
 def aim(document: Document) -> Aim:
-    """Read the table ``[ida]`` of a study; its mistakes are noted in the document."""
+    """Read the table ``[ida]`` of a study; mistakes are added to the document."""
     document.take((TABLE,), dict, {})
     document.known((TABLE,), ITEMS)
     quantity = document.take((TABLE, "demand"), str, DEMAND)
@@ -97,13 +97,13 @@ class Hunt:
         self._demands: dict[str, float] = {}  # by identity
 
     def carry_out(self, report: Callable[[State], None]) -> None:
-        """Run until every record is done, or an interruption."""
+        """Execute rounds until every record is done, or until an interruption."""
         ahead: Sequence[Run] = self.session.agenda.ahead
         with self.session.conductor(report) as conductor:
             while True:
                 done = self.session.carry_on(conductor, ahead)
                 if len(done) < len(ahead):
-                    break  # it was interrupted
+                    break  # interrupted
                 fresh = list(self._next())
                 if not fresh:
                     break
@@ -133,7 +133,7 @@ class Hunt:
         for group in self._groups():
             curve = self._curve(group)
             if curve.left_out or not curve.points:
-                continue  # a run failed: its demand, from which the next level follows, is not known
+                continue  # a run failed: its demand, which determines the next level, is unknown
             level = next_level(curve.points, self.aim.rules)
             if level is not None:
                 yield group[0].at(level)

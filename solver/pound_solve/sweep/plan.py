@@ -1,4 +1,4 @@
-"""Plan of a sweep: how many runs there are, which are skipped, how long they will take."""
+"""Plan of a sweep: number of runs, skipped runs, and estimate of time and space."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from pound_solve.sweep.execution.journal import Entry
 from pound_solve.sweep.study.run import Run
 from pound_solve.sweep.study.study import Study
 
-SHOWN: Final = 20  #: runs of one kind that are listed
+SHOWN: Final = 20  #: most runs listed of one kind
 LITTLE: Final = 5.0  #: CPU time of a trial after which no further run is tried [s]
-LONG: Final = 600.0  #: time of the runs that are left from which on looser tolerances are tried [s]
+LONG: Final = 600.0  #: estimated time of the remaining runs above which looser tolerances are tried [s]
 LOOSER: Final = (1e-3, 1e-2)  #: tolerances that are tried then
-_WIDEST: Final = 100  #: characters of a reason
+_WIDEST: Final = 100  #: most characters of a reason
 
 
 @dataclass(frozen=True)
 class Agenda:
-    """Runs of a study, or of a piece of it, by what is to be done with them.
+    """Runs of a study, or of a piece of it, sorted by what remains to be done.
 
     Attributes
     ----------
     ahead : tuple of Run
-        To be carried out.
+        To be executed.
     done : tuple of Run
-        Have ended with all.
+        Completed.
     ended : tuple of Run
-        Have stopped or failed, and are not tried again.
+        Stopped or failed, and not to be repeated.
     """
 
     ahead: tuple[Run, ...]
@@ -39,7 +39,7 @@ class Agenda:
 
     @classmethod
     def of(cls, runs: Sequence[Run], entries: Mapping[str, Entry], retry: bool) -> Agenda:
-        """Sort runs by how they have ended; `retry` puts stopped and failed ones among those ahead."""
+        """Sort runs by their results; with `retry`, stopped and failed runs are to be executed again."""
         ends = [entries[r.identity].status if r.identity in entries else "" for r in runs]
         return cls(
             tuple(r for r, end in zip(runs, ends) if not end or (retry and end != DONE)),
@@ -49,12 +49,12 @@ class Agenda:
 
 
 def piece(runs: Sequence[Run], k: int, count: int) -> tuple[Run, ...]:
-    """The k-th of some pieces of about the same length, k from 1."""
+    """The k-th of `count` pieces of nearly equal length, k from 1."""
     return tuple(r for r in runs if (r.number - 1) % count == k - 1)
 
 
 def lines(study: Study, agenda: Agenda, entries: Mapping[str, Entry]) -> Iterator[str]:
-    """Lines of text: the plan."""
+    """Lines of text of the plan."""
     decks = {r.case.deck for r in study.runs}
     cases = {r.case for r in study.runs}
     counts = _many(len(decks), "deck"), f"{_many(len(cases), 'case')} of PARAMs", _shakings(study)
@@ -93,17 +93,17 @@ def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
 
 @dataclass
 class Trial:
-    """Runs that were carried out to estimate the time and the space of the others.
+    """Trial runs, to estimate the time and the space of the others.
 
     Attributes
     ----------
     ahead : int
-        Runs that were ahead.
+        Number of runs to execute before the trial.
     workers : int
     entries : list of Entry
-        Those with the tolerance of the study; the first was tried with others, too.
+        Runs with the tolerance of the study; the first was also run with others.
     looser : dict of float to Entry
-        By tolerances above that of the study.
+        Runs with tolerances above that of the study, by tolerance.
     """
 
     ahead: int
@@ -118,16 +118,16 @@ class Trial:
 
     @property
     def left(self) -> int:
-        """Runs that are still ahead."""
+        """Number of remaining runs."""
         return self.ahead - len(self.entries)
 
     @property
     def seconds(self) -> float:
-        """Time that the runs take that are left [s]."""
+        """Estimated time of the remaining runs [s]."""
         return self.spent / max(len(self.entries), 1) * self.left / self.workers
 
     def seconds_with(self, looser: Entry) -> float:
-        """Time that all runs would take with a looser tolerance, one of those that were tried [s]."""
+        """Estimated time of all runs with the looser tolerance of a trial run [s]."""
         mean = self.spent / len(self.entries) * looser.cpu / self.entries[0].cpu
         return mean * self.ahead / self.workers
 

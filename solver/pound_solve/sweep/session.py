@@ -1,4 +1,4 @@
-"""One call of a sweep: what is to be run of a study, its conduct, and the table that it ends with."""
+"""One call of a sweep: the selection of runs, their execution, and the final table."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Session:
     study : Study
     engine : Engine
     piece : tuple of int
-        Number of the piece that is run, from 1, and how many there are.
+        Number of the piece to run, from 1, and number of pieces.
     retry : bool
         Try runs again that stopped or failed.
     """
@@ -46,15 +46,15 @@ class Session:
         self._before = set(self.entries) - {r.identity for r in self.agenda.ahead}
 
     def plan(self) -> Iterator[str]:
-        """Lines of text: what is to be run."""
+        """Lines of text of the plan."""
         return plan.lines(self.study, self.agenda, self.entries)
 
     def trial(self, report: Callable[[State], None]) -> Trial:
-        """Carry out some of the runs ahead, to estimate the time and the space of the others.
+        """Execute some runs, to estimate the time and the space of the others.
 
-        The strongest shaking of the middle case tells it, since collisions and yielding take time; so do
-        the first and the last run where all cost little.  Where the others take long, the same run follows
-        with looser tolerances until one fits.
+        These are the strongest shaking of the middle case, since collisions and yielding take time, and the
+        first and the last run if all cost little.  If the others would take long, the first run is repeated
+        with looser tolerances until one is fast enough.
         """
         ahead = self.agenda.ahead
         some = list(dict.fromkeys([_strongest(ahead), ahead[0], ahead[-1]])) if ahead else []
@@ -73,7 +73,7 @@ class Session:
         return trial
 
     def _one_by_one(self, conductor: Conductor, runs: Sequence[Run]) -> Iterator[Entry]:
-        """Carry out each run when its entry is asked for, and yield the entry; end at an interruption."""
+        """Execute runs lazily, one per yielded entry; end at an interruption."""
         for run in runs:
             interrupted = conductor.run([run]).ending
             self.entries = self.journal.entries()
@@ -94,32 +94,32 @@ class Session:
                     yield replace(run, case=replace(run.case, tol=tol))
 
     def conductor(self, report: Callable[[State], None]) -> Conductor:
-        """Make the conductor that carries out runs of the study, a context manager."""
+        """Make the conductor that executes runs of the study, a context manager."""
         study = self.study
         folder = self.journal.folder if self.engine.notes else None
         settings = Settings(folder, study.seconds, study.memory, study.histories)
         return Conductor(self.engine, settings, self.journal, report)
 
     def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
-        """Carry runs out; return the journal's entries of those that have ended."""
+        """Execute runs; return the journal's entries of those that have ended."""
         with self.conductor(report) as conductor:
             return self.carry_on(conductor, runs)
 
     def carry_on(self, conductor: Conductor, runs: Sequence[Run]) -> list[Entry]:
-        """Carry runs out by a conductor that may have carried out others before; see `carry_out`."""
+        """Execute runs by a conductor that may have executed others before; see `carry_out`."""
         if runs:
             conductor.run(runs)
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 
     def estimate(self, trial: Trial) -> Iterator[str]:
-        """Lines of text: time and space that the runs ahead will take, estimated from those of a trial."""
+        """Lines of text: time and space of the remaining runs, estimated from a trial."""
         if trial.entries:
             size = sum(p.stat().st_size for p in self.journal.folder.iterdir()) / len(self.entries)
             yield from plan.estimate(trial, size)
 
     def extend(self, runs: Sequence[Run]) -> None:
-        """Replace the runs of the study by these."""
+        """Replace the runs of the study by `runs`."""
         self.study = replace(self.study, runs=tuple(runs))
         self.runs = self.study.runs
 
@@ -133,7 +133,7 @@ class Session:
         title : str
             Of the report.
         made : callable
-            Lines of the report about what was made of the runs.
+            Lines of the report on the evaluation of the runs.
         """
         path = table.write(self.study, self.journal, self.entries)
         sweep = Sweep.open(path)
@@ -169,14 +169,14 @@ def _strongest(runs: Sequence[Run]) -> Run:
 
 
 def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: bool = False) -> Sweep:
-    """Carry out what is not done of a study, write its table and return it.
+    """Execute the remaining runs of a study, write its table and return it.
 
     Parameters
     ----------
     path : str or Path
         The study's file.
     workers : int
-        Processes; 0 for those that the study names, else one for each processor.
+        Number of processes; 0 for that of the study, else one per processor.
     executor : str
         As ``--executor``, see `executors.engine`.
     retry : bool
@@ -187,7 +187,7 @@ def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: 
     StudyError
         The study has mistakes; the text names the place of each.
     BusyError, ExecutorError, ResultsError, OSError
-        Another sweep writes the folder; the executor cannot be had; a file cannot be read or written.
+        Another sweep writes the folder; the executor is not available; a file cannot be read or written.
     """
     document = Document.read(str(path))
     if workers:

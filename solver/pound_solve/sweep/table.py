@@ -1,4 +1,4 @@
-"""The table of a sweep: runs by quantities, made of the journal in the order of the study."""
+"""The table of a sweep: runs by quantities, from the journal, in the order of the study."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ MISSING = "missing"  #: status of a run that has not ended
 
 
 def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep:
-    """Make the table of a study: what it gives to every run, how each has ended, and its quantities.
+    """Make the table of a study: the inputs, the status and the quantities of each run.
 
     Parameters
     ----------
     study : Study
     journal : Journal
-        Holds the values, which are read twice, one run after the other: for their labels, then themselves.
+        Holds the values, which are read twice, run by run: first the labels, then the values.
     entries : mapping of str to Entry
         By identity.
     """
@@ -71,7 +71,7 @@ def write(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Path:
 
 
 def _histories(runs: Sequence[Run], journal: Journal) -> Iterator[tuple[int, Mapping[str, NDArray[Any]]]]:
-    """Number and histories of every run that has kept some, one after the other."""
+    """Yield number and histories of each run with kept histories."""
     for run in runs:
         path = journal.histories(run.identity)
         if path.is_file():
@@ -80,7 +80,7 @@ def _histories(runs: Sequence[Run], journal: Journal) -> Iterator[tuple[int, Map
 
 
 def _inputs(study: Study) -> dict[str, Variable]:
-    """Variables that the study sets for every run: deck, PARAMs, record, level."""
+    """Input variables of each run: deck, PARAMs, record, level."""
     runs = study.runs
     variables = {
         RUN: Variable(np.array([r.number for r in runs], np.int64), doc="number of the run"),
@@ -107,7 +107,7 @@ _ENDS = ("status", "message", "doubt", "reached", "cpu_seconds", "solve_seconds"
 
 
 def _ends(entries: Sequence[Entry], units: Units) -> dict[str, Variable]:
-    """How every run has ended."""
+    """Variables of the end of each run: status, message, times."""
     return dict(
         zip(
             _ENDS,

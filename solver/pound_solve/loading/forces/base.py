@@ -1,4 +1,4 @@
-"""What every force in time shares: its nodes and components, and the Force made of its card."""
+"""Common parts of all forces in time: nodes, components, and the Force made from a card."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Force:
     ----------
     nodes : tuple of int
     push : tuple of three floats, [F], [F], [F L]
-        Forces along x and y and moment on each node, for a history of one.
+        Forces along x and y and moment on each node, per unit of the history.
     history : Piecewise, [-]
         Begins at t = 0; zero after its last break.
     info : mapping
-        What the report prints: ``kind`` and items of the kind's own.
+        Values for the report: ``kind`` and items specific to the kind.
     """
 
     nodes: tuple[int, ...]
@@ -40,7 +40,7 @@ class Force:
 
 
 def finish(card: Mapping[str, Any], history: Piecewise, info: Mapping[str, Any]) -> Force:
-    """Force of a card with the `history` that its kind makes.
+    """Force of a card with the given `history`.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """RECORD: a force history from a file, straight lines between its samples.
 
-The numbers stand as they are in the file, whatever unit it names: they are factors on FX, FY and MZ.
+Values of the file are factors on FX, FY and MZ; the unit that the file names is ignored.
 """
 
 from __future__ import annotations

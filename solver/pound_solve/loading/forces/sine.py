@@ -1,4 +1,4 @@
-"""SINE: forces that go as sin(w (t - START) + PHASE), from START on; zero before and after."""
+"""SINE: forces proportional to sin(w (t - START) + PHASE) from START on; zero before and after."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every ground motion shares: common items of its card, its surroundings, the Motion made of it."""
+"""Common parts of all ground motions: items of the card, context, and the Motion made from it."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ METRE: Final[Mapping[str, float]] = MappingProxyType(
 
 Closed = tuple[Callable[[], Piecewise], Callable[[], Piecewise]]
 _STRONG, _WEAK = 3.0, 0.001  # [g]
-_RARE: Final = 2.0  #: [g], which hardly a record of an earthquake exceeds
-_USUAL: Final = 0.3  # [g], the middle of what damages buildings
+_RARE: Final = 2.0  #: [g], hardly exceeded by any record of an earthquake
+_USUAL: Final = 0.3  # [g], typical of damaging motions
 _PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
 
@@ -78,7 +78,7 @@ class LoadingContext:
     metre : float, [L]
         Length of one metre in the deck's units, see `METRE`.
     search_path : tuple of Path
-        Folders where records are looked for.
+        Folders searched for records.
     duration : float, [T]
         Length of the analysis; 0 when it is not known.
     """
@@ -111,15 +111,15 @@ class Motion:
         Of the ground at t = 0.
     info : mapping
         For the report: ``kind name file format component npts dt unit scale start duration pga t_pga
-        pgv pgd sha256 warnings notes`` and items of the kind's own; `warnings` doubt the size of the
-        motion, `notes` tell where a file contradicts its header, `cuts` doubt what of it acts and
-        how fast: words, item of the card, cure.
+        pgv pgd sha256 warnings notes`` and items specific to the kind; `warnings` concern the size of
+        the motion, `notes` contradictions of a file and its header, `cuts` the part of the record that
+        acts and its step: text, item of the card, remedy.
     closed : pair of callables, or None
         Make velocity and displacement, where the kind has a closed form; they are not kept, because few
         decks request them.
     about : tuple of two floats, [L]
     wave : float or None, [L/T]
-        Speed of the wave that brings the motion to one support after the other; see `wave`.
+        Apparent speed of a travelling wave; see `wave`.
     """
 
     direction: str
@@ -134,7 +134,7 @@ class Motion:
 
     @property
     def directions(self) -> tuple[int, ...]:
-        """Directions in which it may move a support: 0 x, 1 y, 2 rotation."""
+        """Directions in which the motion may move a support: 0 x, 1 y, 2 rotation."""
         return (0, 1, 2) if self.direction == "R" else ("XY".index(self.direction),)
 
     def share(self, d: int, x: float, y: float) -> float:
@@ -196,14 +196,14 @@ def finish(
         Values of the card by field name.
     acceleration : Piecewise, [L/T^2]
         SCALE included.
-    context : Context
+    context : LoadingContext
     info : mapping
         The kind's part of `Motion.info`.
     velocity0, displacement0 : float, [L/T], [L]
     closed : pair of callables, optional
         See `Motion`.
     weakest : float, optional
-        Share of gravity below which the peak is doubted.
+        Fraction of gravity below which the peak causes a warning.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def finish(
     t_pga, pga = acceleration.peak()
     warnings = list(info.get("warnings", ()))
     strength = abs(pga) / context.gravity
-    # a factor of zero is a motion switched off on purpose; a rotation is no share of gravity
+    # a factor of zero switches a motion off; a rotation cannot be compared with gravity
     unit = str(info.get("unit") or "")  # of a record alone
     if (
         scale != 0
@@ -264,7 +264,7 @@ def _likely_unit(strength: float, unit: str, context: LoadingContext) -> str:
 
 
 def _check_wave(motion: Motion) -> None:
-    """Raise where a travelling wave has no speed, no supports to reach, or no direction."""
+    """Raise RecordError if a travelling wave lacks a speed, supports or a direction."""
     if motion.wave is None:
         return
     if motion.wave == 0.0:

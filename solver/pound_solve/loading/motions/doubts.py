@@ -1,4 +1,4 @@
-"""Records that are stretched beyond what earthquakes are: their step is another."""
+"""Detection of records with a wrong step, from implausible periods and durations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FASTEST, SLOWEST = 0.03, 1.5
 #: the same times the significant duration [s^2]: 40 s of 2 s, or 150 s of 0.4 s; it grows with the square
 #: of a step that is too long
 LONGEST: Final = 130.0
-FEWEST: Final = 100  #: samples of a record of which this is known
+FEWEST: Final = 100  #: fewest samples of a record for this check
 
 
 def pace(acceleration: Piecewise) -> tuple[float, float]:
@@ -29,7 +29,7 @@ def pace(acceleration: Piecewise) -> tuple[float, float]:
     Returns
     -------
     period, duration : float, [T]
-        Zeros for fewer than `FEWEST` samples, or where it does not cross zero.
+        Zero for fewer than `FEWEST` samples, or without zero crossings.
     """
     duration = significant_duration(acceleration)
     values = acceleration.coefs[0]
@@ -43,7 +43,7 @@ def pace(acceleration: Piecewise) -> tuple[float, float]:
 
 
 def mispaced(acceleration: Piecewise) -> str:
-    """Text on what is implausible in the step of a record; empty where nothing is."""
+    """Text on an implausible step of a record; empty if the step is plausible."""
     period, duration = pace(acceleration)
     if 0.0 < period < FASTEST:
         return f"the record swings every {period:.2g} s for {duration:.2g} s: hard rock has 0.05 s"

@@ -1,4 +1,4 @@
-r"""MATCHED: a motion made to have a given response spectrum.
+r"""MATCHED: an artificial motion that matches a given response spectrum.
 
 It starts as noise whose Fourier amplitudes follow the target, under the envelope of `synthetic`.  Then it
 is corrected in the time domain.  The response of oscillator i at its peak time :math:`t_i` is linear in the
@@ -28,9 +28,9 @@ from pound_solve.numerics.types import Array
 
 CLOSE: Final = 0.6  #: distance of the periods that are matched, in half band widths
 MOST_STEPS: Final = 40
-EARLY, HOPELESS = 8, 1.0  #: steps after which a least misfit above this is given up
+EARLY, HOPELESS = 8, 1.0  #: iterations after which a smallest misfit above this ends the search
 LOOSE: Final = 1.05  #: of the diagonal of H W H^T: close peaks need not be met to the last digit
-NEAR: Final = 0.95  #: share of the first ordinate: larger samples are drawn to `PEAK` of it
+NEAR: Final = 0.95  #: fraction of the first ordinate above which samples are reduced to `PEAK` of it
 PEAK: Final = 0.9
 LEAST_DAMPING: Final = 0.01
 MOST_DAMPING: Final = 0.5
@@ -38,7 +38,7 @@ FEWEST: Final = 8.0  #: samples in the shortest period
 
 
 class Target(NamedTuple):
-    """Spectrum to be met.
+    """Target spectrum.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     ----------
     card_values : mapping
         Bound values of the card's fields.
-    context : Context
+    context : LoadingContext
 
     Raises
     ------
@@ -117,7 +117,7 @@ def matched(target: Target, t: Array, e: Array, seed: int, tol: float) -> tuple[
         Envelope at these times.
     seed : int
     tol : float
-        Misfit that suffices.
+        Misfit at which the iteration ends.
     """
     a, best, least = _noise(target, t, e, seed), np.zeros_like(t), math.inf
     responses = _impulse_responses(target, t)
@@ -133,7 +133,7 @@ def matched(target: Target, t: Array, e: Array, seed: int, tol: float) -> tuple[
 
 
 def _noise(target: Target, t: Array, e: Array, seed: int) -> Array:
-    """Noise with Fourier amplitudes in proportion to the target's velocities, of its mean size."""
+    """Noise with Fourier amplitudes proportional to the target's velocities, of its mean size."""
     dt = t[1] - t[0]
     w = 2.0 * np.pi * np.fft.rfftfreq(len(t), dt)
     ends = 2.0 * np.pi / target.periods[::-1]

@@ -1,8 +1,7 @@
 """RECORD: a recorded ground acceleration, straight lines between its samples.
 
-LINES takes a part of the file.  START and DURATION cut the record in its own time; TSCALE then stretches
-what is left.  Outside of the
-record, and after the cut, the acceleration is zero.
+LINES selects a part of the file.  START and DURATION select an interval in the time of the record; TSCALE
+then stretches it.  Outside this interval the acceleration is zero.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load
 from pound_solve.numerics.types import Array
 
-KEPT: Final = 8  #: records whose samples are kept for the next run of the same process
+KEPT: Final = 8  #: number of records kept in memory for further runs of the same process
 _UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
 
 
@@ -59,12 +58,12 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSa
     ----------
     card_values : mapping
         Bound values of the card's `FIELDS` and of its format.
-    context : Context
+    context : LoadingContext
 
     Raises
     ------
     RecordError
-        Whatever keeps the record from being used; codes in :mod:`pound_solve.loading.records.base`.
+        The record cannot be used; codes in :mod:`pound_solve.loading.records.base`.
     """
     path = find(str(card_values["FILE"]), context.search_path)
     text, digest = load(path)
@@ -82,7 +81,7 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSa
 
 @lru_cache(maxsize=KEPT)
 def _parsed(text: str, reader: str, options: tuple[tuple[str, Any], ...]) -> RawRecord:
-    """Samples of a text by the reader of a format: suites take the same record at many strengths."""
+    """Samples of a text by the reader of a format; cached, because sweeps scale a record repeatedly."""
     raw: RawRecord = formats()[reader].impl.read(text, dict(options))
     for samples in (raw.values, raw.times):
         if samples is not None:
@@ -150,7 +149,7 @@ def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, st
 
 def _lines(text: str, span: tuple[int, int] | None) -> str:
     """Text of the lines of a file from the first to the last of `span`; all others are blank, so that
-    messages count lines as they stand in the file.
+    messages give line numbers of the file.
     """
     if span is None:
         return text
@@ -183,7 +182,7 @@ def _window(t: Array, a: Array, start: float, duration: float | None) -> tuple[A
             "R405",
             f"START and DURATION leave nothing of the record, which runs from {t[0]:g} to {t[-1]:g} s",
         )
-    # a sample a rounding error away from a cut is the cut
+    # a sample within rounding of a cut is the cut
     near = 1e-12 * float(np.abs(t[[0, -1]]).max())
     first = max(start, float(t[0]))
     inner = (t > first + near) & (t < stop - near)
@@ -197,13 +196,13 @@ def step(raw: RawRecord) -> float | None:
         return raw.dt
     steps = np.diff(raw.t)
     mean = float(steps.mean())
-    # nine digits: 0.02 shall not come out as 0.019999999999999997
+    # nine digits: 0.02, not 0.019999999999999997
     return float(f"{mean:.9g}") if np.abs(steps - mean).max() <= 0.01 * mean else None
 
 
-_USED: Final = 0.05  #: share of gravity that a record has which someone uses as it stands
+_USED: Final = 0.05  #: fraction of gravity above which an unscaled record is plausible
 
-#: what of a file acts, and when
+#: items that select a part of the file and its time
 FIELDS: Final = (
     Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="format of the file"),
     Field(

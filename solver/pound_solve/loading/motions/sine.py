@@ -32,8 +32,8 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     ----------
     card_values : mapping
         Bound values of the card's fields.
-    context : Context
-        Its `duration` ends a sine that is left without one.
+    context : LoadingContext
+        Its `duration` ends a sine without DURATION.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 
     steady_v, steady_d = -a / w * np.cos(_Long(phase)), -a / w**2 * np.sin(_Long(phase))
     v0 = steady_v if card_values.get("VELOCITY0") is None else _Long(card_values["VELOCITY0"])
-    # the ground is on its steady path at START, having moved there at v0
+    # the ground reaches its steady motion at START, moving at v0 before
     d0 = (
         steady_d - v0 * start
         if card_values.get("DISPLACEMENT0") is None

@@ -26,8 +26,8 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
 from pound_solve.numerics.types import Array
 
-LIKE_G: Final = (0.1, 1.2)  #: numbers that are shares of gravity of earthquakes
-WEAK: Final = 0.06  #: the same, below which an earthquake does nothing
+LIKE_G: Final = (0.1, 1.2)  #: usual peaks of earthquakes in units of gravity
+WEAK: Final = 0.06  #: peak in units of gravity below which an earthquake has no effect
 MOST_SAMPLES: Final = 10_000_000
 
 
@@ -38,7 +38,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     ----------
     card_values : mapping
         Bound values of the card's fields.
-    context : Context
+    context : LoadingContext
 
     Raises
     ------
@@ -76,7 +76,7 @@ def of_samples(
     a: Array,
     facts: Mapping[str, Any],
 ) -> Motion:
-    """Motion of accelerations `a` [L/T^2] at the times `t` that a card asks for, see `samples`."""
+    """Motion of a card with accelerations `a` [L/T^2] at the times `t`, see `samples`."""
     info = {
         "kind": spec.name,
         "name": f"{spec.name} SEED={int(card_values['SEED'])}",
@@ -150,7 +150,7 @@ def envelope(t: Array, rise: float, strong: float, decay: float) -> Array:
     return up * down
 
 
-#: items of every motion that noise under an envelope makes
+#: items of all motions made from noise under an envelope
 ENVELOPE: Final = (
     Field("SEED", Kind.INT, default=1, lo=0, doc="seed of the noise; the same seed gives the same motion"),
     Field("DT", Kind.REAL, "T", default=0.01, above=0, doc="sampling interval"),

@@ -32,12 +32,12 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 def lines(points: Sequence[float]) -> Piecewise:
     """Straight lines between points ``t0, f0, t1, f1, ...``; zero before the first and after the last.
 
-    A time that stands twice is a jump from the one value to the other.
+    A repeated time is a jump from the first value to the second.
 
     Raises
     ------
     RecordError
-        R405 for half a pair, times that descend or begin before 0, a time that stands three times, or a
+        R405 for half a pair, times that descend or begin before 0, a time given three times, or a
         slope beyond the largest number.
     """
     t, f = points[::2], points[1::2]

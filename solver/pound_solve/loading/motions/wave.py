@@ -1,8 +1,8 @@
-"""Travelling waves: one motion that reaches the supports one after the other.
+"""Travelling waves: one motion that reaches the supports at different times.
 
 A wave that runs along x at the apparent speed c arrives at a support at ``(x - x0) / c`` after the support
-x0 that it reaches first.  Every support gets the same motion, that much later: nothing is interpolated, and
-with c towards infinity all of them move at once.
+x0 that it reaches first.  Each support has the same motion, delayed by this time, without interpolation;
+for infinite c all supports move together.
 
 References
 ----------

@@ -72,7 +72,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 
 
 def _line(lines: list[str], pattern: re.Pattern[str]) -> tuple[str, str, int] | None:
-    """Word that a pattern finds, what it is and its line number."""
+    """Match of a pattern, its meaning and its line number."""
     matches = ((m, number) for number, line in enumerate(lines, 1) if (m := pattern.search(line)))
     return next(((m[1], m[0].partition(":")[0].strip().lower(), number) for m, number in matches), None)
 

@@ -1,4 +1,4 @@
-"""AUTO: look at the first lines of the file and read it as the format that they show."""
+"""AUTO: recognise the format of a file by its first lines, and read it as such."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pound_solve.loading.records.base import Format, RawRecord, RecordError, hea
 
 
 def sniff(head: str) -> bool:
-    """Never: AUTO tries the others."""
+    """Return False: AUTO tries the other formats."""
     return False
 
 
@@ -21,7 +21,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     Raises
     ------
     RecordError
-        R402 where no format takes the file, else what the format's own reader raises.
+        R402 if no format matches the file, else any error of the format's reader.
     """
     if not text.strip():
         raise RecordError("R402", "the file is empty")

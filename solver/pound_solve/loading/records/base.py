@@ -1,12 +1,12 @@
-"""What every record format shares: the samples as read, the format's two functions, and the errors.
+"""Common parts of all record formats: the samples as read, the two functions of a format, and errors.
 
 Codes of :class:`RecordError`:
 
 ====== ===================================================================================
 R401   the record is not found
 R402   the file cannot be read: format not recognised, no finite number, times in disorder
-R403   the file holds another number of values than it declares
-R404   a value is beyond any record
+R403   the number of values in the file differs from the declared one
+R404   a value exceeds that of any record
 R405   an item of the card is missing, or does not fit the file
 ====== ===================================================================================
 """
@@ -21,8 +21,8 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 
-HEAD: Final = 4096  #: characters that a sniffer sees at most
-#: bounds of steps, rates and factors of headers: beyond them, a number is no such thing
+HEAD: Final = 4096  #: largest number of characters passed to `sniff`
+#: bounds of steps, rates and factors in headers; numbers outside them are refused
 LEAST: Final = 1e-9
 MOST: Final = 1e9
 
@@ -35,9 +35,9 @@ class RecordError(Exception):
     code : str
         Number in the table at the head of this module.
     message : str
-        What is wrong, with line and counts where they are known.
+        Description of the error, with line and counts where known.
     hint : str
-        What to do about it, or empty.
+        Remedy, or empty.
     item : str
         Item of the card that is at fault.
     """
@@ -59,7 +59,7 @@ class RecordError(Exception):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RawRecord:
-    """The samples of one component as they stand in the file.
+    """The samples of one component as in the file.
 
     Attributes
     ----------
@@ -70,9 +70,9 @@ class RawRecord:
     times : ndarray, shape (n,), or None, [s]
         Times of the samples where the file gives them.
     unit : str or None
-        ``G``, ``M/S2``, ``CM/S2`` or ``MM/S2``; None where the file does not say.
+        ``G``, ``M/S2``, ``CM/S2`` or ``MM/S2``; None if the file names no unit.
     declared : int or None
-        Number of values that the file's header promises.
+        Number of values stated in the file's header.
     component : str
         Name of the component, or empty.
     title : tuple of str
@@ -106,13 +106,13 @@ class RawRecord:
         return self.dt * np.arange(len(self.values), dtype=np.float64)
 
     def checked(self) -> RawRecord:
-        """Itself with `notes`, once count and times are found in order; every reader ends with this.
+        """Check count and times, and return the record with `notes`; every reader ends with this.
 
         Raises
         ------
         RecordError
-            R402 fewer than two samples, a step out of all bounds or times that do not increase, R403 wrong
-            count.
+            R402 for fewer than two samples, a step out of bounds or times that do not increase, R403 for a
+            wrong count.
         """
         n = len(self.values)
         if self.declared is not None and n != self.declared:
@@ -136,7 +136,7 @@ class RawRecord:
         return replace(self, notes=tuple(self._contradictions()))
 
     def _contradictions(self) -> Iterator[str]:
-        """Peak and length of the samples where they are not those that the header prints."""
+        """Remarks on a peak or a length of the samples that differs from that in the header."""
         if self.peak:
             stated, actual = abs(float(self.peak)), float(np.abs(self.values).max())
             # agencies print samples with five digits and take the peak before that
@@ -167,11 +167,11 @@ class Format:
     Attributes
     ----------
     sniff : function (head) -> bool
-        Whether a file that begins so (whole lines, at most `HEAD` characters) is of this format.
+        Whether a file with this head (whole lines, at most `HEAD` characters) has this format.
     read : function (text, options) -> RawRecord
         Samples out of the file's text; `options` are the values of the deck's card by field name.
     greedy : bool
-        The format has no words to be recognised by, only numbers, so it is tried after all the others.
+        Whether the format is recognised by numbers alone, and therefore tried after all others.
     """
 
     sniff: Callable[[str], bool]
@@ -183,5 +183,5 @@ def head(text: str) -> str:
     """First whole lines of a text, at most `HEAD` characters."""
     if len(text) <= HEAD:
         return text
-    # a line cut in two could turn a table into a ragged one
+    # a line cut in two could make a table look uneven
     return text[: text.rfind("\n", 0, HEAD) + 1] or text[:HEAD]

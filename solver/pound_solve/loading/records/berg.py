@@ -15,7 +15,7 @@ _PER_LINE: Final = 8
 
 
 def sniff(head: str) -> bool:
-    """Lines of eight numbers in which every other one increases, over the ends of lines too."""
+    """Return whether lines have eight numbers, of which every other one increases from line to line too."""
     _, data, _ = split_head(head.splitlines())
     rows = [line for line in data if line.strip()]
     if not rows or not all(map(is_data, rows)):
@@ -25,7 +25,7 @@ def sniff(head: str) -> bool:
     except RecordError:
         return False
     full = all(n == _PER_LINE for n in counts[:-1]) and counts[-1] <= _PER_LINE and counts[-1] % 2 == 0
-    # one short line could as well be a row of a table
+    # one short line may be a row of a table
     return full and counts[0] == _PER_LINE and bool((np.diff(values[::2]) > 0).all())
 
 

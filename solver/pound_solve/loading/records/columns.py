@@ -1,7 +1,7 @@
 """Tables of numbers: a column of samples, or time and acceleration, or many columns.
 
 Without DT the first column, or that of TIMES, is the time [s]; with DT no column is.  Blanks, tabs, commas
-or semicolons part the numbers.  Lines at the head that are not all numbers are titles, and what follows a
+or semicolons separate the numbers.  Lines at the head that are not all numbers are titles; text after
 ``#`` is a comment.
 """
 
@@ -35,7 +35,7 @@ FIELDS: Final = (
 
 
 def sniff(head: str) -> bool:
-    """After the titles nothing but numbers, the same count in every line (the last may be short)."""
+    """Return whether all lines after the titles have the same count of numbers (the last may be short)."""
     _, data, _ = split_head(head.splitlines())
     rows = [line for line in data if line.strip()]
     if not rows or not all(map(is_data, rows)):
@@ -45,7 +45,7 @@ def sniff(head: str) -> bool:
 
 
 def _counts(rows: list[str]) -> list[int]:
-    """How many numbers each row holds; zeros where they cannot be read."""
+    """Count of numbers in each row; all zero if a row cannot be read."""
     try:
         return parse(rows)[1]
     except RecordError:

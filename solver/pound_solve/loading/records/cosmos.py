@@ -3,7 +3,7 @@
 A component has lines of text, whose number the first one gives, then integers, reals and comments, each
 after a line that gives their number, lines and columns, then samples after a line that gives their number,
 unit and columns.  Of the integers, the 54th is the azimuth from north or a code; of the reals, the 62nd is
-the step in ms, the 63rd the length in s and the 64th the peak; -999 stands for what is not known.
+the step in ms, the 63rd the length in s and the 64th the peak; -999 marks unknown values.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
     Raises
     ------
     RecordError
-        R402 where the integers or reals are not there.
+        R402 if integers or reals are missing.
     """
     for part, first in parts(lines, _OPENING.match):
         numbers = {

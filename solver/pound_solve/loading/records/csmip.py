@@ -100,7 +100,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
 
 
 def _step(in_reals: str, in_line: str, row: int) -> float:
-    """Step [s]: the reals print more digits of it, the line over the samples is for the eye."""
+    """Step [s]: the reals have more digits of it than the line above the samples."""
     shown = positive(in_line, "the step [s]", row)
     if not printed(in_reals) or float(printed(in_reals)) <= 0:
         return shown

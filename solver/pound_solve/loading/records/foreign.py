@@ -1,7 +1,7 @@
-"""Files that are known and not read: what they are, and what to do with them.
+"""Known but unsupported files: their kinds, and remedies.
 
-A binary file shows itself by its first bytes, whatever FORMAT a card names; a text by its first lines, and
-only to AUTO, since FORMAT=COLUMNS may make sense of one.
+A binary file is recognised by its first bytes for every FORMAT; a text by its first lines, for AUTO only,
+because FORMAT=COLUMNS may be able to read it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _CONVERT: Final = (
     "convert it to two columns of time and acceleration with the instrument's factor applied, "
     "or get the agency's text file"
 )
-#: place of the signature, signature, what the file is, cure
+#: offset of the signature, signature, kind of file, remedy
 _SIGNATURES: Final = (
     (0, rb"\x1f\x8b", "a gzip archive", _UNPACK),
     (0, rb"PK\x03\x04", "a zip archive or a workbook", _UNPACK + ", or save the sheet as CSV"),
@@ -34,7 +34,7 @@ _SIGNATURES: Final = (
 _CORRECTED: Final = (
     "get the corrected file (.V2) of the same record, or convert it to two columns of time and acceleration"
 )
-#: pattern of the first lines, what the file is, cure
+#: pattern of the first lines, kind of file, remedy
 _TEXTS: Final = (
     (
         r"\s*<(?:!doctype|html|\?xml)",
@@ -49,7 +49,7 @@ _TEXTS: Final = (
 
 
 def refuse_binary(data: bytes) -> None:
-    """Refuse what is no text.
+    """Raise RecordError if a file is not text.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def refuse_binary(data: bytes) -> None:
     Raises
     ------
     RecordError
-        R402, which names the kind of the file and the cure.
+        R402, with the kind of the file and the remedy.
     """
     for place, signature, kind, cure in _SIGNATURES:
         if re.match(signature, data[place : place + 16]):
@@ -70,7 +70,7 @@ def refuse_binary(data: bytes) -> None:
 
 
 def unread(head: str) -> RecordError | None:
-    """The refusal of a text that is known and not read, or None."""
+    """Error for a text of a known but unsupported kind, or None."""
     for pattern, kind, cure in _TEXTS:
         if re.match(pattern, head, re.IGNORECASE):
             return RecordError("R402", f"the file is {kind}, which is not read", cure)

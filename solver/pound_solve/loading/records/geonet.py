@@ -44,7 +44,7 @@ class _Block:
 
 
 def sniff(head: str) -> bool:
-    """The first line speaks of an accelerogram of GNS Science."""
+    """Return whether the first line names an accelerogram of GNS Science."""
     line = head.lstrip().partition("\n")[0]
     return bool(_OPENING.search(line)) and "gns" in line.lower()
 
@@ -63,7 +63,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     RecordError
         R402, R403 where a block does not hold what its integers count, R405 for an unknown component.
     """
-    # the words come back in the text of a header, but not on its first line
+    # the words occur again in the text of a header, but not on its first line
     blocks = [_Block(*part) for part in parts(text.splitlines(), _OPENING.search)]
     if not blocks:
         raise RecordError(

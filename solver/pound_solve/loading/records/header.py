@@ -20,7 +20,7 @@ FIELDS: Final = (
     ),
 )
 
-# longer ones would neither be a header's nor fit a number of the machine
+# longer numbers occur in no header and may overflow
 _INTEGER: Final = re.compile(r"\d{1,9}")
 _REAL: Final = re.compile(r"[+-]?(?:\d{1,12}\.?\d{0,12}|\.\d{1,12})(?:E[+-]?\d{1,2})?")
 _DIVISION: Final = re.compile(r"/S(?:EC)?/S(?:EC)?\b")
@@ -30,7 +30,7 @@ _UNITS: Final = {"G": "G", "GAL": "CM/S2", "M/S2": "M/S2", "CM/S2": "CM/S2", "MM
 
 
 def count(word: str, what: str, line: int) -> int:
-    """Number of things that a header states.
+    """Integer count stated in a header.
 
     Parameters
     ----------
@@ -51,13 +51,13 @@ def count(word: str, what: str, line: int) -> int:
 
 
 def printed(word: str) -> str:
-    """A word of a header as ``float`` takes it, empty where it is no number."""
+    """A word of a header in a form that ``float`` accepts; empty if it is no number."""
     plain = word.strip().upper().replace("D", "E")
     return plain if _REAL.fullmatch(plain) else ""
 
 
 def positive(word: str, what: str, line: int) -> float:
-    """Quantity that a header states and that is above zero, such as a step or a rate.
+    """Positive quantity stated in a header, such as a step or a rate.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def unit(words: str) -> str | None:
     Returns
     -------
     str or None
-        None where it is none of the known ones.
+        None for an unknown unit.
     """
     plain = words.strip().rstrip(".").upper()
     return _UNITS.get(_SQUARE.sub("/S2", _DIVISION.sub("/S2", plain)))
@@ -114,7 +114,7 @@ def filled(lines: Sequence[str], marks: str | None = None) -> tuple[str, ...]:
 
 
 def choose(names: Sequence[str], wanted: object) -> int:
-    """0-based place of the component that a card asks for.
+    """0-based index of the component requested by a card.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def choose(names: Sequence[str], wanted: object) -> int:
 
 
 def side_by_side(lines: Sequence[str], first: int, names: Sequence[str], k: int) -> Array:
-    """Samples of one of the components that stand side by side.
+    """Samples of one component in a file with components in columns.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def side_by_side(lines: Sequence[str], first: int, names: Sequence[str], k: int)
     names : sequence of str
         Components, from left to right.
     k : int
-        0-based place of the one that is asked for.
+        0-based index of the requested component.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def side_by_side(lines: Sequence[str], first: int, names: Sequence[str], k: int)
     Raises
     ------
     RecordError
-        R402 for a row that holds another number of samples.
+        R402 for a row with a different number of samples.
     """
     values, counts = parse(lines, first)
     for number, columns in enumerate(counts, first):

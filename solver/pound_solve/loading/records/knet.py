@@ -1,8 +1,8 @@
 """K-NET and KiK-net files of NIED, Japan (``.NS``, ``.EW1`` and so on): one component as integers.
 
-Seventeen lines, each a name in 18 columns and what follows it, then integers, eight a line.  Times the
-``Scale Factor`` they are accelerations in gal, around the zero of the instrument: the mean of all of them
-is no motion of the ground and is taken off, as it is for the ``Max. Acc.`` of the header.
+Seventeen lines, each a name in 18 columns and its value, are followed by integers, eight per line.
+Multiplied by the ``Scale Factor`` they are accelerations in gal, including the offset of the instrument:
+their mean is subtracted, as for the ``Max. Acc.`` of the header.
 """
 
 from __future__ import annotations

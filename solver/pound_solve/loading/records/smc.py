@@ -4,7 +4,7 @@ Eleven lines of text, six of eight integers in columns of 10, ten of five reals 
 begin with ``|``, then samples, eight a line in columns of 10.  Of the integers, the 13th is the angle from
 the vertical, the 14th the azimuth from north, the 16th counts the ``|`` lines and the 17th the numbers of
 the data.  Of the reals, the 2nd is the rate, and the 30th and 32nd are the largest and the least sample.
-Film that was read at uneven times has no rate: its data are times and accelerations in turn.
+Film digitised at uneven times has no rate: its data are alternating times and accelerations.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _FIRST_REAL, _BODY = _TEXT + _INTEGERS, _TEXT + _INTEGERS + _REALS
 _INTEGER_WIDTH, _REAL_WIDTH, _WIDTH = 10, 15, 10
 _PER_LINE: Final = 8
 _NOT_GIVEN: Final = "-32768"
-_NO_REAL: Final = 1e38  # 1.7e38 stands for a number that is not given
+_NO_REAL: Final = 1e38  # 1.7e38 marks a missing number
 
 
 def sniff(head: str) -> bool:
@@ -70,7 +70,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     if _given(reals[1]):
         dt = 1 / positive(reals[1], "the rate [1/s]", _FIRST_REAL + 1)
     else:
-        # writers left a line of their buffer behind the last pair
+        # some writers left a line of their buffer after the last pair
         if len(values) - declared in range(1, _PER_LINE + 1):
             values = values[:declared]
         if len(values) % 2:

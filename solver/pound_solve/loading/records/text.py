@@ -1,11 +1,11 @@
-"""Numbers out of the text of a record, by a fast path where the file is clean, else word by word.
+"""Parsing of the numbers of a record: a fast path for clean files, else word by word.
 
 Old Fortran programs write exponents with a D, leave no blank before a minus sign in fixed columns, and
-print asterisks where a number does not fit.  The first two are read right, the third is an error.
+print asterisks where a number does not fit.  The first two are read, the third is an error.
 
-Spreadsheets of many countries write a comma for the decimal point.  Where blanks, tabs or semicolons part
-the numbers, such commas are read as points.  Where nothing but commas stands between digits, a file cannot
-say which of them part numbers: it is refused once a fraction such as ``,05`` shows that some do not.
+Spreadsheets of many countries write a decimal comma.  If blanks, tabs or semicolons separate the numbers,
+such commas are read as points.  If only commas separate digits, their role is ambiguous: the file is
+refused if a fraction such as ``,05`` shows that some are decimal.
 """
 
 from __future__ import annotations
@@ -26,31 +26,31 @@ _OTHER_SEPARATORS: Final = str.maketrans(";\t", "  ")
 _D_EXPONENT: Final = str.maketrans("Dd", "EE")
 _EXPONENT: Final = r"(?:[EeDd][+-]?\d+)?"
 _NUMBER: Final = re.compile(rf"[+-]?(?:\d+(?:\.\d*)?|\.\d+){_EXPONENT}")
-# only numbers with a point can be glued, lest a date such as 1940-05-18 pass for three of them
+# only numbers with a point may lack a blank between them: the date 1940-05-18 is not three numbers
 _POINTED: Final = rf"(?:\d+\.\d*|\.\d+){_EXPONENT}"
 _GLUED: Final = re.compile(rf"[+-]?{_POINTED}(?:[+-]{_POINTED})+")
 # a comma that is no decimal one has no digit before it or none after it
 _PARTING: Final = re.compile(r"(?<!\d),|,(?!\d)")
 _FRACTION: Final = re.compile(r"\d+,0\d+")
-# no numbers, but they stand where numbers should: such a line is data gone wrong, not a title
+# not numbers, but in place of numbers: such a line is damaged data, not a title
 _SPOILT: Final = r"[+-]?(?:nan|inf|infinity)|\*+"
 _NUMERIC: Final = re.compile(rf"{_NUMBER.pattern}|{_GLUED.pattern}|{_SPOILT}", re.IGNORECASE)
 
 
 def is_data(line: str) -> bool:
-    """Whether a line holds numbers and nothing else."""
+    """Whether a line consists of numbers alone."""
     words = line.translate(_SEPARATORS).split()
     return bool(words) and all(_NUMERIC.fullmatch(word) for word in words)
 
 
 def split_head(lines: Sequence[str], comment: str = "#") -> tuple[list[str], list[str], int]:
-    """Part a file into its title lines and its data.
+    """Split a file into its title lines and its data.
 
     Parameters
     ----------
     lines : sequence of str
     comment : str
-        What follows this character in a line is dropped; line numbers stay as they are.
+        Starts a comment, which is dropped; line numbers do not change.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def parse(lines: Sequence[str], first: int = 1) -> tuple[Array, list[int]]:
     -------
     values : ndarray, shape (n,)
     counts : list of int
-        How many of them stand in each line.
+        Count of numbers in each line.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def parse(lines: Sequence[str], first: int = 1) -> tuple[Array, list[int]]:
     rows = [line.translate(_SEPARATORS).split() for line in lines]
     try:
         values = np.array(list(chain.from_iterable(rows)), dtype=np.float64)
-        # Python takes 1_000 for a number, a record never means it
+        # Python accepts 1_000 as a number, which no record means
         clean = bool((np.abs(values) < _BEYOND).all()) and not any("_" in line for line in lines)
     except ValueError:
         clean = False
@@ -106,7 +106,7 @@ def parse(lines: Sequence[str], first: int = 1) -> tuple[Array, list[int]]:
 
 
 def fixed(lines: Sequence[str], width: int) -> list[str]:
-    """The same lines with a blank between columns of `width` characters, which need none in Fortran."""
+    """The same lines with a blank between columns of `width` characters, which Fortran omits."""
     return [" ".join(line[k : k + width] for k in range(0, len(line.rstrip()), width)) for line in lines]
 
 

@@ -1,4 +1,4 @@
-"""Conduct of a study: hands runs out, takes their results, and survives processes that die."""
+"""Execution of a study: submits runs, collects results, and survives the death of processes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pound_solve.sweep.execution.work import Settings, carry_out
 from pound_solve.sweep.study.run import Case, Run
 
 INTERVAL: Final = 0.1  #: between two looks at the time [s]
-DEATHS: Final = 2  #: of processes that a run may cause when it is alone
+DEATHS: Final = 2  #: process deaths after which a run executed alone counts as failed
 DIED: Final = "its process died: the system or the limit of time ended it, perhaps it took too much memory"
 
 
@@ -27,11 +27,11 @@ class State:
     Attributes
     ----------
     total, done, failed : int
-        Runs that are to be done; those that have ended; those of them that failed.
+        Numbers of runs to execute, ended and failed.
     began : float
         Reading of `time.monotonic`.
     ending : bool
-        The user has interrupted: runs that have begun are waited for.
+        Whether the user has interrupted the sweep, so that only runs in progress are completed.
     """
 
     total: int
@@ -42,7 +42,7 @@ class State:
 
     @property
     def text(self) -> str:
-        """One line."""
+        """Progress as one line of text."""
         passed = time.monotonic() - self.began
         rate = self.done / passed if passed > 0.0 else 0.0
         failed = f"   {self.failed} failed" if self.failed else ""
@@ -56,14 +56,14 @@ class State:
 
 @dataclass
 class Lane:
-    """One executor and the runs that it has been given.
+    """One executor and the runs submitted to it.
 
     Attributes
     ----------
     executor : Executor
     flying : dict of Future to Run
     case : Case or None
-        That of its latest run, whose structure its process keeps.
+        Case of its latest run, whose structure its process keeps.
     """
 
     executor: Executor
@@ -72,11 +72,11 @@ class Lane:
 
 
 class Conductor:
-    """Carries runs out, and ends its processes where the block of a ``with`` ends.
+    """Executes runs; a context manager that ends its processes on exit.
 
-    The first run goes alone: what it compiles, the others load.  A process takes the runs of one case as
-    long as there are any, so that it prepares few structures.  Runs whose processes die are tried again
-    one by one, so that it shows which of them is to blame.
+    The first run is executed alone, because it compiles what the others load.  A process executes the runs
+    of one case in sequence, so that it prepares few structures.  Runs whose processes die are repeated one
+    by one, to identify the cause.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Conductor:
     settings : Settings
     journal : Journal
     report : callable
-        Told the `State` now and then; it may raise `KeyboardInterrupt`.
+        Called with the `State` at intervals; it may raise `KeyboardInterrupt`.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Conductor:
         self._lanes.clear()
 
     def run(self, runs: Iterable[Run]) -> State:
-        """Carry runs out; after an interruption, end those that have begun.
+        """Execute runs; after an interruption, complete those in progress.
 
         Raises
         ------
@@ -131,11 +131,11 @@ class Conductor:
 
     @property
     def _flying(self) -> dict[Future[Entry], Lane]:
-        """Runs that were handed out and have not been taken back: the lane of each future."""
+        """Submitted runs without a result yet: the lane of each future."""
         return {future: lane for lane in self._lanes for future in lane.flying}
 
     def _round(self, state: State) -> None:
-        """Hand runs out, wait for some, take their results; give a lane whose executor broke a new one."""
+        """Submit runs, wait for some, collect their results, and replace broken executors."""
         for lane in self._open():
             self._fill(lane)
         self.report(state)
@@ -162,11 +162,11 @@ class Conductor:
         return [] if self._flying else self._lanes[:1]
 
     def _ahead(self) -> int:
-        """Number of runs that wait."""
+        """Number of runs not yet submitted."""
         return sum(map(len, self._waiting.values()))
 
     def _fill(self, lane: Lane) -> None:
-        """Hand runs to a lane."""
+        """Submit runs to a lane."""
         most = 1 if self._suspects or not self._begun else self.engine.ahead
         while len(lane.flying) < most and (self._suspects or self._waiting):
             run = self._suspects.popleft() if self._suspects else self._next(lane)
@@ -179,7 +179,7 @@ class Conductor:
             lane.flying[future], lane.case = run, run.case
 
     def _renew(self, lane: Lane) -> None:
-        """Give a lane another executor for the one that broke."""
+        """Replace the broken executor of a lane."""
         lane.executor.shutdown(wait=False, cancel_futures=True)
         lane.executor = self.engine.start()
 
@@ -197,7 +197,7 @@ class Conductor:
         return run
 
     def _take(self, future: Future[Entry], run: Run, lone: bool, state: State) -> bool:
-        """Take the result of a run; return False where its process died."""
+        """Collect the result of a run; return False if its process died."""
         try:
             entry = future.result()
         except CancelledError:  # by an interruption, or by a scheduler that has gone
@@ -229,7 +229,7 @@ class Conductor:
         return True
 
     def _note(self, entry: Entry, state: State) -> None:
-        """Enter a failure in the journal that the process of the run could not enter itself."""
+        """Record a failure in the journal on behalf of a process that could not."""
         self.journal.add(entry)
         self._count(entry, state)
 

@@ -19,32 +19,32 @@ from typing import Any, Final, NamedTuple, TypeVar
 from pound_solve.numerics import threads
 
 DASK: Final = "dask"
-AHEAD, MANY = 2, 1000  #: runs that are handed out: to each process, and to a scheduler
+AHEAD, MANY = 2, 1000  #: runs submitted at a time to each process, and to a scheduler
 HELD_BACK: Final = (signal.SIGINT,)
-PATIENCE: Final = 60.0  #: with a scheduler that does not answer [s]
+PATIENCE: Final = 60.0  #: timeout for a scheduler that does not answer [s]
 
 
 _T = TypeVar("_T")
 
 
 class ExecutorError(Exception):
-    """Raised where there is no such executor or it cannot be reached; the text says why."""
+    """Raised if an executor does not exist or cannot be reached; the text states why."""
 
 
 class Engine(NamedTuple):
-    """Settings for carrying out runs: what makes the executors, and how many runs each is given.
+    """Settings of the execution: factory of the executors, and number of runs submitted to each.
 
     Attributes
     ----------
     start : callable
-        Makes the executor, anew where one has broken.
+        Makes an executor, also to replace a broken one.
     workers : int
-        Runs at a time, as far as it is known.
+        Number of concurrent runs, as far as known.
     lanes : int
         Executors: one for each process of this machine, so that each keeps its own structures; a scheduler
         is one.
     ahead : int
-        Runs that an executor is given at a time, so that no worker is idle.
+        Runs submitted to an executor in advance, so that no worker is idle.
     notes : bool
         Whether its processes write the journal themselves.
     """
@@ -57,15 +57,15 @@ class Engine(NamedTuple):
 
 
 def engine(name: str, workers: int) -> Engine:
-    """Make the engine that a name stands for.
+    """Make the engine of that name.
 
     Parameters
     ----------
     name : str
         Empty for processes of this machine; ``dask://host:port`` for the workers of that scheduler, and
-        ``dask`` for a scheduler with workers of its own on this machine.
+        ``dask`` for a new scheduler with workers on this machine.
     workers : int
-        Processes; 0 for as many as there are processors.  A scheduler has workers of its own.
+        Number of processes; 0 for one per processor.  Not used with an existing scheduler.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def engine(name: str, workers: int) -> Engine:
 
 
 def processors() -> int:
-    """Processors that this process may use."""
+    """Number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -167,6 +167,6 @@ class DaskExecutor(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the connection; what has not ended is cancelled unless it is waited for."""
+        """End the connection; runs that have not ended are cancelled unless waited for."""
         self._inner.shutdown(wait=wait and not cancel_futures)
         self._client.close()

@@ -1,8 +1,8 @@
-"""Results of runs, and the journal in which every process enters those of its own.
+"""Results of runs, and the journal in which each process records its results.
 
-A process appends one line to a file of its own when a run has ended, by one call of the system: whoever is
-killed loses at most the runs that have not ended.  A line that was cut short, by a full disk or the loss of
-power, is passed over, and its run counts as not run.
+When a run has ended, its process appends one line to its own file in one system call: a kill loses at most
+the runs in progress.  Truncated lines, from a full disk or a power failure, are skipped, and their runs
+count as not run.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ class Entry:
     status : str
         One of `results.sweep_file.ENDS`.
     message : str
-        Why it stopped or failed.
+        Reason why it stopped or failed.
     doubt : str
         Checks of the run that call for a look.
     reached : float
         Last time of the history [T]; NaN without one.
     cpu, solve : float
-        CPU time of all of it, and of the method alone [s].
+        CPU time of the whole run, and of the method alone [s].
     values : mapping
         Quantities, see `quantities`.
     at : float
-        When it ended [s since 1970].
+        Time of its end [s since 1970].
     histories : mapping
-        Of those that are kept: times and rows, labels and unit; not in the journal's line.
+        Kept histories: times and rows, labels and unit; stored beside the journal, not in its line.
     """
 
     identity: str
@@ -82,7 +82,7 @@ class Journal:
         Raises
         ------
         OSError
-            The disk is full, or the folder cannot be written; nothing is noted then.
+            The disk is full, or the folder cannot be written; nothing is recorded then.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         if entry.histories:
@@ -103,9 +103,9 @@ class Journal:
                 raise
 
     def _keep(self, entry: Entry) -> None:
-        """Write the histories of a run beside the journal, whole or not at all."""
+        """Write the histories of a run beside the journal, atomically."""
         path = self.histories(entry.identity)
-        memory = BytesIO()  # an archive whose writing fails may raise other errors than the system's
+        memory = BytesIO()  # a failed write of an archive may raise errors other than OSError
         np.savez(memory, allow_pickle=False, **entry.histories)
         write(path, memory.getbuffer(), path.with_suffix(f".{os.getpid()}.part"))
 
@@ -114,7 +114,7 @@ class Journal:
         return self.folder / f"{identity}.npz"
 
     def entries(self) -> dict[str, Entry]:
-        """Result of every run by its identity: of several the one with status done, else the latest.
+        """Result of each run by identity: the one with status done if any, else the latest.
 
         Their values, which may be many, stay in the journal, see `values`.
         """
@@ -139,7 +139,7 @@ class Journal:
                     try:
                         fields: dict[str, Any] = json.loads(line)
                         yield Entry(**fields)
-                    except (ValueError, TypeError):  # a line that was cut short
+                    except (ValueError, TypeError):  # a truncated line
                         continue
 
 

@@ -1,7 +1,7 @@
 """Limits of time and memory of one run.
 
-Time is CPU time of the process, so that a machine that sleeps or does other work ends no run.  A run that
-does not look at the clock, because something hangs, ends with its process.
+Time is CPU time of the process, so that sleep or other load of the machine ends no run.  A run that hangs,
+and therefore does not check the clock, is ended with its process.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
 MB: Final = 2**20
-#: a run that does not look at the clock is ended after so many limits and so many seconds more
+#: multiple of the limit, and additional seconds, after which a run that does not check the clock is ended
 LIMITS, GRACE = 10.0, 60.0
 _HELD: Final = Path("/proc/self/statm")
 
 
 class TooLongError(Exception):
-    """Raised where a run takes longer than it may."""
+    """Raised if a run exceeds its time limit."""
 
 
 class Clock:
-    """Takes the progress of a run and raises `TooLongError` where its time is up.
+    """Progress callback of a run that raises `TooLongError` when its time is up.
 
-    The time counts from the first call on: a process that loads kernels has not begun.
+    Time counts from the first call on, so that loading of kernels is excluded.
 
     Parameters
     ----------
     seconds : float or None
-        CPU time that the run may take [s].
+        Limit of CPU time [s].
     """
 
     def __init__(self, seconds: float | None) -> None:
@@ -55,14 +55,14 @@ class Clock:
 
 @contextmanager
 def within(seconds: float | None, memory: float | None) -> Iterator[Clock]:
-    """Limit a run within the block; yield the clock that its progress must be reported to.
+    """Limit a run within the context; yield the clock to which its progress must be reported.
 
     Parameters
     ----------
     seconds : float or None
         CPU time [s].
     memory : float or None
-        What the run may take beside what the process holds already [MB]; kept on Linux only.
+        Limit of memory in addition to that already used by the process [MB]; enforced on Linux only.
     """
     with ExitStack() as limits:
         if seconds is not None:

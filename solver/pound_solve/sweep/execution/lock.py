@@ -1,4 +1,4 @@
-"""One sweep at a time writes a folder; pieces of one sweep may share it."""
+"""Lock of a sweep's folder: one sweep at a time writes it; pieces of one sweep may share it."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ except ImportError:  # Windows
 
 
 class BusyError(UserError):
-    """Raised where another sweep writes the folder."""
+    """Raised if another sweep writes the folder."""
 
     status = 3
 
 
 @contextmanager
 def locked(folder: Path, piece: str = "") -> Iterator[None]:
-    """Hold a folder; a piece holds its own name, and shares the folder with other pieces.
+    """Lock a folder within the context; a piece locks its name, and shares the folder with other pieces.
 
-    The system frees what a killed process has held.
+    The system releases the locks of a killed process.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
 
 
 def _lock(path: Path) -> IO[bytes]:
-    """Open a file that is to be locked; a pipe, which would wait for a reader, is refused."""
+    """Open a file for locking; a pipe, which would block until it has a reader, is refused."""
     if path.exists():
         opened(path).close()
     return path.open("ab")

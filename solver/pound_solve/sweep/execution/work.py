@@ -1,7 +1,7 @@
-"""Work of a process on one run: prepare, analyse, keep the quantities; within limits.
+"""One run within a process: prepare, analyse, extract the quantities; within limits.
 
-Runs of one case, a deck with its PARAMs, share its parsed deck, its assembled structure, its static state,
-its modes and the sums of forces that are recorded: the first run of a process makes them.
+Runs of one case, a deck with its PARAMs, share the parsed deck, the assembled structure, the static state,
+the modes and the recorded sums of forces, which the first run of a process computes.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Settings:
     Attributes
     ----------
     journal : Path or None
-        Where the process enters the result of a run; None: the process that asked for the run does.
+        Journal to which the process writes the result; None: the calling process writes it.
     seconds, memory : float or None
         CPU time [s] and memory [MB] that a run may take.
     histories : tuple of str
@@ -64,7 +64,7 @@ class Settings:
 
 
 class ChangedError(Exception):
-    """Raised where a file has changed since the study was read."""
+    """Raised if a file has changed since the study was read."""
 
 
 class Kept:
@@ -74,10 +74,10 @@ class Kept:
         self.rows = dict[str, list[Fields]]()
 
     def text(self, name: str, text: str) -> None:
-        """Do nothing: the texts of the input are those of the study."""
+        """Do nothing: the study holds the texts of the input."""
 
     def tables(self, stage: Stage, record: RunRecord) -> None:
-        """Keep the rows of the tables of a stage that quantities are made from."""
+        """Keep the table rows of a stage from which quantities are extracted."""
         self.rows |= rows_at(stage, record)
 
     def start_history(self, layout: Layout, packed: bool = False) -> None:
@@ -91,19 +91,19 @@ class Kept:
         raise KeyError(name)
 
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
-        """A sweep keeps none."""
+        """Do nothing: a sweep keeps no close-ups."""
 
     def extremes(
         self, layout: Layout, bounds: Array, low: Mapping[str, Array], high: Mapping[str, Array]
     ) -> None:
-        """A sweep keeps none."""
+        """Do nothing: a sweep keeps no extremes."""
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
         """Do nothing: no run is restarted from a run of a sweep."""
 
 
 def carry_out(run: Run, settings: Settings) -> Entry:
-    """Carry a run out, enter its result in the journal, and return it.
+    """Execute a run, write its result to the journal, and return it.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def numbers() -> count[int]:
 
 
 def _carried_out(run: Run, settings: Settings) -> Entry:
-    """Carry a run out within its limits; every failure becomes part of the entry, see `carry_out`."""
+    """Execute a run within its limits; any failure becomes part of the entry, see `carry_out`."""
     began = time.process_time()
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")

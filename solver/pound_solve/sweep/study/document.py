@@ -23,7 +23,7 @@ _KEYS: Final = rf"{_KEY}(?:\s*\.\s*{_KEY})*"
 _ITEM: Final = re.compile(rf"\s*({_KEYS})\s*=")
 _TABLE: Final = re.compile(rf"\s*(\[\[?)\s*({_KEYS})\s*\]")
 _WHERE: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)")
-DEEPEST: Final = 20  #: names of an item; more take a time that grows with their square
+DEEPEST: Final = 20  #: most names of an item; the time of reading grows with their square
 #: what TOML calls the values, in words
 _WORDS: Final = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
 
@@ -63,19 +63,19 @@ def _names(keys: str) -> Path_:
 
 @dataclass
 class Document:
-    """A study as it was written, and what is wrong with it.
+    """A study file and its mistakes.
 
     Attributes
     ----------
     name : str
         Its file as the user gave it, or a word for the command line.
     folder : Path
-        From which its paths count.
+        Folder to which its paths are relative.
     values : dict
         As TOML gives them.
     places : dict of Span by path
     files : dict of str by name
-        Texts that places point into.
+        Texts to which places refer.
     diagnostics : list of Diagnostic
     """
 
@@ -111,7 +111,7 @@ class Document:
         """Add a diagnostic at the place where the file is not TOML."""
         lines = text.splitlines() or [""]
         where = _WHERE.search(message)
-        if where is None:  # it is about the depth or the length of something
+        if where is None:  # the error concerns the depth or the length of something
             line, column = max(range(len(lines)), key=lambda n: len(lines[n])) + 1, 1
         else:
             line, column = (int(where[1]), int(where[2])) if where[1] else (len(lines), 1)
@@ -191,7 +191,7 @@ class Document:
         root = Path(path.anchor) if path.anchor else self.folder
         try:
             return sorted(p.absolute() for p in root.glob(str(path.relative_to(path.anchor))))
-        except ValueError:  # it is no pattern
+        except ValueError:  # not a valid pattern
             return []
 
     def listed(self, path: Path_, kinds: tuple[type, ...]) -> list[Any]:
@@ -230,7 +230,7 @@ class Document:
 
 
 def _told(value: object) -> str:
-    """Value as a message shows it."""
+    """Text of a value for a message."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""Contacts of one run as pairs of bodies, with the data that rules for their separation need."""
+"""Contacts of one run as pairs of bodies, with the input of the separation rules."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pound_solve.structure.structure import Structure
 
 
 def nodes(structure: Structure) -> set[int]:
-    """Nodes of the contacts, whose displacements `rows` needs."""
+    """Nodes of the contacts, whose displacements `rows` requires."""
     elements = structure.model.elements
     contacts = (elements[s.element] for s in structure.laws if s.role.collides)
     return {node for element in contacts for node in (element.i, element.j) if node}

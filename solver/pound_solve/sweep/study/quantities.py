@@ -1,4 +1,4 @@
-"""Quantities that a sweep keeps of every run, each a column of a table of the report."""
+"""Quantities that a sweep keeps of each run, each from a column of a table of the report."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class Quantity:
     ----------
     name : str
     axis : str
-        What its labels are; empty for one number a run.
+        Meaning of its labels; empty for one number per run.
     unit : str
         Dimensions, as of a column.
     doc : str
     table : str
-        Table whose rows hold it.
+        Table that contains it.
     label : callable
-        Label of a row; empty for one number a run; None leaves the row out.  Of several rows with one label
+        Label of a row; empty for one number per run; None skips the row.  Of several rows with one label
         the largest value counts.
     value : callable
         Value in a row.
@@ -136,14 +136,14 @@ QUANTITIES: Final = (
         ("error_estimate", "-", "largest error of the peaks by the estimates of AUTO", _of("value")),
     )),
 )  # fmt: skip
-#: tables that the quantities are taken from
+#: tables from which the quantities are extracted
 SOURCES: Final[Mapping[str, Table[RunRecord]]] = MappingProxyType(
     {q.table: PAIRS if q.table == PAIRS.name else TABLES[q.table] for q in QUANTITIES}
 )
 
 
 def taken(rows: Mapping[str, list[Fields]]) -> Values:
-    """Quantities of one run from the rows of its tables; of rows with the same label the largest value."""
+    """Quantities of one run from its table rows; the largest value of rows with the same label."""
     values: Values = {}
     for q in QUANTITIES:
         by_label: dict[str, float] = {}

@@ -1,4 +1,4 @@
-"""The records of a study: found by name or pattern, read once to see that they can be, and scaled."""
+"""The records of a study: found by name or pattern, checked by reading them once, and scaled."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from pound_solve.loading.spectrum import pseudo_acceleration
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.run import RecordFile, Shaking
 
-#: items of [[motions]] that are none of a RECORD line
+#: items of [[motions]] that a RECORD line does not have
 FILES, LEVELS, OSCILLATOR = "files", ("scale", "pga", "sa"), ("period", "damping")
 NOT_OF_A_STUDY: Final = ("FILE", "SCALE", *MEETING)  #: of a RECORD line
 DAMPING: Final = 0.05
 
 
 class Suite:
-    """One table of [[motions]]: records that are read alike, and their levels.
+    """One table of [[motions]]: records with the same items, and their levels.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Suite:
     number : int
         Of the table.
     folders : sequence of Path
-        Where records are looked for.
+        Folders searched for records.
     """
 
     def __init__(self, document: Document, number: int, folders: Sequence[Path]) -> None:
@@ -129,7 +129,7 @@ class Suite:
             return []
 
     def _read(self, file: str, path: Path_) -> Iterator[RecordFile]:
-        """Yield the record if it can be read as the study says; a mistake adds a diagnostic."""
+        """Yield the record if it can be read with these items; otherwise add a diagnostic."""
         name = file if known(file) else Path(file).name
         place = self.document.place(path)
         record_file = RecordFile(name, file, self.items, "", place)
@@ -186,7 +186,7 @@ class Suite:
 
 
 class UnreadableError(Exception):
-    """Raised where the items by which a record is to be read are wrong."""
+    """Raised if the items for reading a record are wrong."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         super().__init__("; ".join(d.message for d in diagnostics))

@@ -15,20 +15,20 @@ from pound_solve.version import __version__
 
 @dataclass(frozen=True)
 class RecordFile:
-    """A record as a study names it.
+    """A record of a study.
 
     Attributes
     ----------
     name : str
-        Its file without folder, or the name of a known record.
+        File name without folder, or name of a known record.
     file : str
         Its whole path, or the name of a known record.
     items : tuple of str
-        ``NAME=value``: how it is read, as on a RECORD line.
+        ``NAME=value``: items for reading it, as on a RECORD line.
     sha256 : str
         Of the file.
     place : Span or None
-        Where the study names it.
+        Place in the study that names it.
     """
 
     name: str
@@ -40,7 +40,7 @@ class RecordFile:
 
 @dataclass(frozen=True)
 class Shaking:
-    """A record and its strength.
+    """A record with its scale.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Shaking:
     scale : float
         Factor on the record.
     level : float
-        What the study asks for: the factor, or the intensity in shares of gravity.
+        Level given in the study: the factor, or the intensity in units of gravity.
     """
 
     record: RecordFile
@@ -58,15 +58,15 @@ class Shaking:
 
 @dataclass(frozen=True)
 class Case:
-    """A deck with its PARAMs: what runs that differ in their shaking alone share.
+    """A deck with its PARAMs, common to all runs that differ only in their shaking.
 
     Attributes
     ----------
     deck : str
     params : tuple of (name, value)
-        PARAMs that replace the deck's, texts as on the command line.
+        PARAMs that replace those of the deck, as texts of the command line.
     records : tuple of Path
-        Folders where records are looked for.
+        Folders searched for records.
     method, dt, tol : str or None, float or None
         Replace those of HISTORY.
     texts : str
@@ -94,7 +94,7 @@ class Run:
     shaking : Shaking or None
         None where the deck's own motion acts.
     first : RecordFile or None
-        The study's first record, under which the case is prepared, whichever of its runs comes first.
+        The study's first record, with which the case is prepared, whichever run is executed first.
     inputs : str
         Digest of what the deck reads, see `digest_of`.
     """
@@ -107,7 +107,7 @@ class Run:
 
     @cached_property
     def identity(self) -> str:
-        """Digest of all that its results depend on; names and places of files do not count."""
+        """Digest of everything that determines its results, without names and places of files."""
         shaking = self.shaking
         content = {
             "inputs": self.inputs,
@@ -127,7 +127,7 @@ class Run:
 
     @property
     def title(self) -> str:
-        """Text that names the run: deck, PARAMs, record and scale."""
+        """Title of the run: deck, PARAMs, record and scale."""
         words = [Path(self.case.deck).name, *(f"{k}={v}" for k, v in self.case.params)]
         if self.shaking is not None:
             words += [self.shaking.record.name, f"x {self.shaking.scale:.6g}"]
@@ -135,5 +135,5 @@ class Run:
 
 
 def digest_of(files: Mapping[str, str]) -> str:
-    """Digest of texts, whatever their names."""
+    """Digest of texts, independent of their names."""
     return blake2b(json.dumps(sorted(files.values())).encode(), digest_size=12).hexdigest()

@@ -1,7 +1,7 @@
 """A study: decks with values of their PARAMs, under records of several strengths; all of its runs.
 
-Everything that is wrong with it is told in one pass: its own items, its records, and its decks with the
-first of their values.
+All mistakes are reported in one pass: those of its items, of its records, and of its decks with the first
+values of their PARAMs.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ ITEMS: Final = (
     "grid", "zip", "cases", "motions",
 )  # fmt: skip
 
-#: what a run may take, which is three years [s] and a petabyte [MB], and the processes of a study
+#: limits of a run, three years [s] and a petabyte [MB], and of the processes of a study
 LARGEST: Final[Mapping[str, float]] = MappingProxyType({"seconds": 1e8, "memory": 1e9, "workers": 1e4})
-#: tables that other verbs read
+#: tables read by other verbs
 OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType({"ida": "pound-solve ida"})
 
 Params = tuple[tuple[str, str], ...]
 
 
 class StudyError(UserError):
-    """Raised where a study has mistakes; the text states all of them."""
+    """Raised if a study has mistakes; the text lists all of them."""
 
     has_places = True
 
@@ -59,7 +59,7 @@ class StudyError(UserError):
 
 @dataclass(frozen=True)
 class Study:
-    """A study: its runs, and how they are carried out.
+    """A study: its runs, and the settings of their execution.
 
     Attributes
     ----------
@@ -70,15 +70,15 @@ class Study:
     units : tuple of str
         Force, length and time of all its decks.
     measure : str
-        What `Shaking.level` is: ``scale``, ``pga`` or ``sa``; empty where the decks' own motions act.
+        Measure of `Shaking.level`: ``scale``, ``pga`` or ``sa``; empty if the motions of the decks act.
     workers : int
-        Processes; 0 for as many as the machine has processors.
+        Number of processes; 0 for one per processor.
     seconds, memory : float or None
-        CPU time [s] and memory [MB] that one run may take.
+        Limits of CPU time [s] and memory [MB] of one run.
     histories : tuple of str
-        Histories that are kept of every run.
+        Histories kept of each run.
     warnings : str
-        About the decks with the first of their values.
+        Warnings about the decks with the first values of their PARAMs.
     """
 
     name: str
@@ -100,14 +100,14 @@ def read(document: Document, tables: Sequence[str] = ()) -> Study:
     ----------
     document : Document
     tables : sequence of str
-        Tables of it that others read.
+        Tables of it that other verbs read.
 
     Raises
     ------
     StudyError
-        It has mistakes: all that can be told at once.
+        It has mistakes.
     """
-    if document.diagnostics:  # it is no TOML
+    if document.diagnostics:  # not TOML
         raise StudyError(document.diagnostics, document.files)
     return _Reader(document, tables).study()
 
@@ -130,7 +130,7 @@ class _Reader:
         self.warned: list[Diagnostic] = []
 
     def study(self) -> Study:
-        """Read the whole study; raise StudyError where it has mistakes."""
+        """Read the whole study; raise StudyError if it has mistakes."""
         document = self.document
         decks, combinations = list(self._decks()), self._combinations()
         texts = {name: document.take((name,), str, "") for name in ("out", "method")}
@@ -174,7 +174,7 @@ class _Reader:
         return value
 
     def _stop_at_mistakes(self) -> None:
-        """Raise StudyError where there are mistakes, sorted in the order of the study."""
+        """Raise StudyError if there are mistakes, in the order of the study."""
         mistakes = self.document.diagnostics
         order = {name: k for k, name in enumerate(self.document.files)}
         mistakes.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
@@ -182,7 +182,7 @@ class _Reader:
             raise StudyError(mistakes, self.document.files)
 
     def _warnings(self) -> str:
-        """Text of the warnings about the decks, with the lines that they are about."""
+        """Text of the warnings about the decks, with the lines that they concern."""
         return render(self.warned, self.document.files)
 
     def _beside(self, name: str) -> Path:
@@ -194,7 +194,7 @@ class _Reader:
         return self._beside(folder or Path(self.document.name).stem + ".sweep")
 
     def _decks(self) -> Iterator[str]:
-        """Yield the paths of all decks; a pattern stands for the files that match it."""
+        """Yield the paths of all decks; a pattern yields all files that match it."""
         document = self.document
         named = [name for name in ("deck", "decks") if document.at((name,)) is not None]
         if len(named) != 1:
@@ -214,7 +214,7 @@ class _Reader:
                         document.mistake("S604", f"there is no deck {path}", (item,))
 
     def _histories(self) -> Iterator[str]:
-        """Names of the histories that are kept."""
+        """Names of the histories to keep."""
         from pound_solve.results.contents import HISTORIES
 
         for name in self.document.listed(("histories",), (str,)):
@@ -308,12 +308,12 @@ class _Reader:
         self.document.files.update({n: t for n, t in files.items() if n not in options})
 
     def _options(self) -> dict[str, Path_]:
-        """Paths of the study's items by the options of a run (``--set NAME``, ...) that they stand for."""
+        """Paths of the study's items by the equivalent options of a run (``--set NAME``, ...)."""
         values = {f"--set {name}": path for name, path in self._sources()}
         return {option(name).file: (name,) for name in ("method", "dt", "tol")} | values
 
     def _here(self, diagnostic: Diagnostic) -> Diagnostic:
-        """Diagnostic of a deck, placed at the study's item whose value it is about, if any."""
+        """Diagnostic of a deck, placed at the item of the study whose value it concerns, if any."""
         path = self._options().get(diagnostic.span.file) if diagnostic.span else None
         return replace(diagnostic, span=self.document.place(path)) if path else diagnostic
 
@@ -341,7 +341,7 @@ class _Reader:
             self._effective(name, path, case, combinations)
 
     def _effective(self, name: str, path: Path_, case: Case, combinations: Sequence[Params]) -> None:
-        """Add a diagnostic where a PARAM affects nothing but the motion, which the study replaces."""
+        """Add a diagnostic if a PARAM affects only the motion, which the study replaces."""
         first = dict(combinations[0])
         other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
         if other is None or not self.suites:
