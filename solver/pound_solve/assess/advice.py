@@ -11,20 +11,20 @@ import numpy as np
 from pound_solve.results.study_record import NOISY, Advice, Errors, Peaks, Reference, Trial
 from pound_solve.user_error import UserError
 
-TARGETS: Final = (1e-2, 1e-3, 1e-6)  #: errors that the advice is for
+TARGETS: Final = (1e-2, 1e-3, 1e-6)  #: target errors of the advice
 KINDS: Final = ("drift", "member", "contact")  #: of extremes, in the order of the table
-MARGIN: Final = 5.0  #: errors of another record may be that much larger than those of this one
+MARGIN: Final = 5.0  #: factor by which errors of another record may exceed those of this one
 ORDER: Final = 2  #: of every stepping method
 
 
 class StudyError(UserError):
-    """Raised where the deck or the options contain nothing to study."""
+    """Raised if the deck or the options contain nothing to study."""
 
 
 def errors(peaks: Peaks, reference: Peaks) -> Errors:
     """Error by kind: largest difference of an extreme, divided by the largest extreme of its kind and unit.
 
-    NaN for a kind that nothing belongs to, or all of whose extremes are zero.
+    NaN for a kind without extremes, or whose extremes are all zero.
     """
     largest = dict.fromkeys(KINDS, math.nan)
     for (kind, unit), true in reference.items():
@@ -40,7 +40,7 @@ def errors(peaks: Peaks, reference: Peaks) -> Errors:
 def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
     """Reference extrapolated to steps of zero from the two finest trials of a ladder by the method's order.
 
-    Its own error is estimated by what the same extrapolation gives one rung before.
+    Its error is estimated by comparison with the extrapolation from one rung before.
 
     Raises
     ------
@@ -62,12 +62,12 @@ def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
 
 
 def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
-    """The trial of least time for each target; of several that take as long, the one of least error.
+    """The fastest trial for each target; of several with similar times, the one with the least error.
 
-    The error that is allowed for is `MARGIN` times the largest of the trial's own and of what its two
-    neighbours in the ladder make of it by the order of the method, so that no zero crossing of an error is
-    taken for accuracy, and of all finer ones; the reference's own error comes on top.  Where no contact
-    closed, no step is named.
+    The error allowed for is `MARGIN` times the largest of the trial's error, of the errors extrapolated
+    from its two neighbours in the ladder by the order of the method, so that no zero crossing of an error
+    passes for accuracy, and of the errors of all finer trials; the error of the reference is added.  If no
+    contact closed, no step is recommended.
     """
     advice = []
     for target in TARGETS:

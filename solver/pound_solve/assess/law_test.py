@@ -1,4 +1,4 @@
-"""Response of a law that is driven along a path, as ``pound-solve loop`` tabulates and draws it.
+"""Response of a law to a path of deformation, for ``pound-solve loop``.
 
 The specimen is a deck of one spring (or contact), so that its items are read, checked and built as in any
 other deck.
@@ -22,7 +22,7 @@ from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.user_error import UserError
 
-#: start of the specimen's card; items that it is given where the user gives none, and fields that need them
+#: start of the specimen's card; default items, and the fields that require them
 _CARDS: Final = {
     "hysteresis": ("SPRING RULE", {"KX=1": "", "FX=1": ""}),
     "contact": (
@@ -30,8 +30,8 @@ _CARDS: Final = {
         {"GAP=0": "", "MASSES=2,2": "E", "K=1": "K", "MASSES=1,1": "MODEL", "DIAPHRAGMS=2,1": "MODEL"},
     ),
 }
-DUCTILITIES: Final = (0.5, 1.0, 2.0, 4.0, 6.0)  #: of the cycles that a hysteresis rule goes through
-CLOSURES: Final = (1.0, -0.5, 2.0, -0.5)  #: beyond the gap, that a contact goes through
+DUCTILITIES: Final = (0.5, 1.0, 2.0, 4.0, 6.0)  #: of the cycles applied to a hysteresis rule
+CLOSURES: Final = (1.0, -0.5, 2.0, -0.5)  #: closures beyond the gap applied to a contact
 SAMPLES: Final = 32  #: points of a curved branch in a drawing
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -41,7 +41,7 @@ AXES: Final = {"hysteresis": ("deformation", "force"), "contact": ("closure", "c
 
 
 class LawTestError(UserError):
-    """Raised where a specimen cannot be made, or cannot be driven."""
+    """Raised if a specimen cannot be built or driven."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def law_of(name: str) -> Spec:
 
 
 def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
-    """Build a law from its items; also return these as text with what was added to them.
+    """Build a law from its items; also return these, with added defaults, as text.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
     Raises
     ------
     LawTestError
-        The items are none of this law, or contradict each other: what the deck's reader says of them.
+        Items are unknown or contradict each other; the message is that of the deck's reader.
     """
     if spec.impl is None:
         raise LawTestError(f"{spec.name} is a straight line through zero: there is no loop")
@@ -172,7 +172,7 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
     path : sequence of float
         Turning points of the deformation [L] or [rad].
     rate : float
-        Speed of the deformation along it [L/T], which dashpots answer to; 0: infinitely slow.
+        Speed of the deformation [L/T], which determines the forces of dashpots; 0: infinitely slow.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Motions of a deck as record files: what its EQUAKE cards make, for other decks, studies and programs."""
+"""Motions of a deck's EQUAKE cards as record files, for other decks, studies and programs."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from pound_solve.loading.motions.base import Motion
 from pound_solve.loading.records import peer
 from pound_solve.user_error import UserError
 
-EQUAL: Final = 1e-9  #: share by which steps of equal length may differ: times are sums
-LONGEST: Final = 10**7  #: file, in steps
+EQUAL: Final = 1e-9  #: relative difference of equal steps, because times are sums
+LONGEST: Final = 10**7  #: most steps of a file
 
 
 class MotionError(UserError):
-    """Raised where a motion cannot be written to a file; the message says why."""
+    """Raised if a motion cannot be written to a file; the message states why."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class MotionFile:
         With its ending.
     text : str
     warning : str
-        What the file cannot hold; empty for nothing.
+        Properties of the motion that the file lacks; empty without any.
     """
 
     name: str
@@ -55,7 +55,7 @@ def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
     DeckError
         The deck or a record has mistakes.
     MotionError
-        There is no motion, or one has no step of its own.
+        There is no motion, or one has no step and `dt` is not given.
     OSError
         The deck cannot be read.
     """

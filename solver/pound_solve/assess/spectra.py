@@ -1,7 +1,6 @@
-"""Motions whose spectra ``pound-solve spectrum`` shows: of records, of decks, of nodes in a results file.
+"""Motions for ``pound-solve spectrum``: of records, of decks, of nodes in a results file.
 
-A record is read by a card of a small deck, so that its items are those of a RECORD card and its mistakes
-are told as in any other deck.
+A record is read by a card of a small deck, so that items and messages are those of a RECORD card.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ WAYS: Final = MappingProxyType({"X": "X", "Y": "Y", "R": "R (rad)"})  #: names o
 
 
 class SpectrumError(UserError):
-    """Raised where a source has no motion; the message says why."""
+    """Raised if a source has no motion; the message states why."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ class Source:
         By their names.
     warnings : sequence of Diagnostic
     files : mapping of str to str
-        Texts that the warnings point into.
+        Texts to which the warnings refer.
     """
 
     units: Units
@@ -62,12 +61,12 @@ def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()
     items : sequence of str
         ``NAME=value``, the other items of the card.
     folders : sequence of Path
-        Where it is looked for, after the working folder.
+        Folders searched for it, after the working folder.
 
     Raises
     ------
     DeckError
-        The record cannot be read, or an item is none of the card's.
+        The record cannot be read, or the card has no such item.
     """
     card = Deck(*record_card.read(name, items, "spectrum"))
     source = _of_motions(Request("spectrum", records=tuple(folders)), card)
@@ -119,7 +118,7 @@ def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> So
     Raises
     ------
     SpectrumError
-        The file has no history of accelerations, or none of such a node.
+        The file has no history of accelerations, or none of a node.
     """
     if "node/a" not in results.histories or len(results.time) < 2:
         raise SpectrumError(f"{results.path} holds no accelerations of nodes: its deck needs a HISTORY")
@@ -143,7 +142,7 @@ def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> So
 
 
 def coarse(source: Source, shortest: float) -> str:
-    """Warning where accelerations are stored too seldom for the shortest period [T]; else empty."""
+    """Warning if accelerations are stored too seldom for the shortest period [T]; else empty."""
     step = max(float(np.diff(a.breaks).max()) for a in source.accelerations.values())
     if step * SAMPLES <= shortest * (1.0 + 1e-9):
         return ""

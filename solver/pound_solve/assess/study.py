@@ -1,11 +1,11 @@
 """STUDY: accuracy of each method against its time, on the user's own deck.
 
-Time is CPU time of the process: what else the machine does breaks no run off and favours no method.
+Time is CPU time of the process, so that other load of the machine ends no run and favours no method.
 
 The history is run by several methods over a ladder of steps (or tolerances).  Errors are those of extremes,
-against a reference: EXACT with a search grid of a quarter of the usual, where EXACT can solve the deck in
-the time allowed; else LAGUERRE with a tolerance far below those that are compared; else the finest steps,
-extrapolated after Richardson (1911), Phil. Trans. R. Soc. A 210.
+against a reference: EXACT with a search grid four times finer than usual, if it solves the deck in the time
+allowed; else LAGUERRE with a tolerance far below the compared ones; else an extrapolation from the finest
+steps after Richardson (1911), Phil. Trans. R. Soc. A 210.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ from pound_solve.results.whole_file import partial
 
 Report = Callable[[str], None]
 
-HALVINGS: Final = 16  #: of the first step, at most
-FINE: Final = 1e-10  #: tolerance with which LAGUERRE makes the reference
-CHECKED: Final = 1e-8  #: tolerance of the run that shows the error of that
+HALVINGS: Final = 16  #: most halvings of the first step
+FINE: Final = 1e-10  #: tolerance of LAGUERRE for the reference
+CHECKED: Final = 1e-8  #: tolerance of the run that estimates the error of the reference
 TOO_LONG: Final = "takes longer than --longest"
 
 
 class TooLong(Exception):
-    """Raised where a run takes longer than the plan allows."""
+    """Raised if a run takes longer than the plan allows."""
 
 
 @dataclass(frozen=True)
@@ -54,17 +54,16 @@ class Plan:
     Attributes
     ----------
     methods : tuple of str
-        The stepping method that comes first makes the reference where EXACT and LAGUERRE are not among them
-        or fail.
+        The first stepping method provides the reference if EXACT and LAGUERRE are not among them or fail.
     steps : tuple of float
         Time steps, descending [T]; empty: from the step of the record on by halves until errors are below
         the last of `TARGETS`, or a run would take too long.
     tols : tuple of float
         Tolerances of AUTO and LAGUERRE.
     repeat : int
-        Timed runs of each.
+        Number of timed runs of each trial.
     longest : float
-        CPU time that one run may take [s].
+        Limit of CPU time of one run [s].
     """
 
     methods: tuple[str, ...] = (
@@ -87,7 +86,7 @@ def run(
         Its method, dt and tol are not used.
     plan : Plan
     report : callable
-        Called with a line on what is run.
+        Called with a line of text on each run.
 
     Raises
     ------
@@ -157,7 +156,7 @@ class _Bench:
         ], known
 
     def _exact(self, out: dict[str, list[Trial]]) -> Reference | None:
-        """EXACT with a finer search grid, or None where it is not asked for or stops; its trial goes into
+        """EXACT with a finer search grid, or None if it is not requested or stops; its trial goes into
         `out`.
         """
         if "EXACT" not in self.plan.methods:
@@ -171,7 +170,7 @@ class _Bench:
         return Reference(fine.peaks, errors(usual.peaks, fine.peaks), "EXACT with REFINE=2")
 
     def _finest_tolerance(self, out: dict[str, list[Trial]]) -> Reference | None:
-        """LAGUERRE with `FINE`, or None where it is not asked for or stops; its trials go into `out`."""
+        """LAGUERRE with `FINE`, or None if it is not requested or stops; its trials go into `out`."""
         if "LAGUERRE" not in self.plan.methods:
             return None
         out["LAGUERRE"] = self._tolerances("LAGUERRE")  # the first of them compiles
@@ -203,7 +202,7 @@ class _Bench:
         raise why
 
     def _ladder(self, method: str, reference: Reference | None) -> list[Trial]:
-        """Trials with shorter and shorter steps."""
+        """Trials with successively shorter steps."""
         if self.plan.steps:
             return [self.trial(method, DT=dt) for dt in self.plan.steps]
         return self._halved(method, reference)

@@ -75,7 +75,7 @@ def _status(execute: Callable[[argparse.Namespace], int], args: argparse.Namespa
     """Exit status of a verb; an exception is reported as one line."""
     try:
         return execute(args)
-    except BrokenPipeError:  # the reader of the output has closed it
+    except BrokenPipeError:  # the reader closed the output
         sys.stderr.close()
         return 0
     except UserError as err:

@@ -1,4 +1,4 @@
-"""The progress of a run: one line on a terminal, rewritten in place; elsewhere a line now and then."""
+"""The progress of a run: one line on a terminal, rewritten in place; elsewhere a line at intervals."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ class StatusLine:
 class Progress:
     """Progress of an analysis, at most ten lines a second.
 
-    A method may go through the history several times: where the time falls back, another run begins, and
-    the estimate of the time to go is that of this run alone.
+    A method may run the history several times: when the time decreases, a new run begins, and the estimate
+    of the remaining time is that of this run.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Progress:
         self.told = self.began
 
     def __call__(self, t: float, end: float, doing: str) -> None:
-        """Show the time `t` of `end` and an estimate of the time to go, or what the run is `doing`."""
+        """Show the time `t` of `end` and an estimate of the remaining time, or the activity `doing`."""
         self._check()
         now = time.monotonic()
         if t < self.reached:

@@ -1,4 +1,4 @@
-"""Functions shared by verbs that carry out studies: arguments, mistakes, progress line, output."""
+"""Functions shared by verbs that execute studies: arguments, mistakes, progress line, output."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def add_conduct(parser: argparse.ArgumentParser) -> None:
-    """Add the options on how runs are carried out."""
+    """Add the options for the execution of runs."""
     parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder of the results")
     parser.add_argument("--workers", type=int, metavar="N", help="processes (default: one a processor)")
     parser.add_argument("--retry", action="store_true", help="try runs again that stopped or failed")
@@ -34,7 +34,7 @@ def give_conduct(args: argparse.Namespace, document: Document) -> None:
 
 
 def carried_out(study: str, work: Callable[[], int]) -> int:
-    """Do some work on a study; print its mistakes or why it cannot be done, and return the exit status."""
+    """Call `work`; print the mistakes of the study or the reason of a failure; return the exit status."""
     from pound_solve.statistics.curves import CurveError
     from pound_solve.sweep.execution.executors import ExecutorError
 
@@ -63,7 +63,7 @@ class Progress:
 
 
 def ended(args: argparse.Namespace, session: Session, path: Path | None) -> int:
-    """Print how the runs have ended and where their table is; return the exit status."""
+    """Print the number of runs by status and the path of their table; return the exit status."""
     if not args.quiet:
         print("\n".join(session.summary()))
         if path is not None:

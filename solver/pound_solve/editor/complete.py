@@ -29,12 +29,12 @@ _LAST: Final = re.compile(r"[A-Za-z0-9_.]*$")
 
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """Something that may stand at the place.
+    """A completion.
 
     Attributes
     ----------
     text : str
-        To be inserted in place of the word that is begun.
+        Replaces the word being typed.
     sort : str
         ``section``, ``kind``, ``item``, ``word``, ``name`` or ``function``.
     detail : str
@@ -50,23 +50,23 @@ class Suggestion:
 
 
 def complete(reading: Reading, text: str, line: int, column: int) -> tuple[list[Suggestion], int]:
-    """Suggest what may stand at a place of a text.
+    """Suggest completions at a place of a text.
 
     Parameters
     ----------
     reading : Reading
         The deck, for the names in use; the line at the place need not follow the grammar.
     text : str
-        The file as the editor holds it.
+        Text of the file in the editor.
     line, column : int
         Place from 1.
 
     Returns
     -------
     suggestions : list of Suggestion
-        All that may stand there; the editor narrows them down by what is typed.
+        All completions at that place; the editor filters them by the typed text.
     column : int
-        Where the word begins that they replace.
+        Column at which the replaced word begins.
     """
     lines = text.split("\n")
     before = lines[line - 1][: column - 1] if line <= len(lines) else ""
@@ -77,7 +77,7 @@ def complete(reading: Reading, text: str, line: int, column: int) -> tuple[list[
     if not typed.strip() or (typed.strip().isidentifier() and not typed[-1:].isspace()):
         here = _first(reading, _section(lines[: line - 1]))
     elif _OPEN.fullmatch(re.sub(r""""[^"]*"|'[^']*'""", "", typed)):
-        here = []  # within a text
+        here = []  # within a quoted text
     else:
         here = _within(reading, _section(lines[: line - 1]), typed)
     return list({s.text: s for s in here}.values()), start

@@ -1,4 +1,4 @@
-"""Go to definition, and all places that name the same."""
+"""Definition of a name, and all references to it."""
 
 from __future__ import annotations
 

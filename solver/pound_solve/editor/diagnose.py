@@ -1,4 +1,4 @@
-"""Mistakes of a deck as ``pound-solve check`` tells them, of the text that the editor holds."""
+"""Mistakes of a deck as in ``pound-solve check``, for the text in the editor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pound_solve.driver.prepare import DeckError, assembled
 from pound_solve.driver.request import Request
 
 MANY: Final = 2000  #: nodes beyond which the structure is not assembled: a number may be half typed
-MOST: Final = 100  #: messages of a deck
+MOST: Final = 100  #: most messages of a deck
 
 
 def diagnose(
@@ -27,14 +27,14 @@ def diagnose(
     unsaved : mapping of str to str
         Texts of the editor by real path.
     records : tuple of Path
-        Folders where records are looked for, after the deck's own.
+        Folders searched for records, after that of the deck.
 
     Returns
     -------
     diagnostics : list of Diagnostic
         At most `MOST`, errors first.
     files : mapping of str to str
-        Texts by the name in spans: those of the deck and of all that it includes.
+        Texts of the deck and of included files, by the name in spans.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Fields and Specs that the items of a line belong to, also of a line that is only half typed."""
+"""Fields and Specs of the items of a line, also of an incomplete one."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Fields:
     Attributes
     ----------
     spec : Spec or None
-        None where the kind of the line is not there yet, or is unknown.
+        None if the kind of the line is missing or unknown.
     family : str
-        Family of the line's kind; empty where lines of its section have none.
+        Family of the line's kind; empty if lines of its section have none.
     kind_at : int
-        Index of the item that names the kind; -1 where there is none.
+        Index of the item that names the kind; -1 without one.
     known : mapping of str to Field
         Every field that the line may have, by name.
     matched : tuple of Field or None
@@ -46,7 +46,7 @@ class Fields:
     chosen: Mapping[str, Spec]
 
     def next(self) -> Field | None:
-        """Field that a further item by position would have; None where there is none."""
+        """Field of the next positional item; None without one."""
         taken = len(self.matched) - self.kind_at - 1
         places = [f for f in self.known.values() if f.positional]
         return places[taken] if 0 <= taken < len(places) else None
@@ -58,12 +58,12 @@ def fields(words: Words, section: str, catalog: Catalog, params: Params | None =
     Parameters
     ----------
     words : sequence of (str, str)
-        Its items, with what stands before them.
+        Its items as (name, text).
     section : str
-        Its section; empty for a card that stands in none.
+        Its section; empty for a card outside sections.
     catalog : Catalog
     params : mapping of str to value, optional
-        A PARAM may name a member of a family.
+        PARAMs, which may name members of families.
     """
     known_params = params or {}
     spec, family, kind_at = _kind(words, section, catalog, known_params)
@@ -112,7 +112,7 @@ def member(word: str, family: str, catalog: Catalog, params: Params) -> Spec | N
 
 
 def _given(words: Words, spec: Spec | None, kind_at: int) -> list[tuple[str, str]]:
-    """Items behind the kind as (name of the field, text); the name is empty where there is no field."""
+    """Items after the kind as (name of the field, text); the name is empty without a field."""
     places = [f.name for f in spec.fields if f.positional] if spec else []
     items, named = [], False
     for k, (name, text) in enumerate(words[kind_at + 1 :]):

@@ -1,4 +1,4 @@
-"""Help on the item at a place: unit, default, limits and meaning of an item, or what a word means."""
+"""Hover text at a place: unit, default, limits and meaning of an item, or the meaning of a word."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pound_solve.report.listing import default, takes, usage
 
 
 def hover(reading: Reading, place: Span) -> tuple[str, Span] | None:
-    """Text in Markdown on the item at a place, and the item's span; None where there is nothing to say."""
+    """Text in Markdown on the item at a place, and the item's span; None without an item."""
     for section, row in reading.rows:
         for k, item in enumerate(row.items or ()):
             if _holds(item, place):

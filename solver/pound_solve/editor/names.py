@@ -1,4 +1,4 @@
-"""Where a deck defines and mentions its nodes, elements, property sets and PARAMs."""
+"""Definitions and mentions of nodes, elements, property sets and PARAMs in a deck."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SORTS: Final[dict[Kind, Sort]] = {
     Kind.PROP: "property set",
     Kind.PROPS: "property set",
 }
-#: what the items of a section define
+#: sorts of names defined by the items of a section
 _DEFINES: Final[dict[tuple[str, str], Sort]] = {
     ("NODES", "NODE"): "node",
     ("ELEMENTS", "ELEMENT"): "element",
@@ -35,7 +35,7 @@ _DEFINES: Final[dict[tuple[str, str], Sort]] = {
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """A place that names something.
+    """A mention of a name.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Mention:
     defines : bool
         Whether it is defined here.
     plain : bool
-        Whether the name itself stands there, so that another can be put in its place.
+        Whether the span is the name itself, which can be replaced.
     """
 
     sort: Sort
@@ -62,7 +62,7 @@ class Mention:
         return self.keys[0]
 
     def holds(self, span: Span) -> bool:
-        """Whether a place lies within it or at its end."""
+        """Whether a place lies within the mention or at its end."""
         here = self.span
         return (here.file, here.line) == (span.file, span.line) and here.column <= span.column <= here.end
 
@@ -76,7 +76,7 @@ def mentions(reading: Reading) -> list[Mention]:
 
 
 def at(all_mentions: Sequence[Mention], place: Span) -> Mention | None:
-    """Shortest mention at a place; where a PARAM stands for another name, the mention of the PARAM."""
+    """Shortest mention at a place; if a PARAM provides the name, the mention of the PARAM."""
     here = [m for m in all_mentions if m.holds(place)]
     return min(here, key=lambda m: (m.span.end - m.span.column, not m.plain), default=None)
 

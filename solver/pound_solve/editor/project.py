@@ -23,9 +23,9 @@ class Project:
     Attributes
     ----------
     records : tuple of Path
-        Folders where records are looked for, after the deck's own.
+        Folders searched for records, after that of the deck.
     texts : dict of str to str
-        What the editor holds, saved or not; line ends are ``\\n``.
+        Texts in the editor, saved or not; line ends are ``\\n``.
     """
 
     records: tuple[Path, ...] = ()
@@ -43,7 +43,7 @@ class Project:
         self._readings.clear()
 
     def drop(self, path: str) -> None:
-        """Forget a file that the editor has closed."""
+        """Remove a file that the editor has closed."""
         self.texts.pop(path, None)
         self._told.pop(path, None)
         self._decks.clear()
@@ -101,7 +101,7 @@ class Project:
     def _diagnosed(self, deck: str) -> Found:
         try:
             diagnostics, files = diagnose(deck, self.texts, self.records)
-        except OSError:  # taken away while it was open
+        except OSError:  # deleted while open
             return {}
         by_file: Found = {os.path.realpath(name): [] for name in files if not name.startswith("--")}
         for d in diagnostics:

@@ -1,4 +1,4 @@
-"""Deck as an editor needs it, read in spite of mistakes: rows with sections, PARAM values, units."""
+"""Tolerant reading of a deck with mistakes: rows with sections, PARAM values, units."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _CARDS: Final = frozenset(spec.name for spec in CARDS)
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """Rows of a deck and of what it includes.
+    """Rows of a deck and of the files that it includes.
 
     Attributes
     ----------
     catalog : Catalog
     rows : tuple of (str, Row)
-        Every row with the name of its section; empty for headings and for cards that stand in none.
+        Every row with the name of its section; empty for headings and for cards outside sections.
     definitions : mapping of str to Definition
         PARAMs by upper-case name.
     params : mapping of str to float, str or None
@@ -63,7 +63,7 @@ def read(path: str, catalog: Catalog, unsaved: Mapping[str, str]) -> Reading:
     Raises
     ------
     OSError
-        The deck cannot be read; what it includes may be missing.
+        The deck cannot be read; included files may be missing.
     """
     ignored: list[Diagnostic] = []
     source = Source(unsaved=unsaved)

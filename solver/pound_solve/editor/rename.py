@@ -1,4 +1,4 @@
-"""Rename nodes, elements, property sets and PARAMs, where that leaves the meaning of the deck as it is."""
+"""Rename nodes, elements, property sets and PARAMs without a change of the deck's meaning."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from pound_solve.editor.reading import Reading, read
 
 Edits = list[tuple[Span, str]]
 
-_KEYWORDS: Final = ("TO", "BY")  #: of a range: a label of that name stands in quotes
+_KEYWORDS: Final = ("TO", "BY")  #: of ranges; labels of these names need quotes
 _WORD: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
 
 
 class RenameError(Exception):
-    """Raised where the name at a place cannot be changed as asked; the text says why."""
+    """Raised if a name cannot be changed as requested; the text states why."""
 
 
 def renamable(reading: Reading, place: Span) -> Span | None:
-    """Span of the name at a place; None where there is none that can be replaced."""
+    """Span of the name at a place; None without a replaceable name."""
     here = at(mentions(reading), place)
     return here.span if here and here.plain else None
 
@@ -38,15 +38,15 @@ def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
     path : str
         Its file.
     place : Span
-        Where the name stands.
+        Place of the name.
     new : str
-        The other name.
+        New name.
 
     Raises
     ------
     RenameError
-        The name is not replaceable everywhere, the other name is taken or none, or the deck would mean
-        something else.
+        The name is not replaceable everywhere, the new name is in use or invalid, or the meaning of the
+        deck would change.
     """
     mentioned = mentions(reading)
     same = _same(reading, mentioned, place)

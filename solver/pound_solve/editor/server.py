@@ -1,4 +1,4 @@
-"""The language server of ``pound-solve lsp``: the editor's protocol on one side, `Project` on the other."""
+"""The language server of ``pound-solve lsp``: connects the editor's protocol with `Project`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pound_solve.editor import complete, definition, hover, rename, symbols
 from pound_solve.editor.project import Found, Project
 from pound_solve.version import __version__
 
-PAUSE: Final = 0.15  #: time without a key after which a deck is checked [s]
+PAUSE: Final = 0.15  #: time without typing after which a deck is checked [s]
 
 _SORTS: Final = {
     "section": lsp.CompletionItemKind.Module,
@@ -63,16 +63,16 @@ class DeckServer(LanguageServer):
             self.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, items))
 
     def uri(self, path: str) -> str:
-        """URI of a file as the editor names it, where it is open."""
+        """URI of a file, that of the editor if the file is open."""
         known = (uri for uri in self.workspace.text_documents if path_of(uri) == path)
         return next(known, None) or uris.from_fs_path(path) or path
 
     def lines(self, path: str) -> list[str]:
-        """Lines of a file as the project has them."""
+        """Lines of a file in the project."""
         return self.project.text(path).split("\n")
 
     def diagnostic(self, d: Diagnostic, lines: Sequence[str]) -> lsp.Diagnostic:
-        """A message in the editor's terms; one without a place stands at the start of the deck."""
+        """A diagnostic of the protocol; one without a place gets the start of the deck."""
         error = d.severity == "error"
         return lsp.Diagnostic(
             range=self.range(d.span, lines)
@@ -85,7 +85,7 @@ class DeckServer(LanguageServer):
         )
 
     def range(self, span: Span, lines: Sequence[str], last: int | None = None) -> lsp.Range:
-        """A span, up to the end of the line `last` where that is given, in the editor's units."""
+        """A span as a range of the protocol, up to the end of the line `last` if given."""
         codec = self.workspace.position_codec
         end = lsp.Position(span.line - 1, span.end - 1)
         if last is not None and last > span.line:
@@ -108,7 +108,7 @@ class DeckServer(LanguageServer):
 
 
 def path_of(uri: str) -> str:
-    """Real path of a document; one that is not saved yet has its name in the present folder."""
+    """Real path of a document; an unsaved one has its name in the working folder."""
     path = uris.to_fs_path(uri)
     return os.path.realpath(path if path else os.path.basename(uri.partition(":")[2]) or "deck.inp")
 
@@ -124,7 +124,7 @@ def server(records: tuple[Path, ...] = ()) -> DeckServer:
     Parameters
     ----------
     records : tuple of Path
-        Folders where records are looked for, after the deck's own.
+        Folders searched for records, after that of the deck.
     """
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)
     deck_server = DeckServer(records)

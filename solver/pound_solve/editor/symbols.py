@@ -1,4 +1,4 @@
-"""Outline of a file: PARAMs, cards and sections with what stands below them."""
+"""Outline of a file: PARAMs, cards and sections with their lines."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Symbol:
     span : Span
         Its name.
     last : int
-        Last line of what belongs to it.
+        Last line of the entry.
     below : list of Symbol
     """
 

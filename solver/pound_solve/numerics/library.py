@@ -16,7 +16,7 @@ from pound_solve.numerics.jit import Function
 
 FOLDER = Path(__file__).parent  #: where a wheel puts libraries
 STEM = "kernels-"  #: of a library's file; the digest of the source follows
-CONTENTS = "contents"  #: function in a library that returns what it holds, see `Library`
+CONTENTS = "contents"  #: function in a library that returns its contents, see `Library`
 REFUSED = (
     "the compiled kernels here are not of this program and machine: install it anew, or, in a checkout, "
     "run `make kernels`"

@@ -156,7 +156,7 @@ def _items(fields: Sequence[Field]) -> list[str]:
     """Lines of a table of items; permitted values and meanings are wrapped within their columns."""
     rows = [_HEADS, *(item_row(f) for f in fields)]
     wide = [max(len(row[i]) for row in rows) for i in range(4)]
-    # long limits are wrapped: a column as wide as them would leave no room for the meaning
+    # long limits are wrapped: a column as wide would leave no space for the meaning
     wide[3] = min(wide[3], 24)
     lines = []
     for row in rows:

@@ -41,9 +41,9 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     ----------
     results : Results
     periods : sequence of two floats
-        Periods of the buildings of nodes I and J, instead of the modes' [T].
+        Periods of the buildings of nodes I and J [T], instead of those of the modes.
     damping : sequence of two floats
-        Their damping, instead of the modes' [%].
+        Damping of these buildings [%], instead of that of the modes.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def rows(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
     summary = {row["contact"]: row for row in results.table("contact_summary")}
     early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
-    met = any(row["closures"] > 0 for row in summary.values())  # so that all displacements changed
+    met = any(row["closures"] > 0 for row in summary.values())  # which changes all displacements
     note = (MET if met else FREE) + early
     separations = []
     for law in results.table("contact_laws"):

@@ -1,9 +1,8 @@
-"""Placement of results: beside older ones during the run, and in their place when it has ended.
+"""Placement of results: beside older ones during the run, replacing them at its end.
 
-A run writes ``model.partial.h5``.  When it has ended, its results file and its report are complete, and
-only then they take the names ``model.h5`` and ``model.rpt``.  What stood there before holds until then,
-whatever happens to the run.  A kill in the very moment of renaming may leave results without a report,
-which ``pound-solve report`` prints again; it never leaves the report of other results.
+A run writes ``model.partial.h5``.  When results file and report are complete, they are renamed to
+``model.h5`` and ``model.rpt``; earlier files are kept until then.  A kill during renaming may leave results
+without a report, which ``pound-solve report`` restores, but never with the report of other results.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ _DIGEST = re.compile(r"^ Results [0-9a-f]+$", re.MULTILINE)
 
 
 def put_in_place(results: Path, report: str, whole: bool) -> Path:
-    """Write the report of a run that has ended, and give both files their names.
+    """Write the report of a run that has ended, and rename both files.
 
     Parameters
     ----------
@@ -28,12 +27,12 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
         Name that the results file takes; it still has its name `partial`.
     report : str
     whole : bool
-        Whether the run came to an end of its own; one that was broken off replaces no older results.
+        Whether the run ended by itself; an interrupted one replaces no older results.
 
     Returns
     -------
     Path
-        Where the results file is now; its report stands beside it.
+        Path of the results file; the report is beside it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The record of a run: all results so far, from which the tables are made."""
+"""The record of a run: all results so far, the source of the tables."""
 
 from __future__ import annotations
 

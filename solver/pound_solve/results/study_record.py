@@ -1,4 +1,4 @@
-"""What a study finds: trials with their errors, the reference and the advice; its tables show it."""
+"""Results of a study: trials with their errors, the reference and the advice."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Final
 
 from pound_solve.numerics.types import Array
 
-NOISY: Final = 0.25  #: share that times may differ by and be alike; repeats that differ by more are noise
-SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
+NOISY: Final = 0.25  #: relative difference below which times are equal; a larger spread of repeats is noise
+SHORT: Final = 0.01  #: time below which the spread is ignored [s]
 
 #: Extremes by kind and unit.
 Peaks = Mapping[tuple[str, str], Array]
@@ -27,12 +27,12 @@ class Trial:
     ----------
     method, setting : str
     seconds : tuple of float
-        Of the repeats.
+        Times of the repeats [s].
     steps, events, collisions : int
     residual : float
     peaks : mapping
     stopped : str
-        Why it was not completed; empty if it was.
+        Reason why it was not completed; empty if it was.
     errors : dict
         By kind.
     """
@@ -55,18 +55,18 @@ class Trial:
 
     @property
     def spread(self) -> float:
-        """Longest less shortest repeat over the median."""
+        """Difference of the longest and the shortest repeat, divided by the median."""
         return (max(self.seconds) - min(self.seconds)) / self.time
 
     @property
     def error(self) -> float:
-        """Largest error of all kinds; NaN where there is none."""
+        """Largest error of all kinds; NaN without errors."""
         return max((e for e in self.errors.values() if math.isfinite(e)), default=math.nan)
 
 
 @dataclass(frozen=True)
 class Reference:
-    """Extremes that errors are measured against; `error` is their own, by kind."""
+    """Extremes against which errors are measured; `error` is their estimated error, by kind."""
 
     peaks: Peaks
     error: Errors
@@ -86,14 +86,14 @@ class Reference:
 
 @dataclass(frozen=True)
 class Advice:
-    """Trial of least time for a target, and the error that is allowed for; None where no trial will do."""
+    """Fastest trial for a target, and the error allowed for; None if no trial meets the target."""
 
     target: float
     trial: Trial | None = None
     sure: float = math.nan
 
     def __str__(self) -> str:
-        """Advice for one target in words."""
+        """Text of the advice for one target."""
         target = (
             f"{100 * self.target:g} %" if self.target >= 1e-4 else f"{self.target:.0e}".replace("e-0", "e-")
         )
@@ -104,7 +104,7 @@ class Advice:
 
 
 def order(coarse: Trial, fine: Trial) -> float:
-    """Observed order of the largest error between two trials; NaN where there is none."""
+    """Observed order of the largest error between two trials; NaN without one."""
     ratio = fine.steps / coarse.steps if coarse.steps and fine.steps else 1.0
     if not (coarse.error > 0.0 and fine.error > 0.0 and ratio != 1.0):
         return math.nan
@@ -131,12 +131,12 @@ class Study:
 
     @property
     def noise(self) -> float:
-        """Largest spread of the repeats that are long enough to compare; 0 where none is."""
+        """Largest spread of repeats longer than `SHORT`; 0 without any."""
         return max((t.spread for t in self.trials if t.time > SHORT), default=0.0)
 
     @property
     def warning(self) -> str:
-        """Warning that the times are not to be trusted; empty if they are."""
+        """Warning that the times are unreliable; empty if they are reliable."""
         if self.noise <= NOISY:
             return ""
         return (

@@ -1,7 +1,7 @@
-"""The file of a sweep: runs by quantities, with dimension scales, which xarray opens as it is.
+"""The file of a sweep: runs by quantities, with dimension scales, which xarray opens directly.
 
 Every dataset has ``run`` as its first dimension; a quantity with labels has the axis of its labels as its
-second.  What a run does not have is NaN or an empty text.
+second.  Missing values are NaN or empty texts.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 FILETYPE: Final = "pound-solve sweep"
 FORMAT_VERSION: Final = (1, 0)  #: major: old readers fail; minor: something was added
-#: how a run ends: with all, with what it had when it stopped, or with nothing
+#: status of an ended run: with all results, with those up to its stop, or with none
 DONE, STOPPED, FAILED = ENDS = ("done", "stopped", "failed")
 RUN: Final = "run"  #: the first dimension
-ROW: Final = "row"  #: that of a table that was made of a sweep
+ROW: Final = "row"  #: first dimension of a table derived from a sweep
 HISTORIES: Final = "histories"
 ORDER: Final = "variables"  #: attribute with their names in order
 #: variables that differ between two sweeps of a study
@@ -176,7 +176,7 @@ class Sweep:
 def write(
     sweep: Sweep, path: Path, histories: Iterable[tuple[int, Mapping[str, NDArray[Any]]]] = ()
 ) -> None:
-    """Write a sweep: whole, or not at all.
+    """Write a sweep atomically.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def write(
 
 
 def write_table(path: Path, columns: Mapping[str, Variable], about: Mapping[str, str]) -> None:
-    """Write a table that was made of a sweep, as HDF5 with dimension scales and as CSV; see `write`.
+    """Write a table derived from a sweep, as HDF5 with dimension scales and as CSV; see `write`.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def write_table(path: Path, columns: Mapping[str, Variable], about: Mapping[str,
 
 
 def _put(path: Path, fill: Callable[[h5py.File], None], columns: Mapping[str, Sequence[Any]]) -> None:
-    """Write a file, and its columns as CSV beside it: whole, or not at all."""
+    """Write a file, and its columns as CSV beside it, atomically."""
     table = path.with_suffix(".csv")
     with whole(table) as text, whole_hdf(path) as file:
         fill(file)
@@ -269,7 +269,7 @@ def _dataset(file: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
 
 
 def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[Any]]) -> None:
-    """Write the histories of one run into a group of its own."""
+    """Write the histories of one run into a group."""
     group = file.create_group(f"{HISTORIES}/{number}")
     time = group.create_dataset("time", data=kept["time"])
     time.make_scale("time")

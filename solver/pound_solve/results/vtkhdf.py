@@ -1,8 +1,8 @@
-"""The structure and its histories as a VTKHDF file, which ParaView shows in motion.
+"""The structure and its histories as a VTKHDF file, which ParaView animates.
 
 An UnstructuredGrid of version 2.0 of the format, whose description is part of the documentation of VTK:
-points and cells stand once, values once for each step, one after the other; the group ``Steps`` tells
-where those of a step begin.
+points and cells are stored once, values for each step in sequence; the group ``Steps`` holds the offset of
+each step.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ def whole(path: Path, temporary: Path | None = None) -> Iterator[Path]:
     Raises
     ------
     OSError
-        It cannot be written; what stood at its name stands as before.
+        It cannot be written; an existing file of that name is unchanged.
     """
     temporary = temporary or partial(path)
     make_way(path, temporary)

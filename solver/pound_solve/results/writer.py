@@ -49,10 +49,10 @@ _DTYPES: Final = {"int": np.dtype("i8"), "text": _TEXT}
 
 
 class Writer:
-    """Write a results file while the analysis goes on.
+    """Write a results file during the analysis.
 
-    What a call writes stands in the file when it returns: a killed run leaves all but its last block, and
-    so does one whose disk is full.  Leaving the context with an exception finishes the file as ``stopped``;
+    Each call has written its data to the file when it returns: a killed run, or one whose disk is full,
+    loses only its last block.  Leaving the context with an exception finishes the file as ``stopped``;
     otherwise the caller must call :meth:`finish` first.
 
     Parameters
@@ -70,7 +70,7 @@ class Writer:
     ------
     ResultsError
         The file cannot be created, or another run writes it.  Every other call raises `NoRoomError` where
-        the disk is full: what was written before stands.
+        the disk is full; earlier data are kept.
     """
 
     def __init__(self, path: str | Path, *, title: str, units: Units, program_version: str) -> None:
@@ -165,7 +165,7 @@ class Writer:
         name : str
             One of `TABLES`.
         rows : iterable of sequences
-            One value a column, in the order of the columns; units as in `TABLES`, percentages as percent.
+            One value per column, in the order of the columns; units as in `TABLES`, percentages as percent.
         note : str, optional
             Remark on this run's table, printed below it after the table's general note.
 
@@ -218,13 +218,13 @@ class Writer:
         self._stored[f"{group}/{name}"] = THERE if name in OF_THE_DAY else digest
 
     def tables(self, stage: Stage, record: RunRecord | Study) -> None:
-        """Store the tables of a stage, but for those whose `rows` returns None.
+        """Store the tables of a stage, except those whose `rows` returns None.
 
         Parameters
         ----------
         stage : Stage
         record : RunRecord or Study
-            What the rows are made from.
+            Source of the rows.
         """
         for table in tables_at(stage):
             rows = table.rows(record)
@@ -295,7 +295,7 @@ class Writer:
             dataset.make_scale(leaf)
             return
         if "time" not in place:
-            place["time"] = self._history["time"]  # one more name of the same dataset
+            place["time"] = self._history["time"]  # another name of the same dataset
         dataset.dims[0].attach_scale(self._history["time"])
         for number, axis in enumerate(axes_of(name, attributes), 1):
             scale = _beside(name, place, axis.name, axis.labels)
@@ -351,7 +351,7 @@ class Writer:
             self._commit()
 
     def _aside(self, group: str, name: str, layout: HistoryLayout, rows: NDArray[Any]) -> None:
-        """Store rows of a history other than its samples (close-ups, extremes) in a group of their own."""
+        """Store rows of a history other than its samples (close-ups, extremes) in a separate group."""
         if 0 in layout.shape:
             return
         attributes = _complete(name, layout)
@@ -410,7 +410,7 @@ class Writer:
             self._commit()
 
     def finish(self, status: str, message: str = "") -> None:
-        """Store how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
+        """Store the final status: ``done``, or ``stopped`` with a message that states place and reason."""
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
         parts = {name: digest.hexdigest() for name, digest in self._digests.items()}

@@ -1,4 +1,4 @@
-"""Runs of the stability matrix, each in a process of its own, which may crash or not end."""
+"""Runs of the stability matrix in separate processes, which may crash or hang."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pound_solve.driver import run
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
 
-LIMIT: Final = 180.0  #: seconds after which a case counts as endless
+LIMIT: Final = 180.0  #: time after which a case counts as endless [s]
 #: the message of a stop has its number and time or stage, that of a refused deck its place
 CLEAR: Final = re.compile(r"A5\d\d (at t = \S+ \S+: |static analysis: )\w.{20,}|A50[15] \w.{20,}")
 REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
@@ -89,7 +89,7 @@ def solve(deck: str, files: Mapping[str, str]) -> Findings:
             return findings(wrong=f"{type(err).__name__}: {err}")
         with results:
             stop, moved = results.message, motion(results)
-            # a response that no engineer would believe may be right, and excuses no error
+            # an implausible response may be right, and excuses no error
             looks = tuple(c for c in looked(results.checks) if c.subject is not Subject.RESPONSE)
             bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if bad:
@@ -109,7 +109,7 @@ def serve(line: Connection) -> None:
 
 
 class Runner:
-    """Runs decks in a process of its own, which may die or be ended; each deck is run once."""
+    """Runs decks in a separate process, which may die or be killed; each deck is run once."""
 
     def __init__(self, limit: float) -> None:
         self.limit, self.kept = limit, dict[str, Findings]()

@@ -16,7 +16,7 @@ Some answers depend on the last digits of the deck: two motions of a chaotic sce
 they begin, and a contact that just closes may as well stay open.  Where an error is too large, the
 reference is therefore run again with all masses changed by a `NUDGE` of the allowed error.  Whatever
 changes by more than the allowed error (a motion from some time on, a largest force) is unknown and not
-judged.  A reference by steps does not see what `events.within_step` takes for rounding: overlaps of
+judged.  A reference by steps does not resolve what `events.within_step` treats as rounding: overlaps of
 contacts up to `MOVING_ALIKE` times `EVENT_TOLERANCE` of the displacements, so its masses change by `BLIND`
 at least; and laws that turn at less than `REVERSE_RATE` of the largest rate, so forces of springs are
 unknown where a body turns.
@@ -50,10 +50,10 @@ EXACT_WITHIN, LAGUERRE_WITHIN, AUTO_WITHIN = 1e-6, 1e-3, 2e-3
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
 ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
 NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
-#: change of masses beside a reference by steps, at least
+#: least change of masses with a reference by steps
 BLIND: Final = 10.0 * MOVING_ALIKE * EVENT_TOLERANCE
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
-MOST_STEPS: Final = 1e6  #: of such a reference
+MOST_STEPS: Final = 1e6  #: most steps of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"
 PARTLY: Final = "compared as far as the answer is known"
 FAMILIES: Final = ("linear", "contact", "hysteresis")
@@ -73,7 +73,7 @@ class JudgedRun:
     error : float
         The largest of displacements, as a share of the largest; NaN where nothing was compared.
     says : str
-        The message, or what is wrong.
+        The message, or the fault.
     seconds : float
     """
 

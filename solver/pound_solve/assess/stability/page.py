@@ -25,7 +25,7 @@ MEANS: Final = {
     STOPPED: "refused or stopped in words",
     FAULT: "all else, such as a wrong answer that no check flags",
 }
-REFUSED_AT: Final = re.compile(r"^.*?\.inp:\d+:\d+: error ")  #: in a file that is gone
+REFUSED_AT: Final = re.compile(r"^.*?\.inp:\d+:\d+: error ")  #: place in a temporary file
 
 
 def table(rows: Sequence[JudgedRun]) -> str:

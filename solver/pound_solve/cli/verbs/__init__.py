@@ -1,5 +1,5 @@
 """The verbs, one a module: ``SUMMARY``, ``add_arguments(parser)`` and ``execute(args)``.
 
-A module names its verb and is found by `main`.  It imports what it works with when it is executed: the help
-and the version need no numerics.
+The name of a module is that of its verb; `main` finds it.  It imports its dependencies on execution, so
+that help and version need no numerics.
 """

@@ -13,12 +13,12 @@ from pound_solve.cli import common
 SUMMARY = "write an example: its decks and its README; without a name, list the examples"
 
 _OWN = Path(__file__).parents[2]
-#: where the examples are: beside the package in a wheel, else in the checkout
+#: folders of the examples: beside the package in a wheel, else in the checkout
 FOLDERS = (_OWN / "examples", _OWN.parents[1] / "examples")
 #: a row of the table of examples/README.md
 _ROW = re.compile(r"\| \[(\w+)\]\(\w+/README\.md\) \| (.+?) \| (.+?) \|")
 _KEPT = (".inp", ".inc", ".md", ".ipynb", ".toml", ".slurm", "")
-#: how the files are run that are run by themselves
+#: commands for the files that can be run
 _RUN = {".inp": "pound-solve", ".ipynb": "jupyter lab"}
 
 
@@ -55,7 +55,7 @@ def listed(folder: Path) -> Mapping[str, str]:
 
 
 def _needs(told: str) -> str:
-    """Remark on what an example needs beside the program, from the column on records of the README."""
+    """Remark on further requirements of an example, from the column on records of the README."""
     if told == "yes":
         return " (needs the extra records)"
     return f" ({told.removeprefix('no; ')})" if told != "no" else ""

@@ -44,10 +44,10 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a deck; its mode stays, and a link to it."""
+    """Write a deck, preserving its mode and a link to it."""
     from pound_solve.results.whole_file import whole
 
-    real = Path(os.path.realpath(path))  # of a link, what it leads to
+    real = Path(os.path.realpath(path))  # the target of a link
     with whole(real) as partial:
         partial.write_bytes(data)
         if real.exists():

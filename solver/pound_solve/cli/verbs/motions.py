@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the files; none that is there is replaced."""
+    """Write the files without replacing existing ones."""
     from pound_solve.assess import motion_files
     from pound_solve.results.whole_file import write_text
 

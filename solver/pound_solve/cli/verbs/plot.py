@@ -46,7 +46,7 @@ def _time(word: str) -> float:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Draw the pictures, print their paths and name those left out."""
+    """Draw the pictures; print their paths and the names of those left out."""
     from pound_deck.files import opened
     from pound_solve.report import plot
     from pound_solve.results import Results
@@ -69,7 +69,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _wrong(args: argparse.Namespace, choice: Choice) -> str:
-    """Message on what is wrong with the arguments, or an empty text."""
+    """Message on a mistake in the arguments; empty without one."""
     from pound_solve.report.plot import PICTURES
 
     for name in args.pictures:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pound_solve.statistics.needed_gaps import Options
 
 SUMMARY = "separation of the buildings by ABS, SRSS, DDC and codes; of a sweep: probability of contact"
-OF_SWEEPS: Final = ("gap", "raise", "confidence", "picture")  #: options
+OF_SWEEPS: Final = ("gap", "raise", "confidence", "picture")  #: options for the results of sweeps
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -90,12 +90,12 @@ def _of_sweep(args: argparse.Namespace) -> int:
 
 
 def _options(args: argparse.Namespace) -> Options:
-    """Make the options of the statistics from those of the command line.
+    """Options of the statistics from those of the command line.
 
     Raises
     ------
     CurveError
-        One of them makes no sense.
+        An option is out of range.
     """
     from pound_solve.statistics.curves import CurveError
     from pound_solve.statistics.needed_gaps import Options

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from pound_solve.report.spectrum import Curve
 
 SUMMARY = "response spectra of records, of the motions of a deck, or of the floors of a run"
-DEFAULT = "0.01:10:91"  #: thirty periods a decade
-MOST = 10_000  #: periods
+DEFAULT = "0.01:10:91"  #: thirty periods per decade
+MOST = 10_000  #: most periods
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

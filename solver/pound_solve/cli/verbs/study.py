@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pound_solve.assess.study import Plan
 
 SUMMARY = "error against time of every method on this deck, and advice"
-#: options that only one of the two forms has
+#: options of only one of the two forms
 OF_A_DECK = ("set", "records", "methods", "steps", "tols", "repeat", "longest", "picture", "out")
 OF_THE_MATRIX = ("family", "law", "quick")
 

@@ -1,4 +1,4 @@
-"""``pound-solve sweep``: run a study, decks by PARAMs by records, and gather what the runs have come to."""
+"""``pound-solve sweep``: run decks over PARAMs and records, and collect the results in one table."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Read the study, run what is not done, write the table."""
+    """Read the study, execute the remaining runs, write the table."""
     return studies.carried_out(args.study, lambda: _swept(args))
 
 
 def _piece(word: str | None) -> tuple[int, int]:
-    """Parse K/N: number of a piece, and how many there are; 1 of 1 without the option."""
+    """Parse K/N: number of a piece, and number of pieces; 1 of 1 without the option."""
     if word is None:
         return 1, 1
     match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", word)
@@ -118,7 +118,7 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
 
 
 def _swept(args: argparse.Namespace) -> int:
-    """Run what is ahead and write the table; with --plan, print the plan and run a trial only."""
+    """Execute the remaining runs and write the table; with --plan, print the plan and run a trial only."""
     from pound_solve.sweep.execution.executors import engine
     from pound_solve.sweep.execution.lock import locked
     from pound_solve.sweep.session import Session

@@ -27,7 +27,7 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
 OPEN, PRESSED = 0, 1
-FORCE = 0  #: internal variable: force in a static state; a history has forces of its own
+FORCE = 0  #: internal variable: force in a static state; a history computes its own forces
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:

@@ -27,7 +27,7 @@ both losses are multiplied.
 
 Internal variables of each rule: the largest ductility of each side (1 before yield), a point (d, f), or on
 the backbone the ductility where the spring came to it, and how many times another side yielded than before,
-with the sign of the last one.  A spring that reverses where it has come to the backbone has not yielded.
+with the sign of the last one.  A spring that reverses on reaching the backbone has not yielded.
 
 References
 ----------

@@ -137,7 +137,7 @@ def cap_deformation(p: Numbers, s: float, m: Numbers) -> float:
 
 
 def residual_start(p: Numbers, s: float, m: Numbers) -> float:
-    """Deformation where the falling line comes to the residual strength."""
+    """Deformation at which the falling line reaches the residual strength."""
     k2, f2 = falling(p, s, m)
     return (residual(p, s) - f2) / k2
 

@@ -190,7 +190,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     Raises
     ------
     ValueError
-        No yield force on a side, R outside its limits, or a knee that comes to be too round.
+        No yield force on a side, R outside its limits, or a knee that becomes too round.
     """
     need_both_sides(fy_plus, fy_minus)
     sharp, c1 = values["R0"], values["CR1"]

@@ -30,7 +30,7 @@ unloading from there, and the branch that it left.
 References
 ----------
 Takeda T, Sozen MA, Nielsen NN (1970), Reinforced concrete response to simulated earthquakes, J. Struct.
-Div. ASCE 96(12): 2557-2573 (the rules, by their numbers).
+Div. ASCE 96(12): 2557-2573 (numbers of the rules).
 Kabeyasawa T, Shiohara H, Otani S, Aoyama H (1983), Analysis of the full-scale seven-story reinforced
 concrete test structure, J. Faculty of Engng, Univ. of Tokyo 37(2): 431-478 (slip).  Not read: the branches
 are those of the material TakedaSlip of K. Ichinohe (2023) for OpenSees, where :math:`n = 3`.  That has no

@@ -1,7 +1,7 @@
-"""The report as one page for a browser: the same tables, which sort, and pictures, which zoom.
+"""The report as one HTML page, with sortable tables and zoomable pictures.
 
-The page needs nothing but itself: the library of the pictures (plotly.js, extra ``html``), its style and
-its program stand in it, and a policy in its head forbids the browser to fetch anything.
+The page is self-contained: it includes the library of the pictures (plotly.js, extra ``html``), its style
+and its script, and a policy in its head forbids the browser to fetch anything.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
 from pound_solve.results.schema import Table
 
-#: what a browser may use: what stands in the page, and the images that it makes itself
+#: policy of the browser: only the contents of the page, and images that it creates
 POLICY: Final = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "form-action 'none'; base-uri 'none'"
@@ -35,7 +35,7 @@ class _Section(NamedTuple):
 
 
 def page(results: Results, *, limit: int | None = None, only: Collection[str] | None = None) -> str:
-    """Report of a results file as HTML; parameters as of `pound_solve.report.text.render`.
+    """Report of a results file as HTML; for the parameters see `pound_solve.report.text.render`.
 
     Without pictures if `only` is given.
 
@@ -103,7 +103,7 @@ def _body(results: Results, sections: Sequence[_Section]) -> Iterator[str]:
 def _programs(drawn: Sequence[Picture], library: str) -> Iterator[str]:
     if drawn:
         data = json.dumps([p.as_json() for p in drawn], allow_nan=False, separators=(",", ":"))
-        data = data.replace("</", r"<\/")  # no text in them ends the script that holds them
+        data = data.replace("</", r"<\/")  # no text in them may end the script element
         yield f"<script>{library}</script>\n"
         yield f'<script type="application/json" id="figures">{data}</script>\n'
     yield f"<script>\n{_own('page.js')}</script>\n</body>\n</html>\n"

@@ -13,8 +13,8 @@ from pound_solve.numerics.types import Array
 from pound_solve.report.plot.geometry import NOWHERE, DrawnStructure, apart, broken_line, displacements
 from pound_solve.results import Results
 
-MOST_POINTS: Final = 4000  #: of a curve in time; of more, the extremes of short intervals are kept
-MOST_SHOWN: Final = 8  #: curves of a picture that are shown at first; a click on its name shows another
+MOST_POINTS: Final = 4000  #: most points of a curve in time, else extremes of short intervals
+MOST_SHOWN: Final = 8  #: curves of a picture visible at first; a click on a name shows another
 MOST_CURVES: Final = 60
 MOST_LOOPS: Final = 12
 
@@ -45,7 +45,7 @@ COLOURS: Final = (
     "#8c564b",
     "#e377c2",
     "#7f7f7f",
-)  #: of buildings, whose two sides have one colour
+)  #: colours of buildings; both sides of one have the same
 
 Trace: TypeAlias = dict[str, Any]
 
@@ -60,9 +60,9 @@ class Picture(NamedTuple):
     x, y : str
         Names of the axes with their units.
     traces : list of dict
-        Curves, as plotly.js takes them.
+        Curves in the format of plotly.js.
     equal : bool
-        Whether both axes have one scale.
+        Whether both axes have the same scale.
     """
 
     title: str
@@ -78,7 +78,7 @@ class Picture(NamedTuple):
 
 
 def pictures(results: Results) -> list[Picture]:
-    """Make all pictures for which the results hold data."""
+    """Return all pictures for which the results have data."""
     makers: tuple[Callable[[Results], Iterator[Picture]], ...] = (
         _structure, _profiles, _courses, _loops, _capacity,
     )  # fmt: skip
@@ -234,5 +234,5 @@ def _numbers(values: Any) -> list[float | None]:
 
 
 def _plain(text: str) -> str:
-    """Text escaped so that plotly.js takes none of it for markup."""
+    """Text escaped so that plotly.js interprets none of it as markup."""
     return escape(text, quote=False)

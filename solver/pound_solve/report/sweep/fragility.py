@@ -15,8 +15,8 @@ from pound_solve.results.sweep_file import Sweep
 from pound_solve.statistics.curves import Asked, measure, unit_of, units_of
 from pound_solve.statistics.fragility_of_sweep import Fitted
 
-POINTS: Final = 200  #: of a curve that is drawn
-DIGITS: Final = 4  #: of probabilities that are printed
+POINTS: Final = 200  #: points of a drawn curve
+DIGITS: Final = 4  #: digits of printed probabilities
 
 
 def rows(fits: Sequence[Fitted]) -> Iterator[Row]:
@@ -48,7 +48,7 @@ def report(sweep: Sweep, asked: Asked, fits: Sequence[Fitted], at: Sequence[floa
 
 
 def _base(sweep: Sweep, fits: Sequence[Fitted]) -> str:
-    """Line of text on the runs that the fragilities are fitted to."""
+    """Line of text on the runs to which the fragilities are fitted."""
     seen = {f.case: f.observed for f in fits}
     levels = sorted({x for observed in seen.values() for x, _, _ in observed})
     runs = sum(count for observed in seen.values() for _, _, count in observed)

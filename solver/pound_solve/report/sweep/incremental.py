@@ -89,7 +89,7 @@ def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
 
 
 def _line(curve: Curve, rules: Rules) -> tuple[Array, Array]:
-    """Demands and levels of a record from the origin up to the highest level that it stands."""
+    """Demands and levels of a record from the origin up to the highest level without collapse."""
     levels, demands = np.array(standing(curve.points, rules)).T
     return demands, levels
 

@@ -1,4 +1,4 @@
-"""Report of separations: the probability of contact against the gap, beside rules."""
+"""Report of separations: the probability of contact over the gap, compared with rules."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from pound_solve.statistics.curves import FRACTILES, fractiles_of, measure, unit
 from pound_solve.statistics.needed_gaps import ANY, Group, Options
 from pound_solve.statistics.separation import RULES, share
 
-STEPS: Final = 8  #: gaps of the table where none are given
-POINTS: Final = 400  #: of a drawn curve
+STEPS: Final = 8  #: number of gaps in the table if none are given
+POINTS: Final = 400  #: points of a drawn curve
 
 
 def needs(groups: Sequence[Group]) -> Iterator[Row]:
@@ -39,7 +39,7 @@ def _finite(x: float) -> float:
 
 
 def _remark(g: Group) -> str:
-    """Text on what is not known of a group: gaps wider than those at which runs met, missing runs."""
+    """Remark on missing runs of a group, and on runs with collisions, which need an unknown wider gap."""
     remarks = []
     if len(g.met):
         remarks.append(f"met at a gap of {g.met.min():.6g} or more: wider gaps are not known")
@@ -60,13 +60,13 @@ def probabilities(groups: Sequence[Group], options: Options) -> Iterator[Row]:
 
 
 def _steps(g: Group) -> list[float]:
-    """Gaps in equal steps up to the widest that was needed or, where runs met, that is known."""
+    """Gaps in equal steps up to the widest needed gap or, if runs collided, the widest known one."""
     most = float(g.met.min()) if len(g.met) else float(g.needed.max(initial=0.0))
     return np.linspace(0.0, most, STEPS + 1)[1:].tolist() if most > 0.0 else []
 
 
 def report(sweep: Sweep, groups: Sequence[Group], options: Options) -> Iterator[str]:
-    """Lines of both tables; that of probabilities is for all contacts together."""
+    """Lines of both tables; probabilities are those of all contacts together."""
     units, level = units_of(sweep), measure(sweep)
     yield from printed(units, needed_table(level, options.level), needs(groups))
     yield ""
@@ -117,7 +117,7 @@ def _keys(measure: str) -> tuple[Column, ...]:
 
 
 def needed_table(measure: str, level: float) -> Sheet:
-    """The table of gaps that are needed."""
+    """The table of needed gaps."""
     sure = f"{100 * level:g} %\nfrom"
     return Sheet(
         columns=(

@@ -1,6 +1,6 @@
-"""The report of a sweep in words and tables: what was run, what failed, fractiles, worst runs, checks.
+"""The report of a sweep: inputs, failures, fractiles, worst runs and checks, as text and tables.
 
-Nothing in it depends on the day, the machine or the order in which runs ended.
+It does not depend on the date, the machine or the order in which runs ended.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ SHOWN: Final = (
     "drift_ratio", "peak_drift", "storey_drift", "residual_drift", "ductility", "closures", "contact_force",
     "needed_gap", "base_shear", "floor_acceleration",
 )  # fmt: skip
-GROUPS: Final = 64  #: cases and levels that are told apart
-VALUES: Final = 20  #: of a PARAM or a level, and records, that are named
-ROWS: Final = 100  #: runs that are listed
+GROUPS: Final = 64  #: most groups of cases and levels
+VALUES: Final = 20  #: most values of a PARAM or a level, and most records, listed by name
+ROWS: Final = 100  #: most runs listed
 ALL: Final = "all runs"
 
 
@@ -59,15 +59,15 @@ def write(path: Path, sweep: Sweep, title: str, more: Iterable[str] = ()) -> Pat
 
 
 def text(sweep: Sweep, title: str, more: Iterable[str] = ()) -> str:
-    """The report.
+    """Text of the report.
 
     Parameters
     ----------
     sweep : Sweep
     title : str
-        What was done with the runs.
+        Title, which names the analysis.
     more : iterable of str
-        Lines of what was made of them; they follow what was run and what failed.
+        Lines of the evaluation, printed after inputs and failures.
     """
     units = units_of(sweep)
     parts = [("what was run", list(_run(sweep)))]
@@ -95,7 +95,7 @@ def _banner(sweep: Sweep, title: str) -> Iterator[str]:
 
 
 def _run(sweep: Sweep) -> Iterator[str]:
-    """Lines of text on what was run: counts, decks, PARAMs, records, levels."""
+    """Lines of text on the inputs: counts, decks, PARAMs, records, levels."""
     status = sweep["status"].tolist()
     counts = ", ".join(f"{status.count(end)} {end}" for end in dict.fromkeys(sorted(status)))
     yield from _line("runs", f"{len(status)}: {counts}")
@@ -136,7 +136,7 @@ def failures(sweep: Sweep) -> list[Row]:
 
 
 def _titles(sweep: Sweep) -> list[str]:
-    """Title of every run that identifies it: its case, record and level."""
+    """Title of each run: its case, record and level."""
     names = [name for name in ("record", *_levels(sweep)) if name in sweep.variables]
     return [
         ", ".join(filter(None, [case, *(_told(sweep[n][i], n) for n in names)]))
@@ -163,7 +163,7 @@ def _shown(sweep: Sweep) -> Iterator[tuple[str, Array]]:
 
 
 def _groups(sweep: Sweep) -> dict[str, Index]:
-    """Group runs by case and level, else by case, else all: as finely as every group has several runs."""
+    """Group runs by case and level, else by case, else all: the finest with several runs per group."""
     named = cases(sweep)
     levels = [""] * len(named)
     for name in _levels(sweep):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pound_solve.integrate.protocol import Outcome
     from pound_solve.loading.motions.base import Motion
 
-FEW = 2  #: kinds of damping or of contacts that are told one by one
+FEW = 2  #: most kinds of damping or of contacts listed one by one
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
