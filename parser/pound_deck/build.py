@@ -32,7 +32,7 @@ def build(
     files: Mapping[str, str],
     report: list[Diagnostic],
 ) -> tuple[Model, list[Card]]:
-    """Build the model of all that could be bound; also return every card."""
+    """Build the model from all rows that could be bound; also return every card."""
     units = units_of(outline.single.get("UNITS"), report)
     heads = [row.items[0] for row in outline.sections["PROPS"] if row.items]
     binder = Binder(Values(catalog, params, frozenset(_plain_labels(heads)), units), report)
@@ -186,7 +186,7 @@ def _once(
     span: Span,
     report: list[Diagnostic],
 ) -> None:
-    """Add a value to a table; report it and leave it out where its key is there already."""
+    """Add a value to a table; report and skip it if its key exists already."""
     if key in table:
         first = table[key].span
         message = f"{what} is already given at {first.file}:{first.line}"
@@ -237,7 +237,7 @@ def _default_gravity(units: Units) -> float | None:
 def _doubtful_gravity(
     gravity: float | None, units: Units, single: Mapping[str, Row], weights: Sequence[Card]
 ) -> Iterator[Diagnostic]:
-    """Report gravity that fits another unit of length than the deck's, or that is needed and unknown."""
+    """Report gravity in a unit of length other than the deck's, or gravity that is needed but unknown."""
     known = _default_gravity(units)
     if known is None and "GRAVITY" not in single and weights:
         message = f"no value of gravity is known for {units.length} and {units.time}"

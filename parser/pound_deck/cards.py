@@ -26,7 +26,7 @@ from pound_deck.syntax import Fault, check_nesting, explain
 Part = Expression | Range
 
 _TIGHT: Final = frozenset({"EQUAL", "TO", "BY"})  #: tokens that may have blanks around them
-# a keyword, and no named item; what follows TITLE is free
+# a keyword, and no named item; the text after TITLE is free
 _FIRST_WORD: Final = re.compile(r"\s*(TITLE(?![\w.])|[A-Za-z_][\w.]*(?![\w.]|\s*=))", re.IGNORECASE)
 
 
@@ -106,7 +106,7 @@ def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None)
 
 
 def _first_error(parser: Lark, line: Line, error: UnexpectedInput) -> UnexpectedInput:
-    """First error that the parser finds in a line, which may stand before that of the lexer."""
+    """First error that the parser finds in a line, which may precede that of the lexer."""
     try:
         parser.parse(line.text)
     except UnexpectedInput as first:

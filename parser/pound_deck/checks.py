@@ -16,7 +16,7 @@ _TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Ki
 #: elements along the line between their nodes
 _LONG: Final = ("FRAME", "BEAM_COLUMN", "TENDON")
 _MOST_NAMED: Final = 10  #: numbers in one message
-_MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes its time
+_MOST_HINTS: Final = 100  #: most hints: further messages are not printed, and each hint takes time
 
 
 def run_checks(
@@ -31,12 +31,12 @@ def run_checks(
     Parameters
     ----------
     model : Model
-        All that could be read.
+        Model of all that could be read.
     cards : iterable of Card
         Every card of the deck; those of NODES and ELEMENTS have the places of single items.
     broken, gone, maimed : set of str
-        Sections that lost lines to mistakes, those of which it is not known what these lines define, and
-        the property sets that the others define: checks that count on what is lost are left out.
+        Sections with unreadable lines, those whose unreadable lines define unknown names, and the labels of
+        unreadable property sets: checks that depend on unreadable lines are skipped.
     """
     diagnostics = [d for check, needs in CHECKS if not broken & needs for d in check(model)]
     return diagnostics + list(_references(model, cards, gone, maimed))
@@ -163,7 +163,7 @@ def _analysis(model: Model) -> Found:
 
 
 def _deck(model: Model) -> Span:
-    """Span of the start of the deck, for diagnostics without a place of their own."""
+    """Span of the start of the deck, for diagnostics without a place."""
     return Span(next(iter(model.files)), 1, 1, 2)
 
 
@@ -279,7 +279,7 @@ def _weights_twice(model: Model) -> Found:
 
 
 def _weights_of_supports(model: Model) -> Found:
-    """Warn of weights on fixed nodes: they have no effect, except on supports with a motion of their own,
+    """Warn of weights on fixed nodes: they have no effect, except on supports with their own motion,
     or where weights act as loads.
     """
     if any(card.values.get("GRAVITY") == "YES" for card in model.analyses):
@@ -308,7 +308,7 @@ def _numbers(numbers: Sequence[int]) -> str:
 _NODES: Final = frozenset({"NODES"})
 _MEMBERS: Final = frozenset({"ELEMENTS"})
 _PROPS: Final = frozenset({"PROPS"})
-#: every check, with the sections that must be whole for its answer to be right
+#: every check, with the sections that must be complete for it
 CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_something, _NODES | _MEMBERS),
     (_analysis, frozenset({"ANALYSIS"})),

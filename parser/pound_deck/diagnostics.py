@@ -1,4 +1,4 @@
-"""Diagnostics: what is wrong, where, and what would be right; their print with the line underlined.
+"""Diagnostics: mistake, place and remedy; their format with the source line underlined.
 
 The numbers of diagnostics are those of `pound_deck.messages`.
 """
@@ -14,7 +14,7 @@ from typing import Final, Literal
 from pound_deck.model import Span
 
 _MANY_CHOICES, _MOST_CHOICES = 50, 500  #: to be looked through for the one that was meant
-SHORT, FEW = 3, 4  #: letters of a short word, and names that are offered for one
+SHORT, FEW = 3, 4  #: letters of a short word, and most names suggested for one
 _WIDTH: Final = 160  #: most characters of a source line in print
 
 
@@ -53,7 +53,7 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def doubted(diagnostics: Iterable[Diagnostic], meant: Container[str]) -> list[Diagnostic]:
-    """Diagnostics without the warnings whose code the deck declares as meant."""
+    """Diagnostics without the warnings suppressed by MEANT."""
     return [d for d in diagnostics if d.severity == "error" or d.code not in meant]
 
 

@@ -39,7 +39,7 @@ class Expression:
 
     @property
     def lone(self) -> Step | None:
-        """The step of an expression that has just one; else None."""
+        """The only step of an expression; None if it has several."""
         return self.steps[0] if len(self.steps) == 1 else None
 
     @property
@@ -88,7 +88,7 @@ FUNCTIONS: Final[Mapping[str, Callable[..., float]]] = {
     "ROUND": _round,
     "INT": math.trunc,
 }
-#: names that no PARAM can have
+#: reserved names, which no PARAM can have
 RESERVED: Final = frozenset(FUNCTIONS) | {"PI", "TO", "BY", "NAN", "INF", "INFINITY"}
 _CALLS: Final = "functions are " + ", ".join(name.lower() for name in FUNCTIONS)
 
@@ -207,7 +207,7 @@ def resolve(
 ) -> dict[str, Value | None]:
     """Values of all PARAMs by upper-case name; None, with a diagnostic, for those that have none.
 
-    Forward references are fine.  Names are followed with a list of their own, not by recursion.
+    Forward references are allowed.  Names are resolved with a stack, not by recursion.
 
     Parameters
     ----------

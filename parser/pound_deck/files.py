@@ -1,4 +1,4 @@
-"""Functions by which files of a user are opened and read."""
+"""Functions that open and read files of a user."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ def opened(name: str | os.PathLike[str]) -> IO[bytes]:
     Raises
     ------
     OSError
-        It cannot be read.  Pipes and devices are no files: their end may never come, and what was read once
-        is gone.
+        It cannot be read.  Pipes and devices are refused: they may never end, and can be read only once.
     """
     kind = os.stat(name).st_mode
     if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind)):

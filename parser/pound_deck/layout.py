@@ -1,9 +1,9 @@
 """Layout of a deck: its items in columns, every word, value and comment as written.
 
-A line is a row of cells.  Items by position stand in columns that all lines of their kind share.  A named
-item stands in a column with those above and below it where all names up to it are the same.  A comment
-moves only where it would meet the text before it.  A card with an item that goes on in the next line stays
-as it is.
+A line is a row of cells.  Positional items are aligned in columns common to all lines of their kind.  A
+named item is aligned with those above and below it if all names up to it are the same.  A comment moves
+only if it would touch the text before it.  A card with an item that continues on the next line is
+unchanged.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from pound_deck.model import Span
 from pound_deck.sections import FAMILIES, NAMES, SINGLE
 from pound_deck.source import INCLUDE, Line, Source, is_end, without_comment
 
-_INDENT: Final = "   "  #: of the lines of a section; twice that of lines that go on
-_WIDE: Final = "   "  #: least gap behind an item by position
-_NARROW: Final = "  "  #: behind all else
+_INDENT: Final = "   "  #: of the lines of a section; twice as much for continuation lines
+_WIDE: Final = "   "  #: least gap after a positional item
+_NARROW: Final = "  "  #: least gap after all other items
 _SINGLE: Final = frozenset(SINGLE) - {"TITLE"}
 
 
@@ -39,7 +39,7 @@ class _Cells:
     shared : int
         Number of first columns that all lines of the block share.
     head, tail : str
-        What stands before the cells, and behind them.
+        Text before and after the cells.
     places, named : list of str
         Cells by position, and by name.
     names : list of str
@@ -98,7 +98,7 @@ def layout(text: str, name: str = "deck.inp") -> tuple[str | None, list[Diagnost
     text : str or None
         None where a line does not follow the grammar.
     diagnostics : list of Diagnostic
-        Mistakes of syntax in this text; what it includes is not read.
+        Mistakes of syntax in this text; included files are not read.
     """
     source = Source()
     lines = list(_up_to_end(source.logical(name, text)))

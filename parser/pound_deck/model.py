@@ -28,7 +28,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """One card: its Spec, its bound values and where each stands.
+    """One card: its Spec, its bound values and their places.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class Model:
     output : Card
         The OUTPUT card, all defaults where the deck has none.
     meant : frozenset of str
-        Codes of the warnings that the deck says are meant so.
+        Codes of the warnings suppressed by MEANT.
     files : mapping of str to str
         Text of the deck and of every included file, by the name in its Spans.
     defaults : frozenset of str

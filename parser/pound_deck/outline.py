@@ -21,9 +21,9 @@ _KEYWORDS: Final = (*NAMES, *(spec.name for spec in CARDS))
 class Outline:
     """Rows of a deck, sorted into sections and single cards.
 
-    `broken` names the sections that lost a row to a mistake, and `gone` those of them of which it is not
-    known what stood in that row: what refers to it cannot be judged.  `maimed` are labels of property sets
-    whose row was lost.
+    `broken` names the sections with unreadable rows, and `gone` those of them whose unreadable rows define
+    unknown names, so that references cannot be checked.  `maimed` are labels of property sets whose rows
+    are unreadable.
     """
 
     catalog: Catalog
@@ -98,7 +98,7 @@ class Outline:
         family = FAMILIES.get(self._section or "", "")
         kinds = self.catalog.family(family) if family != "element" else {}
         if row.word in kinds or closest(row.word, kinds) or (not meant and len(items) == 2):
-            return False  # an ordinary line of the section above, perhaps with a slip of its own
+            return False  # an ordinary line of the section above, perhaps with another mistake
         lines = f"lines of {self._section} start with {', '.join(kinds)}" if kinds else ""
         hint = hints(f"did you mean {meant}?" if meant else lines, "sections are " + ", ".join(NAMES))
         self._error("P235", f"{row.word[:60]} is no section", row.span, hint)

@@ -90,13 +90,13 @@ def _read(source: Source, lines: list[Line], catalog: Catalog, overrides: Mappin
     for row in sorted(rows, key=lambda row: row.word != "PARAM"):  # names first: a line may start with one
         outline.add(row)
     texts = {f"--set {name}": str(value) for name, value in overrides.items()}
-    if unread:  # what is missing would only bring complaints about things that stand in the unread file
+    if unread:  # checks would only report definitions that are in the unread file as missing
         outline.lose_all()
         texts = {}
     params = _params(outline, texts, report)
     model, cards = build(outline, params, catalog, dict(files), report)
     report += run_checks(model, cards, outline.broken, outline.gone, outline.maimed)
-    if unread:  # names may be defined in what could not be read
+    if unread:  # names may be defined in unread files
         report[:] = [d for d in report if d.code not in ("P222", "P234")]
     order = {name: k for k, name in enumerate(files)}
     report.sort(

@@ -59,8 +59,8 @@ class Field:
     unit : str
         Dimensions, see the module's head; ``"-"`` for a pure number, ``""`` where units mean nothing.
     default : object
-        Value when the item is left out; `REQUIRED` when it must stand; None where its absence means
-        something. For ``count`` above one the default is a tuple or None.
+        Value if the item is omitted; `REQUIRED` if it must be given; None if its absence has a meaning. For
+        ``count`` above one the default is a tuple or None.
     doc : str
         One sentence for the manual, lower case, no full stop.
     lo, hi : float or None
@@ -70,8 +70,8 @@ class Field:
     count : tuple of two ints
         Least and most number of comma-separated values; ``(1, 1)`` binds a scalar, all else a tuple.
     words : tuple of str
-        Choices of a WORD (its position is not its code, see `codes`), words that may stand for the number
-        of a REAL, or the letters of FLAGS.
+        Choices of a WORD (its position is not its code, see `codes`), words that may replace the number of
+        a REAL, or the letters of FLAGS.
     codes : mapping of str to int
         Old numeric codes of the words.
     family : str
@@ -100,12 +100,12 @@ class Field:
 
 
 def out_of_limits(value: float, f: Field) -> str:
-    """Text on what is wrong with the magnitude or the limits of a number for an item; empty if nothing."""
+    """Text on a violation of the magnitude or the limits of a number for an item; empty if none."""
     return beyond(value, f) or outside(value, f)
 
 
 def beyond(value: float, f: Field | None) -> str:
-    """Text on what is wrong with the magnitude of a number, which may be NaN; empty if nothing."""
+    """Text on a violation of the magnitude of a number, which may be NaN; empty if none."""
     nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
     if nothing <= abs(value) <= GREAT:
         return ""
@@ -148,11 +148,11 @@ class Spec:
     code : int or None
         Old numeric code, accepted in place of the name.
     reference : str
-        Where the equation comes from.
+        Source of the equation.
     sample : str
-        Items, as a deck has them, that show the law well: ``pound-solve loop`` and the manual draw it so.
+        Items as in a deck for a typical loop, drawn by ``pound-solve loop`` and the manual.
     impl : object
-        What the solver needs to use the card (a class or a function); the reader never looks at it.
+        Class or function by which the solver uses the card; the reader ignores it.
     """
 
     family: str

@@ -2,7 +2,7 @@
 
 NODES, ELEMENTS, WEIGHTS, LOADS, MEMBER_LOADS, INITIAL, DRIFT, BUILDINGS and OUTPUT have one kind of line
 each, given here.  PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold cards of the families ``element``,
-``damping``, ``motion``, ``force`` and ``analysis``.  TITLE, UNITS and the other `CARDS` stand in no
+``damping``, ``motion``, ``force`` and ``analysis``.  TITLE, UNITS and the other `CARDS` belong to no
 section.
 """
 
@@ -231,7 +231,7 @@ FAMILIES: Final = {
     "ANALYSIS": "analysis",
 }
 NAMES: Final = (*(spec.name for spec in SECTIONS), *FAMILIES)  #: of all sections
-#: cards that stand anywhere
+#: cards allowed anywhere in a deck
 CARDS: Final = (
     Spec("card", "TITLE", "heading of the report"),
     Spec("card", "UNITS", "names of the units of force, length and time"),
@@ -289,4 +289,4 @@ CARDS: Final = (
     Spec("card", "INCLUDE", "reads another file here"),
     Spec("card", "END", "ends the file"),
 )
-SINGLE: Final = tuple(spec.name for spec in CARDS[:6])  #: cards that stand once
+SINGLE: Final = tuple(spec.name for spec in CARDS[:6])  #: cards allowed once

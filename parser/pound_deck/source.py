@@ -44,12 +44,12 @@ class Line:
 
 @dataclass(slots=True)
 class Source:
-    """Reads a deck and what it includes.
+    """Reads a deck and its included files.
 
     Attributes
     ----------
     report : list of Diagnostic
-        What is wrong with the files.
+        Receives the mistakes of the files.
     files : dict of str to str
         Texts by the name in spans; line ends are ``\\n``.
     unsaved : mapping of str to str
@@ -94,7 +94,7 @@ class Source:
         for number, raw in enumerate(text.split("\n"), 1):
             code = without_comment(raw)
             if not code or code.isspace():
-                # blank and comment lines may stand inside a continued card; columns need the line end
+                # blank and comment lines are allowed within a continued card; columns need the line end
                 pending += "\n" if pending else ""
                 continue
             start = start if pending else number

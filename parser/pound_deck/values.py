@@ -21,7 +21,7 @@ _LARGEST: Final = 10**15  #: whole numbers beyond are no longer exact
 class Values:
     """Reads the values of a deck.
 
-    Every method raises :class:`~pound_deck.diagnostics.Mistake` where the part holds something else.
+    Every method raises :class:`~pound_deck.diagnostics.Mistake` if the part has another kind of value.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class Values:
             d = error.diagnostic
             if (
                 d and d.code == "P222" and part.lone_word not in FUNCTIONS
-            ):  # the place says more than the name alone
+            ):  # the place is clearer than the name alone
                 known = suggest(part.lone_word, self.params) if part.lone_word else d.hint
                 message = f"{name} takes a number, and {d.message}"
                 raise mistake("P222", message, d.span or part.span, hints(known, meaning)) from None
@@ -135,7 +135,7 @@ class Values:
         raise mistake("P216", f"{f.name} takes a text, and {what}", part.span, hint)
 
     def _param(self, step: Step) -> Value | None:
-        """Value of the PARAM that a step names; None where there is none."""
+        """Value of the PARAM that a step names; None if it names none."""
         name = step.text.upper()
         if name in self.params and self.params[name] is None:
             raise Mistake
@@ -216,5 +216,5 @@ def _are_flags(text: str, letters: str) -> bool:
 
 
 def _code(text: str) -> int | None:
-    """Whole number of up to nine digits that a text stands for; else None."""
+    """Whole number of up to nine digits given by a text; else None."""
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else None

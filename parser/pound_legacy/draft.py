@@ -1,4 +1,4 @@
-"""Draft of the new deck: its lines, how each was read, and what was wrong in the old one."""
+"""Draft of the new deck: its lines, the basis of each, and the mistakes of the old one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Span
 
-#: of the new deck, in their order; lines of the first stand in no section
+#: of the new deck, in order; lines of the first belong to no section
 ORDER: Final = (
     "",
     "NODES",
@@ -24,7 +24,7 @@ ORDER: Final = (
     "ANALYSIS",
     "OUTPUT",
 )
-CONVENTION: Final = "BY CONVENTION"  #: marks in the new deck what no source confirms
+CONVENTION: Final = "BY CONVENTION"  #: mark in the new deck of items that no source confirms
 _CHECK: Final = "compare it with your manual of Ruaumoko or a listing of the deck"
 
 

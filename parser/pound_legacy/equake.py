@@ -1,9 +1,9 @@
-"""EQUAKE: ``IBERG ISTART DELTAT ASCALE END VEL DIS TSCALE``, then the record, or a record in a file of its
-own.
+"""EQUAKE: ``IBERG ISTART DELTAT ASCALE END VEL DIS TSCALE``, then the record, or a record in another
+file.
 
 Formats: 3 is a line START, then lines of counter, time and acceleration, of which that with the counter
 ISTART acts at t = 0; 1 (Berg) pairs of time and acceleration; 0 (Caltech) and 6 accelerations at the step
-DELTAT. ASCALE divides the numbers into shares of gravity.
+DELTAT. Divided by ASCALE, the numbers are in units of gravity.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _FORMATS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A file that holds a record: its name in the new deck, and its text."""
+    """A file with a record: its name in the new deck, and its text."""
 
     name: str
     text: str

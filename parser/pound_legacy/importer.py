@@ -65,11 +65,11 @@ def translate(
         Of its file, for the places of messages.
     text : str
     catalog : Catalog
-        Knows which hysteresis rules there are.
+        Source of the available hysteresis rules.
     records : sequence of File
         Files of records that do not follow in the deck: horizontal, vertical.
     shown : str
-        Name by which the new deck finds the old one, which holds the record.
+        Name of the old deck, which holds the record, in the new deck.
     run : bool
         The new deck is run at once: readings by convention are errors.
 
@@ -114,7 +114,7 @@ def _outline(
     Raises
     ------
     Mistake
-        The deck is none of the kind, is one in space, or its control lines are incomplete.
+        The text is no such deck, a 3-D deck, or its control lines are incomplete.
     """
     here = Span(name, 1, 1, 2)
     first = control_lines(text)

@@ -14,7 +14,7 @@ from pound_deck.source import without_comment
 _ITEM: Final = re.compile(r"""'[^']*'|"[^"]*"|[^\s,]+""")
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?")
 MOST: Final = 1e30  #: magnitude of a number
-MOST_ITEMS: Final = 200  #: of a line; more are no card
+MOST_ITEMS: Final = 200  #: most items of a line
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,13 +132,13 @@ def row(file: str, number: int, raw: str) -> Row | None:
 
 
 class Rows:
-    """The data lines of a section, one after another.
+    """The data lines of a section, read in sequence.
 
     Parameters
     ----------
     rows : sequence of Row
     here : Span
-        Place of the section's head, for what is missing.
+        Place of the section's head, for messages about missing lines.
     """
 
     def __init__(self, rows: Sequence[Row], here: Span) -> None:

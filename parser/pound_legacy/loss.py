@@ -49,7 +49,7 @@ def read(code: int, rule: Spec, rows: Rows, place: Span, draft: Draft, notes: li
         text = f"ILOS {code}: {rule.name} has no loss of strength"
         raise mistake("L604", text, place, "write 0, or take rule 1, 2, 4, 7, 10, 11 or 12")
     notes.append(draft.doubt(row.span, "the line of the loss of strength stands before those of the rule"))
-    if code in _SUDDEN and not gone:  # what never happens
+    if code in _SUDDEN and not gone:  # the loss never occurs
         code -= 1
     items = [f"ILOS={_WORDS[code]}", f"DUCT1={number(begin)}", f"DUCT2={number(end)}"]
     items.append(f"RDUCT={number(left)}")

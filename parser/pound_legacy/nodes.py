@@ -1,7 +1,7 @@
 """NODES: ``N X Y NF1 NF2 NF3 KUP1 KUP2 KUP3 IOUT``, and DRIFT, a list of nodes from the base up.
 
-NF is 0 free, 1 fixed, 2 slaved to the node KUP.  Nodes that are left out lie evenly between those given.
-A node named by KUP has no effect beside NF 0 or 1.
+NF is 0 free, 1 fixed, 2 slaved to the node KUP.  Omitted nodes are evenly spaced between those given.
+KUP has no effect with NF 0 or 1.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from pound_legacy.nodes import Node
 from pound_legacy.property_set import PropertySet
 
 READERS: Final = {"SPRING": springs.read, "FRAME": frames.read}
-#: of the old program, in words; their lines are not known
+#: types of the old program by name; their lines are not known
 OTHERS: Final = (
     *("BEAM", "WALL", "DAMPER", "DASHPOT", "TENDON", "CONTACT", "MULTISPRING", "MASONRY", "MACRO"),
     *("QUADRILATERAL", "FOUNDATION", "COMPOUND", "INTERACTION"),

@@ -1,6 +1,6 @@
 """Whether a text is a deck of Ruaumoko: a title, control lines of numbers alone, then NODES.
 
-In a deck of this program no line of numbers stands before the first section.
+In a deck of this program no line of numbers precedes the first section.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import Final
 
 from pound_legacy.lines import Row, row
 
-HEAD: Final = 20_000  #: characters that decide
-#: data lines that are looked at: the title, up to six of control and some that are out of place
+HEAD: Final = 20_000  #: characters examined
+#: data lines examined: the title, up to six control lines and some that are out of place
 _LINES = 14
 _LEAST = 6  #: items of a control line
 _CONTROL_2D = 4  #: control lines of a plane deck

@@ -1,6 +1,6 @@
 """Parameters of hysteresis rules, in the order of the old deck, for those whose order is known or recalled.
 
-Rule 52 stands in a deck with known results.  The orders of all others are recalled.
+Rule 52 occurs in a deck with known results.  The orders of all others are recalled.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ Values = dict[str, float]
 
 
 class Layout(NamedTuple):
-    """Items of a rule's lines, and what they are in the new deck.
+    """Items of a rule's lines, and their conversion to the new deck.
 
-    `write` makes the items of the new deck of the values, the post-yield ratio R among them; `losses` names
-    values that have no counterpart unless they are what is given with them.
+    `write` converts the values, including the post-yield ratio R, to items of the new deck; `losses` names
+    values without a counterpart, each with the value for which nothing is lost.
     """
 
     lines: tuple[tuple[str, ...], ...]

@@ -57,7 +57,7 @@ def read(props: PropertySet, label: str) -> None:
 
 
 def _axes(props: PropertySet, stiff: list[float], row: Row, notes: list[str]) -> None:
-    """Warn how the directions of the components are read, and what a length of the spring does."""
+    """Warn of the convention for directions of components, and of the effect of a spring's length."""
     if any(length == 0.0 for length in props.lengths) and stiff[0] != stiff[1]:
         notes.append(props.draft.doubt(row.span, "a spring without length has x along global x"))
         if any(props.lengths):
