@@ -110,7 +110,7 @@ def _response(
     plastic = None
     if spring.role.viscous:
         loss += peaks.dashpot_losses[i]
-    if loss and spring.role is Role.SPRING:  # friction has no residual deformation of its own
+    if loss and spring.role is Role.SPRING:  # friction has no separate residual deformation
         last = recorder.deformations[i]
         left = damage.residual(spring.law, outcome.states[i], last) if ended else np.nan
         path = damage.plastic_path(loss, spring.strengths, spring.yields)

@@ -11,7 +11,7 @@ class ItemError(ValueError):
     message : str
         What is wrong, and what would be right.
     item : str
-        Name of the item at fault, at whose place the message is told; empty for the card.
+        Name of the item at fault, whose place the message states; empty for the card.
     """
 
     def __init__(self, message: str, item: str = "") -> None:

@@ -35,7 +35,7 @@ class Addressed(types.Type):
 
     def __init__(self, parts: Any) -> None:
         self.parts = parts
-        key = hashlib.sha256(str(parts).encode()).hexdigest()[:16]  # stands in long names
+        key = hashlib.sha256(str(parts).encode()).hexdigest()[:16]  # part of long names
         super().__init__(name=f"{parts.instance_class.__name__}-{key}")
 
 

@@ -2,7 +2,7 @@
 else they run as Python.
 
 A kernel is plain Python.  Nothing is compiled, nor numba imported, before the first request here.
-The compiled code is kept between runs (`kernel_cache`), in a folder of its own for every version of the
+The compiled code is kept between runs (`kernel_cache`), in a separate folder for each version of the
 kernels' source: numba itself does not notice a change in a function that another one calls.
 """
 
@@ -151,7 +151,7 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
     kept = kernel_cache.place().folder is not None
     how = {"cache": kept, "error_model": "numpy", "_nrt": False}
-    if inner:  # Python never calls it: it needs no wrapper, and a name of its own in the cache
+    if inner:  # Python never calls it: it needs no wrapper, but a separate name in the cache
         twin.__qualname__ += INNER
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
     if "reorder_sums" in vars(function):

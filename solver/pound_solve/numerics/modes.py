@@ -157,7 +157,7 @@ def deficiency(k: Array) -> int:
 def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
     """Sum of the effective masses of all modes, for each row of `ground` = M r, shape (n_rows,).
 
-    What rides on DOFs that nothing holds is no part of any mode.
+    Masses at DOFs without stiffness belong to no mode.
     """
     at = np.flatnonzero(used_rows(k) & ~massless(m))
     root = 1.0 / np.sqrt(diagonal(m[np.ix_(at, at)]))

@@ -62,7 +62,7 @@ def value(coefs: Array, t: float, order: int = 0) -> Array:
 
 
 def on(coefs: Array, t: Array, order: int = 0) -> Array:
-    """`value` of several sets of polynomials, each at times of its own.
+    """`value` of several sets of polynomials, each at separate times.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ def nodal_mass(model: Model, blocks: Iterable[MassBlock]) -> dict[Dof, float]:
     mass: dict[Dof, float] = {}
     for _, at, matrix in blocks:
         for a, dof in enumerate(at):
-            # a consistent matrix is summed along the row of its own direction:
+            # a consistent matrix is summed along the row in the same direction:
             # the node's share of rigid motion
             same = [b for b, other in enumerate(at) if other[1] == dof[1]] if dof[1] < 2 else [a]
             mass[dof] = mass.get(dof, 0.0) + float(matrix[a, same].sum())

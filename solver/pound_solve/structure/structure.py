@@ -57,7 +57,7 @@ class Structure:
     self_weight : bool
         Whether the weight of members is among the loads.
     parts : mapping of int to Parts
-        Contributions of every element, by its number.
+        Contributions of each element, by element number.
     damping_texts : list of (Card, str)
     proportional : tuple of Proportional
         Damping between nodes other than the dashpots of elements.

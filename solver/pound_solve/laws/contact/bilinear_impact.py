@@ -21,7 +21,7 @@ loses :math:`D = \delta_m^2 a (K_1 - K)`.  EXACT: :math:`D = (1-e^2) W`, so that
 which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss
 on the energy of a Hertz contact; the restitution is then greater than :math:`e`.
 
-Any other speed has a restitution of its own: 1 where :math:`\delta_y` is not passed, and
+The restitution of any other speed differs: 1 where :math:`\delta_y` is not passed, and
 least, :math:`(K_2/K_1)^{1/4}`, where the overlap is :math:`\delta_y(1 + \sqrt{K_1/K_2})`.
 
 References

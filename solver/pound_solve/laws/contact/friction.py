@@ -3,7 +3,7 @@ r"""Coulomb friction across a contact: stick on a tangential spring, slip at a s
 .. math:: f = k_t (x - x_s) \ \text{while}\ |f| \le \mu_s N, \qquad f = \pm\mu_d N \ \text{while it slips}
 
 :math:`x` is the tangential displacement of I against J, :math:`N` the present force of the contact.  The
-spring stands for what lies between the nodes and the surface, so the slider itself moves at the rate
+spring represents the material between the nodes and the surface, so the slider itself moves at the rate
 :math:`\dot x - \dot f / k_t`; where that reverses, it sticks again:
 
 .. math:: \pm\dot x < \mu_d \dot N / k_t

@@ -75,7 +75,7 @@ RULE = Rule(
 
 
 class Built(NamedTuple):
-    """A contact law with its figures in the report; NaN stands for what depends on the speed.
+    """A contact law with its figures in the report; NaN for values that depend on the speed.
 
     Attributes
     ----------

@@ -15,7 +15,7 @@ That the damping acts on the stiff branch too is our choice: the force is contin
 as required for any overlap.
 
 After a slow touch the damping would be unbounded.  So :math:`v_0` is never less than the speed from
-which a free impact comes to the overlap at which the motion reversed, :math:`\sqrt{2\int F\,d\delta/m}`.
+which a free impact reaches the overlap at which the motion reversed, :math:`\sqrt{2\int F\,d\delta/m}`.
 """
 
 from __future__ import annotations

@@ -150,7 +150,7 @@ def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
 
 
 def next_branch(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
-    """Branch that follows a loading branch (the positive side's number stands for both sides), and the
+    """Branch that follows a loading branch (with the number of the positive side for both), and the
     deformation where it begins.
     """
     if kind == ELASTIC:

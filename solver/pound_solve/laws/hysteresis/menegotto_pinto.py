@@ -1,7 +1,7 @@
 r"""Menegotto-Pinto: reinforcing and structural steel with a round knee, Bauschinger effect and hardening.
 
-Each half cycle leaves its reversal :math:`(d_r, f_r)` along the elastic line and comes to the yield line of
-its side; both meet at :math:`(d_0, f_0)`:
+Each half cycle leaves its reversal :math:`(d_r, f_r)` along the elastic line and approaches the yield line
+of its side; both meet at :math:`(d_0, f_0)`:
 
 .. math:: \frac{f - f_r}{f_0 - f_r} = b\,\xi + \frac{(1 - b)\,\xi}{(1 + \xi^n)^{1/n}}, \qquad
           \xi = \frac{d - d_r}{d_0 - d_r}, \qquad

@@ -181,7 +181,7 @@ def reversed_at(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Crack, yield, reverse, return, come to zero force, or to the end of a line."""
+    """Crack, yield, reverse, return, reach zero force, or the end of a line."""
     if at == ELASTIC:
         s = 1.0 if event == 0 else -1.0
         return enter_backbone(p, m, s, crack_point(p, s)[0])

@@ -184,7 +184,7 @@ def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Crack, yield, reverse, return, come to zero force, or to the end of a line."""
+    """Crack, yield, reverse, return, reach zero force, or the end of a line."""
     if at == ELASTIC:
         return enter_at_crack(p, m, 1.0 if event == 0 else -1.0)
     s = side(at)

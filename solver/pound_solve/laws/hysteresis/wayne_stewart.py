@@ -18,7 +18,7 @@ The *backbone* of the positive side starts at the slackness :math:`g`:
 * a motion that reverses anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
   two sides.
 
-Where the falling branch comes to zero force, or to the pinched line of the other side, the connection has
+Where the falling branch reaches zero force, or the pinched line of the other side, the connection has
 failed: its force is zero from then on.
 
 Internal variables: the largest deformations :math:`d_{un} - g` of both sides (mirrored); the foot
@@ -29,7 +29,7 @@ References
 ----------
 Stewart WG (1987), The seismic design of plywood sheathed shear walls, PhD thesis, University of Canterbury;
 Ruaumoko's rule 9.  The power law of the reloading line as stated by Folz B and Filiatrault A (2001), Cyclic
-analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441, who have :math:`r_p` as a number of its own
+analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441, in which :math:`r_p` is a separate parameter
 (their r4).  Ours: deformations in the power law count from the slackness; the reloading line is never
 flatter than the one from the intercept :math:`F_i` to its target; failure.
 """

@@ -253,7 +253,7 @@ def _strain(
 
 
 def _rotation(model: Model, card: Card, spring: LawSpring) -> Iterator[Diagnostic]:
-    """A yield moment that a hinge or spring with a stiffness of its own reaches at an implausible
+    """A yield moment that a hinge or spring with a specified stiffness reaches at an implausible
     rotation.
     """
     at = max((abs(x) for x in spring.yields or () if math.isfinite(x)), default=0.0)

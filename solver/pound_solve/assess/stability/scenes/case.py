@@ -1,4 +1,4 @@
-"""One stress scene, and what the families of scenes share.
+"""One stress scene, and common parts of the families of scenes.
 
 Laws are taken from the catalog with their own sample items, so a new one is covered without a change here.
 Masses are weights (GRAVITY 1); the storey of unit mass has a period of 1.
@@ -17,7 +17,7 @@ from pound_solve.numerics.types import Array
 
 OMEGA: Final = 2.0 * math.pi
 STOREY: Final = OMEGA**2  #: stiffness of the storey of unit mass
-METHOD: Final = "@METHOD"  #: where the method's name and items go in a deck
+METHOD: Final = "@METHOD"  #: placeholder of the method's name and items in a deck
 STEP: Final = 1e-3
 SPIKE: Final = "EQUAKE\n TABLE POINTS=0.01,0,0.010001,1E6,0.010002,0\n"
 JUMP: Final = "EQUAKE\n TABLE POINTS=0.1,0,0.1,5,3,5\n"
@@ -38,26 +38,26 @@ class Case:
     family : str
         ``contact``, ``hysteresis`` or ``linear``.
     scene, variant, law : str
-        Row of the table; what is extreme; the law in it.
+        Row of the table; extreme feature; law.
     deck : str
         Text with `METHOD` in place of the method.
     step : float
-        DT of the methods that take steps [T].
+        DT of the stepping methods [T].
     within : float
-        Error of those allowed, as a share of the largest displacement.
+        Allowed error of these methods, as a fraction of the largest displacement.
     right : callable or None
         Displacements ux of the nodes of OUTPUT at some times, shape (n_times, n_nodes), in closed form; or
         the result of `compared` for them.
     inexact : float
-        What the closed form leaves out, as a share of the largest displacement.
+        Error of the closed form, as a fraction of the largest displacement.
     compared : callable
         Quantity that is compared with the right one: of times and displacements, shape (n_times, n_nodes).
     like : tuple of str and float
         Deck whose displacements times the factor are the right ones; empty: the deck itself.
     files : mapping of str to str
-        Files beside the deck.
+        Further files of the deck.
     heavy : bool
-        Left out of a quick run.
+        Whether a quick run skips the case.
     """
 
     family: str
@@ -76,7 +76,7 @@ class Case:
 
 
 def powers(unit: str, n: float) -> tuple[float, float]:
-    """Exponents of force and length in a unit such as F/L^1.5 or L/T; N in the unit stands for `n`.
+    """Exponents of force and length in a unit such as F/L^1.5 or L/T; N in the unit is replaced by `n`.
 
     Raises
     ------

@@ -160,7 +160,7 @@ ANALYSIS
 OUTPUT
  EVERY={end} NODES=1,{n}
 """
-OWN_LOSS: Final = ("TABLE", "BILINEAR_IMPACT")  #: what they lose depends on the depth of the impact
+OWN_LOSS: Final = ("TABLE", "BILINEAR_IMPACT")  #: laws whose loss depends on the depth of the impact
 
 
 def last_speed(t: Array, u: Array) -> Array:
@@ -206,7 +206,7 @@ class _Contacts:
             yield self.case("the same, steps that resolve the impact", f"{ratio:g}", deck, step=span / 800)
 
     def masses_and_gaps(self) -> Iterator[Case]:
-        """Unequal masses, massless nodes, gaps of nothing."""
+        """Unequal masses, massless nodes, gaps of zero."""
         for mass in (1e-8, 1e-4, 1e4, 1e8):
             deck = pair(self.plain, mass=mass, k2=STOREY * mass)
             yield self.case("one mass over the other", f"{mass:g}", deck)
@@ -250,7 +250,7 @@ class _Contacts:
         yield self.case("two contacts at the same instant", "symmetric", deck, step=STEP / 2)
 
     def grazing(self) -> Iterator[Case]:
-        """Contacts that are just touched, or just missed."""
+        """Contacts that just close, or just stay open."""
         swing = 1.0 / OMEGA
         for gap in (1.0 - 1e-3, 1.0 - 1e-9, 1.0, 1.0 + 1e-9):
             yield self.case(
@@ -269,10 +269,10 @@ class _Contacts:
         )
 
     def bouncing(self) -> Iterator[Case]:
-        """A ball that comes to rest, and one that lies there."""
+        """A bouncing ball until it is at rest, and a ball at rest."""
         for ratio, end in ((250.0, 6.0), (1e6, 3.0)):
             deck = BALL.format(gap=0.05, law=self.law(ratio, bodies=1), end=end)
-            step = STEP / 16 if ratio < 1e3 else STEP  # what each of twenty bounces is off adds up
+            step = STEP / 16 if ratio < 1e3 else STEP  # the errors of twenty bounces add up
             yield self.case("a ball that comes to rest", f"stiffness {ratio:g}", deck, step=step)
         deck = BALL.format(gap=0, law=self.law(25.0, bodies=1), end=1.0)
         yield self.case("a ball that lies there", "gap 0", deck, step=STEP / 2)

@@ -92,7 +92,7 @@ class _Springs:
         for ratio in (1e-6, 1e-3, 1e3, 1e6, 1e12):
             k = 2.6 * STOREY * ratio
             deck = storeys(self.rule(k=k), k=k)
-            step = STEP / 32 if ratio == 1e3 else STEP  # that follows the stiffer springs, or does not
+            step = STEP / 32 if ratio == 1e3 else STEP  # resolves the stiffer springs, or does not
             yield self.case("stiffness of the springs", f"{ratio:g}", deck, step=step, heavy=ratio > 1e5)
 
     def masses_and_motions(self) -> Iterator[Case]:
@@ -110,7 +110,7 @@ class _Springs:
             deck = storeys(self.plain, motion="TABLE POINTS=0,6,1,6", end=3.0)
             yield self.case("falling branch to collapse", "capped", deck)
         deck = storeys(self.plain, end=20.0, every=0.5)
-        yield self.case("resonance", "20 periods", deck, step=STEP / 8)  # what each period is off adds up
+        yield self.case("resonance", "20 periods", deck, step=STEP / 8)  # the errors of the periods add up
         for share in (1.0, 10.0):
             yield self.case(
                 "damping over critical", f"{share:g}", storeys(self.plain, damping=damped(share))
