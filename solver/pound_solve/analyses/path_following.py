@@ -18,8 +18,8 @@ releases suddenly (it fractures) is redistributed to the others at constant cont
 segments curved: Newton's method finds their points, and the events are bracketed.
 
 A closed rigid contact constrains its nodes (see `contact_constraints`); its event occurs when its force
-falls to zero.  If a loaded mechanism moves towards a touching contact, that contact closes first: the ground
-supports a body that lies on it.
+falls to zero.  If a loaded mechanism moves towards a touching contact, that contact closes first: the
+ground supports a body that lies on it.
 
 References
 ----------
