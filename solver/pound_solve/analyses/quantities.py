@@ -30,7 +30,7 @@ class Quantities:
     nodes : sequence of int
     outputs : sequence of Output
     sums : mapping of str to LinearSums
-        By the name of what they are.
+        Sums of forces or displacements, by name.
     acting : ndarray of int, shape (n_acting,)
         Laws whose forces are part of the motion.
 

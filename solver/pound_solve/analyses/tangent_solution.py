@@ -33,7 +33,7 @@ def solve_under_load(structure: Structure, k: Matrix, load: Array, usual: Array)
     Raises
     ------
     InstabilityError
-        K is not positive definite on what the load moves.
+        K is not positive definite on the DOFs that the load moves.
     """
     held = used_rows(k)
     loose = ~held & (load != 0.0)

@@ -30,8 +30,8 @@ LATER = "Records and the structure are checked when these mistakes are gone."
 
 
 class DeckError(UserError):
-    """Raised if the deck has mistakes: `diagnostics` are those found, `files` the texts that contain them,
-    and `later` says what was not checked because of them.
+    """Raised if the deck has mistakes: `diagnostics` lists them, `files` holds the texts that contain them,
+    and `later` states which parts were not checked because of them.
     """
 
     has_places = True

@@ -1,9 +1,9 @@
-"""Tuples of arrays that compiled code is handed as one address: an extension of numba.
+"""Tuples of arrays that compiled code receives as one address: an extension of numba.
 
-numba hands a named tuple on as all its numbers, seven for every array in it, in each call that one kernel
-makes of another: two thousand in those of a method, which takes longer to compile than what the kernels do,
-and time in every run.  An `Addressed` tuple is the address of its cells instead (`block.Block`), and its
-parts are read where they are used.  Kernels see no difference; they cannot make such a tuple.
+In each call of a kernel by another, numba passes a named tuple as all its components, seven for every
+array: two thousand in the calls of a method, which take longer to compile than the bodies of the kernels,
+and slow down every run.  An `Addressed` tuple is passed as the address of its cells (`block.Block`), and
+its parts are read on use.  Kernels see no difference, but cannot create such a tuple.
 
 Nothing writes to the cells while a kernel runs, as the loads state (``invariant.load``): a loop reads an
 address and a length once, however often it writes to arrays.

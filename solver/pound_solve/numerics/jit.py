@@ -207,7 +207,7 @@ class Called:
         self._dispatcher, self._entry = dispatcher, dispatcher
         self._given: tuple[Any, ...] = ()
         self._taken: list[Any] = []  # the same, of some their addresses
-        self._cells: list[Array] = []  # what is there
+        self._cells: list[Array] = []  # contents of these addresses
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it."""

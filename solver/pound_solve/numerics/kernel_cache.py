@@ -29,7 +29,7 @@ OF_A_VERSION = re.compile("[0-9a-f]{16}(-old-.*)?")  #: names of its folder, and
 
 
 class Place(NamedTuple):
-    """Where kernels are kept, None if nowhere, and what a user has to know of it."""
+    """Folder of the compiled kernels, None without one, and a message about it to the user."""
 
     folder: Path | None
     told: str = ""
@@ -37,7 +37,7 @@ class Place(NamedTuple):
 
 @cache
 def place() -> Place:
-    """The folder of this version, which is made; versions beside it that are no longer used are deleted."""
+    """Create the folder of this version and return it; folders of versions no longer used are deleted."""
     asked = os.environ.get(VARIABLE)
     for root in roots(asked):
         folder = root / digest()

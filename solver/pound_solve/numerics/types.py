@@ -1,4 +1,4 @@
-"""Array types by what they hold; the program computes in double precision only."""
+"""Array types by element type; the program computes in double precision only."""
 
 from __future__ import annotations
 

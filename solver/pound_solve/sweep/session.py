@@ -53,8 +53,8 @@ class Session:
         """Execute some runs, to estimate the time and the space of the others.
 
         These are the strongest shaking of the middle case, since collisions and yielding take time, and the
-        first and the last run if all cost little.  If the others would take long, the first run is repeated
-        with looser tolerances until one is fast enough.
+        first and the last run if all cost little.  If the others would take long, the strongest run is
+        repeated with looser tolerances until one is fast enough.
         """
         ahead = self.agenda.ahead
         some = list(dict.fromkeys([_strongest(ahead), ahead[0], ahead[-1]])) if ahead else []

@@ -121,7 +121,7 @@ _ITEMS = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
     """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the loss as
-    D1, D2, what is left, form, D3 and the loss by a cycle.
+    D1, D2, residual fraction, form, D3 and the loss per cycle.
 
     Raises
     ------

@@ -27,7 +27,7 @@ from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Pie
 from pound_solve.numerics.types import Array
 
 LIKE_G: Final = (0.1, 1.2)  #: usual peaks of earthquakes in units of gravity
-WEAK: Final = 0.06  #: peak in units of gravity below which an earthquake has no effect
+WEAK: Final = 0.06  #: peak in units of gravity below which an earthquake does no damage
 MOST_SAMPLES: Final = 10_000_000
 
 

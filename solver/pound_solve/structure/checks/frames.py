@@ -1,4 +1,4 @@
-"""Members and buildings that are missing, out of place or given twice, by what stands around them."""
+"""Members and buildings that are missing, misplaced or given twice, judged by their surroundings."""
 
 from __future__ import annotations
 

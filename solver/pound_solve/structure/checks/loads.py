@@ -13,13 +13,13 @@ from pound_solve.structure.checks.members import kinds, length
 from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
 
-#: of loads along x over the weight; a pushover load that is left in the deck may be more
+#: ratio of loads along x to the weight; a pushover load left in the deck may exceed it
 SIDEWAYS: Final = 0.5
-#: of loads downwards over the weight, apart from which they have other units; columns that lean on the
-#: building may bear several times what it does
+#: ratio of downward loads to the weight, outside of which they have other units; columns that lean on the
+#: building may bear several times its loads
 LIGHTEST, HEAVIEST = 0.01, 8.0
-UPWARDS: Final = 0.3  #: of loads upwards over those downwards
-PART: Final = 0.3  #: the same, below which P-Delta is that of a part of the weight
+UPWARDS: Final = 0.3  #: ratio of upward loads to downward loads
+PART: Final = 0.3  #: ratio of loads to the weight below which P-Delta covers only part of the weight
 TWICE: Final = (0.7, 1.4)  #: of the same beside the weight itself, which they repeat
 SEVERAL: Final = 3  #: floors of a building one of which may lack its load
 PRESSES: Final = 0.1  #: the same of the floors that bear loads beside one without any

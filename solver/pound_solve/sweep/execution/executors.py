@@ -65,7 +65,7 @@ def engine(name: str, workers: int) -> Engine:
         Empty for processes of this machine; ``dask://host:port`` for the workers of that scheduler, and
         ``dask`` for a new scheduler with workers on this machine.
     workers : int
-        Number of processes; 0 for one per processor.  Not used with an existing scheduler.
+        Number of processes; 0 for one per processor.  An existing scheduler has its own workers.
 
     Raises
     ------
