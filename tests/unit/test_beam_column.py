@@ -268,7 +268,7 @@ ANALYSIS
         (STEEL + " LP=0.3 PIN=BOTH", "", "no end is left"),
         (STEEL + " LP=3.1", "LP", "longer than the flexible length, 3"),
         (STEEL + " LP=0.9 RULE=BOUC_WEN N=2", "RULE", "curves: with it hinges have at most LP=0.45 here"),
-        ("PY=-100,100 MP=3 LP=0.3", "PY", "positive, then negative"),
+        ("PY=-100,100 MP=3 LP=0.3", "PY", "a positive value, then a negative one"),
     ],
 )
 def test_cards_that_do_not_fit_together(items, at, message):

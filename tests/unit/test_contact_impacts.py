@@ -236,10 +236,10 @@ def test_unit_impact(name: str) -> None:
 
 @given(st.floats(0.05, 1.0))
 def test_relations_of_damping_by_the_force_are_the_implicit_ones(e: float) -> None:
-    d = restitution.throughout_constant(e)
+    d = restitution.in_both_phases_constant(e)
     if e < 0.999:  # beyond, the logarithms of this form cancel
         assert math.log1p(d) - math.log1p(-d * e) == pytest.approx(d * (1 + e), rel=1e-7)
-    assert restitution.throughout(d) == pytest.approx(e, rel=1e-13)
+    assert restitution.in_both_phases(d) == pytest.approx(e, rel=1e-13)
     assert restitution.in_restitution(restitution.in_restitution_constant(e)) == pytest.approx(e, rel=1e-13)
 
 

@@ -59,7 +59,7 @@ def kelvin_voigt(mass: float = 2.0, **values: Any) -> Built:
 
 @pytest.mark.parametrize(("e", "xi"), list(zip(ASKED, STICKY_RATIO)))
 def test_sticky_ratio_of_the_table(e: float, xi: float) -> None:
-    assert abs(restitution.sticky_ratio(e) - xi) < FOUR_DIGITS
+    assert abs(restitution.with_tension_ratio(e) - xi) < FOUR_DIGITS
 
 
 @pytest.mark.parametrize(("e", "xi"), list(zip(ASKED, NO_TENSION_RATIO)))
@@ -78,15 +78,17 @@ def test_published_relation_without_tension_gives_the_table(e: float, given_back
 
 @given(st.floats(0.01, 1.0))
 def test_asked_restitution_comes_back(e: float) -> None:
-    assert restitution.sticky(restitution.sticky_ratio(e)) == pytest.approx(e, rel=1e-14, abs=0.0)
+    assert restitution.with_tension(restitution.with_tension_ratio(e)) == pytest.approx(
+        e, rel=1e-14, abs=0.0
+    )
     assert restitution.no_tension(restitution.no_tension_ratio(e)) == pytest.approx(e, rel=1e-14, abs=0.0)
 
 
 def test_limits() -> None:
-    for of in (restitution.sticky, restitution.no_tension):
+    for of in (restitution.with_tension, restitution.no_tension):
         assert of(0.0) == 1.0
-    assert restitution.sticky_ratio(1.0) == restitution.no_tension_ratio(1.0) == 0.0
-    assert restitution.sticky(1.0) == restitution.sticky(2.0) == 0.0
+    assert restitution.with_tension_ratio(1.0) == restitution.no_tension_ratio(1.0) == 0.0
+    assert restitution.with_tension(1.0) == restitution.with_tension(2.0) == 0.0
     assert restitution.no_tension(1.0) == pytest.approx(math.exp(-2.0), rel=1e-15)
 
 

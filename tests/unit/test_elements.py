@@ -100,7 +100,7 @@ PROPS
 
 
 def test_yield_forces_are_signed():
-    with pytest.raises(AssemblyError, match="positive, then negative"):
+    with pytest.raises(AssemblyError, match="a positive value, then a negative one"):
         structure_of("NODES\n 1 0 0\nELEMENTS\n 4 S 1\nPROPS\n S SPRING KX=1 FX=5,5 RULE=ELASTO_PLASTIC")
 
 

@@ -283,8 +283,8 @@ def test_components_and_their_role():
     ("items", "words"),
     [
         ("FX=0", "FX, the largest force, is not 0"),
-        ("FX=-1", "FX is written positive, then negative"),
-        ("GAPX=0.1,0.2", "GAPX is written positive, then negative"),
+        ("FX=-1", "FX needs a positive value, then a negative one"),
+        ("GAPX=0.1,0.2", "GAPX needs a positive value, then a negative one"),
         ("FY=1", "FY has no effect without CY"),
         ("GAPR=1", "GAPR has no effect without CR"),
     ],

@@ -216,10 +216,10 @@ def test_it_fails_on_the_pinched_line_of_the_other_side() -> None:
 @pytest.mark.parametrize(
     ("values", "says"),
     [
-        ({"FU": (18.0,)}, "FU is not less than"),
-        ({"FU": (26.0, 26.0)}, "FU is not less than"),
+        ({"FU": (18.0,)}, "FU must be at least"),
+        ({"FU": (26.0, 26.0)}, "FU must be at least"),
         ({"R": 0.0}, "without hardening"),
-        ({"SLACK": (-1.0,)}, "SLACK is written positive"),
+        ({"SLACK": (-1.0,)}, "SLACK needs a positive value"),
         ({"FI": 20.0}, "FI and RPINCH"),
         ({"RPINCH": 0.3}, "FI and RPINCH"),  # 4 + 3 * 8 = 28 at the ultimate force of 26
     ],

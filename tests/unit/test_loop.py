@@ -171,7 +171,7 @@ def test_protocols() -> None:
         (["TAKEDA", "ALFA=9"], "must be at least 0 and at most 1"),
         (["BILINEAR", "R"], "P215"),
         (["KELVIN_VOIGT", "C=1", "E=0.5"], "give the damping once"),
-        (["BILINEAR", "FX=-1,1"], "written positive, then negative"),
+        (["BILINEAR", "FX=-1,1"], "needs a positive value, then a negative one"),
         (["BILINEAR", "--path", "1,x"], "x is no number"),
         (["BILINEAR", "--path", "1,inf"], "no finite number"),
         (["BILINEAR", "--path", ""], "one deformation at least"),

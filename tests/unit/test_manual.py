@@ -220,10 +220,10 @@ RESTITUTION = table("theory-contact.md", "restitution")
 @pytest.mark.parametrize("row", RESTITUTION, ids=lambda r: r[0])
 def test_table_of_restitution_is_that_of_the_relations(row):
     e = float(row[0])
-    with_tension, without = restitution.sticky_ratio(e), restitution.no_tension_ratio(e)
+    with_tension, without = restitution.with_tension_ratio(e), restitution.no_tension_ratio(e)
     recovered = restitution.no_tension(with_tension)
     assert row[1:] == [f"{with_tension:.5f}", f"{without:.5f}", f"{recovered:.4f}"]
-    assert restitution.sticky(with_tension) == pytest.approx(e, rel=1e-13)
+    assert restitution.with_tension(with_tension) == pytest.approx(e, rel=1e-13)
     assert restitution.no_tension(without) == pytest.approx(e, rel=1e-13)
 
 

@@ -192,7 +192,7 @@ LOADS
         ("KX=1 WIDTH=1 FX=2", "FX", "no effect with RULE=ELASTIC"),
         ("KX=1 WIDTH=1 RULE=BILINEAR", "RULE", "needs the yield force FX"),
         ("KX=1 WIDTH=1 FX=1 RULE=BILINEAR TENSION=NO", "RULE", "a rule of its own"),
-        ("KX=1 WIDTH=1 FX=1,1 RULE=BILINEAR", "FX", "positive, then negative"),
+        ("KX=1 WIDTH=1 FX=1,1 RULE=BILINEAR", "FX", "a positive value, then a negative one"),
     ],
 )
 def test_rows_that_do_not_fit_together(items, at, message):

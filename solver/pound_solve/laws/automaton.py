@@ -25,7 +25,7 @@ GAP = 2  #: place of the gap among the parameters of a contact
 RESTITUTION = 1  #: place of the restitution among those of a rigid contact
 PAST = 1e-12  #: fraction of its scale up to which the variable of a smooth rule counts as zero
 AT_END = 1e-9  #: a law has left a line once it is beyond the end by this fraction of the deformation
-PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
+NORMAL_FORCE, NORMAL_FORCE_RATE = 0, 1  #: internal variables of a law with normal-force coupling
 
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; internal variables

@@ -7,7 +7,7 @@ import numpy as np
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws, LawState, LawTangent
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.laws.automaton import PUSH, PUSH_RATE
+from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
 from pound_solve.laws.functions import (
     PARAMETERS,
     VARIABLES,
@@ -148,8 +148,8 @@ def press_friction(state: LawState, i: int, force: float, rate: float, v: float)
 
     It pulls only as the bodies part, at a rate `v` below zero: a force below zero at touch is rounding.
     """
-    state.internal[i, PUSH] = max(force, 0.0)
-    state.internal[i, PUSH_RATE] = rate if force >= 0.0 or v > 0.0 else 0.0
+    state.internal[i, NORMAL_FORCE] = max(force, 0.0)
+    state.internal[i, NORMAL_FORCE_RATE] = rate if force >= 0.0 or v > 0.0 else 0.0
 
 
 def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
@@ -164,13 +164,13 @@ def enter_coupled(laws: Laws, rules: Tables, i: int) -> None:
     its force and the limits of its events change: they are linear in the normal force.
     """
     state, coefficients, friction = laws.state, laws.events.coefficients, laws.friction
-    push = state.internal[i, PUSH]
-    state.internal[i, PUSH] = push + state.internal[i, PUSH_RATE]
+    push = state.internal[i, NORMAL_FORCE]
+    state.internal[i, NORMAL_FORCE] = push + state.internal[i, NORMAL_FORCE_RATE]
     enter_branch(laws, rules, i)
     friction.offset_rate[i] = laws.tangent.offset[i]
     for e in range(coefficients.shape[1]):
         friction.limit_rates[i, e] = coefficients[i, e, 2]
-    state.internal[i, PUSH] = push
+    state.internal[i, NORMAL_FORCE] = push
     enter_branch(laws, rules, i)
     friction.offset_rate[i] -= laws.tangent.offset[i]
     for e in range(coefficients.shape[1]):

@@ -20,7 +20,7 @@ from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.force_events import LIFT
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Extent, Friction, Series
-from pound_solve.laws.automaton import PUSH, PUSH_RATE
+from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
 from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS, RELEASED
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
@@ -99,7 +99,7 @@ def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) 
         for k in range(terms - 2, -1, -1):
             rate = rate * s + push
             push = push * s + friction.push[r, k]
-        state.internal[i, PUSH], state.internal[i, PUSH_RATE] = max(push, 0.0), rate / h
+        state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(push, 0.0), rate / h
         friction.largest[r] = max(friction.largest[r], push)
         if friction.side[r] != 0.0:
             laws.tangent.offset[i] = friction.side[r] * laws.definition.parameters[i, MUD] * max(push, 0.0)
@@ -120,7 +120,7 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
         response = curved_force(laws, rules, j, d, v)
         push, rate = response[0], response[1] * v
     friction.pressing[r] = push >= 0.0
-    state.internal[i, PUSH], state.internal[i, PUSH_RATE] = max(push, 0.0), rate
+    state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(push, 0.0), rate
     return 0 if pressed else RELEASED
 
 

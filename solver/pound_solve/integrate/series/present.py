@@ -11,7 +11,7 @@ from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
 from pound_solve.integrate.series.forces import take_over
 from pound_solve.integrate.series.massless import first_violated
 from pound_solve.integrate.series.state import Series
-from pound_solve.laws.automaton import PUSH
+from pound_solve.laws.automaton import NORMAL_FORCE
 from pound_solve.numerics.types import Array, Index
 
 
@@ -36,7 +36,7 @@ class Present(KernelPresent):
         coupled = self.series.friction.laws.tolist()
         for i in [i for i in range(len(d)) if i not in coupled] + coupled:  # the forces that press first
             if i in coupled:
-                laws.state.internal[i, PUSH] = max(forces[laws.friction.normal_law[i]], 0.0)
+                laws.state.internal[i, NORMAL_FORCE] = max(forces[laws.friction.normal_law[i]], 0.0)
             if self.series.rigid.index_of[i] < 0:
                 forces[i] = law_kernels.law_force(laws, rules, i, d[i], v[i])
         return forces

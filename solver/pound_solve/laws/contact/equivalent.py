@@ -58,7 +58,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             f"Eq. 14 of Cole et al. gives a restitution of {e:.4g}, which no contact has: take MODEL=EXACT",
             "MODEL",
         )
-    xi = restitution.sticky_ratio(e) if paper or tension else restitution.no_tension_ratio(e)
+    xi = restitution.with_tension_ratio(e) if paper or tension else restitution.no_tension_ratio(e)
     if paper:
         duration = min(d.period for d in (pair.first, pair.second))
         omega = math.pi / math.sqrt(1.0 - xi * xi) / duration
@@ -68,7 +68,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         note = f"centroid {pair.centroid:.5g}, exact theory"
     k = reduced_mass * omega * omega
     c = 2.0 * xi * reduced_mass * omega
-    e_given = (restitution.sticky if tension else restitution.no_tension)(xi)
+    e_given = (restitution.with_tension if tension else restitution.no_tension)(xi)
     return Built(Law(RULE, (k, c, values["GAP"], float(tension))), k, c, xi, e, e_given, note)
 
 

@@ -11,9 +11,9 @@ spring represents the material between the nodes and the surface, so the slider 
 At touch the spring begins without force; bodies that slide faster than the limit grows,
 :math:`k_t |\dot x| > \mu_s \dot N`, slip at once.  At release the internal variables are reset.
 
-The law has normal-force coupling: before each evaluation, the internal variables `PUSH` and `PUSH_RATE` are
-set to :math:`N` and :math:`\dot N`.  Its work while it slips is no function of x alone; the integrator
-accumulates it.
+The law has normal-force coupling: before each evaluation, the internal variables `NORMAL_FORCE` and
+`NORMAL_FORCE_RATE` are set to :math:`N` and :math:`\dot N`.  Its work while it slips is no function of x
+alone; the integrator accumulates it.
 
 References
 ----------
@@ -25,8 +25,8 @@ dry friction.
 from __future__ import annotations
 
 from pound_solve.laws.automaton import (
-    PUSH,
-    PUSH_RATE,
+    NORMAL_FORCE,
+    NORMAL_FORCE_RATE,
     BranchKind,
     Law,
     Numbers,
@@ -55,9 +55,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at == OPEN:
         return linear(0.0, 0.0)
     if at == STICKING:
-        pull, stick_limit = kt * m[ANCHOR], mu * m[PUSH]
+        pull, stick_limit = kt * m[ANCHOR], mu * m[NORMAL_FORCE]
         return linear(kt, -pull, (kt, 0.0, -pull - stick_limit), (-kt, 0.0, pull - stick_limit))
-    return linear(0.0, side(at) * mud * m[PUSH], (0.0, -side(at), mud * m[PUSH_RATE] / kt))
+    return linear(0.0, side(at) * mud * m[NORMAL_FORCE], (0.0, -side(at), mud * m[NORMAL_FORCE_RATE] / kt))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -69,10 +69,10 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return (PLUS if event == 0 else MINUS), m
     after, anchor = STICKING, d
     if at != OPEN:
-        anchor = d - side(at) * mud * m[PUSH] / kt
-    elif m[PUSH] == 0.0 and kt * abs(v) > mu * m[PUSH_RATE]:
+        anchor = d - side(at) * mud * m[NORMAL_FORCE] / kt
+    elif m[NORMAL_FORCE] == 0.0 and kt * abs(v) > mu * m[NORMAL_FORCE_RATE]:
         after = PLUS if v > 0.0 else MINUS
-    return after, (m[PUSH], m[PUSH_RATE], anchor)
+    return after, (m[NORMAL_FORCE], m[NORMAL_FORCE_RATE], anchor)
 
 
 def curve(

@@ -154,7 +154,7 @@ def build_with(
     """
     constants.damping_item(values, ("D", "E"), reduced_mass)
     damping = constants.constant(
-        values, "D", restitution.throughout, restitution.throughout_constant, published
+        values, "D", restitution.in_both_phases, restitution.in_both_phases_constant, published
     )
     made = law(values["K"], n, values["GAP"], damping.value, reduced_mass)
     return Built(made, values["K"], math.nan, *damping, unit=stiffness_unit(n))

@@ -123,11 +123,11 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     """
     tension = values["TENSION"] == "YES"
     restitution_of, exact = (
-        (restitution.sticky, restitution.sticky_ratio)
+        (restitution.with_tension, restitution.with_tension_ratio)
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
     )
-    damper = dashpot(values, reduced_mass, restitution_of, exact, restitution.sticky_ratio)
+    damper = dashpot(values, reduced_mass, restitution_of, exact, restitution.with_tension_ratio)
     p = (values["K"], damper.c, values["GAP"], float(tension))
     return Built(Law(RULE, p), values["K"], *damper)
 

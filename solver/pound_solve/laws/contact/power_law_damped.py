@@ -114,7 +114,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     constants.damping_item(values, ("ALPHA", "E"), reduced_mass)
     scale = math.sqrt(2.0 * (n + 1.0))  # from the damping ratio of the linear law with the same path
     restitution_of, exact = (
-        (restitution.sticky, restitution.sticky_ratio)
+        (restitution.with_tension, restitution.with_tension_ratio)
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
     )
@@ -123,7 +123,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         "ALPHA",
         lambda alpha: restitution_of(alpha / scale),
         lambda e: exact(e) * scale,
-        lambda e: restitution.sticky_ratio(e) * scale,
+        lambda e: restitution.with_tension_ratio(e) * scale,
     )
     c = damping.value * math.sqrt(k * reduced_mass)
     law = Law(RULE, (k, n, values["GAP"], c, reduced_mass, float(tension)))

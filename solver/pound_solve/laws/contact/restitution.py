@@ -34,7 +34,7 @@ path in the plane of :math:`x` and :math:`\dot\delta` is that of the linear cont
           \int_0^u \frac{s\,ds}{1 + d s} = u^2 \varphi(d u), \qquad
           \varphi(x) = \frac{x - \ln(1 + x)}{x^2}
 
-*Throughout*, :math:`f = F(1 + d\dot\delta/v_0)`: approach and restitution pass the same work of the spring,
+*In both phases*, :math:`f = F(1 + d\dot\delta/v_0)`: the spring does the same work in both,
 :math:`\varphi(d) = e^2 \varphi(-d e)`, which is :math:`\ln\frac{1 + d}{1 - d e} = d (1 + e)`.
 
 *In restitution only*: :math:`\tfrac12 = e^2 \varphi(-d e)`.
@@ -46,15 +46,15 @@ import math
 from collections.abc import Callable
 
 
-def sticky(xi: float) -> float:
-    """Restitution [-] for damping ratio `xi` [-] when the contact holds until the overlap is gone."""
+def with_tension(xi: float) -> float:
+    """Restitution [-] for damping ratio `xi` [-] when the contact pulls until the overlap is gone."""
     if xi >= 1.0:
         return 0.0
     return math.exp(-math.pi * xi / math.sqrt((1.0 - xi) * (1.0 + xi)))
 
 
-def sticky_ratio(e: float) -> float:
-    """Damping ratio [-] that gives restitution `e` in (0, 1] with a sticky contact."""
+def with_tension_ratio(e: float) -> float:
+    """Damping ratio [-] that gives restitution `e` in (0, 1] with tension until the overlap is gone."""
     log = math.log(e)
     return -log / math.sqrt(math.pi**2 + log * log)
 
@@ -111,14 +111,14 @@ def phi(x: float) -> float:
     return math.fsum((-x) ** j / (j + 2) for j in range(18))
 
 
-def throughout(d: float) -> float:
+def in_both_phases(d: float) -> float:
     """Restitution [-] for the constant `d` [-] of damping that grows with the spring's force."""
     if d == 0.0:
         return 1.0
     return _root(lambda e: phi(d) - e * e * phi(-d * e), 0.0, min(1.0, 1.0 / d))
 
 
-def throughout_constant(e: float) -> float:
+def in_both_phases_constant(e: float) -> float:
     """Constant [-] of damping that grows with the spring's force, for restitution `e` in (0, 1]."""
     if e == 1.0:
         return 0.0

@@ -148,7 +148,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     gap = values["SLACK"]
     gap_minus = gap[1] if len(gap) == 2 else -gap[0]
     if gap[0] < 0 or gap_minus > 0:
-        raise ItemError("SLACK is written positive, then negative (signed)", "SLACK")
+        raise ItemError("SLACK needs a positive value, then a negative one", "SLACK")
     grow = float(values["GROW"] == "YES")
     return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], grow))
 

@@ -276,11 +276,11 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     fu_minus = fu[1] if len(fu) == 2 else -fu[0]
     gap_minus = slack[1] if len(slack) == 2 else -slack[0]
     if slack[0] < 0 or gap_minus > 0:
-        raise ItemError("SLACK is written positive, then negative (signed)", "SLACK")
+        raise ItemError("SLACK needs a positive value, then a negative one", "SLACK")
     if fu[0] < fy_plus or fu_minus > fy_minus:
-        raise ItemError("FU is not less than the yield force; positive, then negative (signed)", "FU")
+        raise ItemError("FU must be at least the yield force: a positive value, then a negative one", "FU")
     if r == 0.0 and (fu[0], fu_minus) != (fy_plus, fy_minus):
-        raise ItemError("without hardening (R=0) the ultimate force FU is the yield force", "FU")
+        raise ItemError("without hardening (R=0) FU must be the yield force", "FU")
     pinch = r if values["RPINCH"] is None else values["RPINCH"]
     p = (
         *(k, fy_plus, fy_minus, r, fu[0], fu_minus, fi, values["PTRI"], slack[0], gap_minus),

@@ -290,7 +290,7 @@ def signed(values: tuple[float, ...], item: str) -> tuple[float, float]:
     plus, minus = (values[0], -values[0]) if len(values) == 1 else values
     if plus < 0 or minus > 0:
         right = f"{item}={abs(plus):g},{-abs(minus):g}"
-        raise ElementError(f"{item} is written positive, then negative: {right}", item)
+        raise ElementError(f"{item} needs a positive value, then a negative one: {right}", item)
     return plus, minus
 
 

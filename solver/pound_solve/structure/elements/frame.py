@@ -88,7 +88,7 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
     _not_pinned(context, strengths, companions)
     wrong = [item for item in strengths if len(p[item]) == 2 and not p[item][0] >= 0.0 >= p[item][1]]
     if len(wrong) > 1:
-        raise ElementError("MI and MJ are written positive, then negative: MI=200,-150", wrong[0])
+        raise ElementError("MI and MJ need a positive value, then a negative one: MI=200,-150", wrong[0])
 
 
 def _not_pinned(context: ElementContext, strengths: list[str], companions: list[str]) -> None:
