@@ -272,7 +272,7 @@ def _weights_twice(model: Model) -> Found:
             yield Diagnostic("P329", message, card.place("NODES"), hint, "warning")
         elif len(nodes) < len(card["NODES"]):
             twice = next(n for n, count in Counter(card["NODES"]).items() if count > 1)
-            message = f"node {twice} stands twice in this list, and gets the weight twice"
+            message = f"node {twice} is listed twice, and gets the weight twice"
             yield Diagnostic("P329", message, card.place("NODES"), hint, "warning")
         for n in nodes:
             first.setdefault(n, i)

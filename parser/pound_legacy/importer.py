@@ -134,7 +134,7 @@ def _outline(
             continue
         if line.word in _HEADS:
             if line.word in sections:
-                what = f"{line.word} stands twice"
+                what = f"{line.word} is given twice"
                 draft.report.append(Diagnostic("L607", what, line.span, "join the two"))
             sections[line.word] = _Section(line, Rows([], line.span))
             current = sections[line.word].rows.rows

@@ -106,7 +106,7 @@ def test_chosen_columns_stand_side_by_side_in_the_order_asked(done: Results, tmp
         (["node/u", "2"], "--history: 2 is no KEY=VALUE, such as node=12"),
         (
             ["node/u", "node=1", "node=2"],
-            "--history: node stands twice; repeat --history for further columns",
+            "--history: node is given twice; repeat --history for further columns",
         ),
     ],
 )

@@ -164,7 +164,7 @@ def test_wrong_blocks_are_refused(writer: Writer, tmp_path: Path) -> None:
 
 
 def test_status(writer: Writer, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="'over' is none of done, stopped"):
+    with pytest.raises(ValueError, match="'over' is not one of done, stopped"):
         writer.finish("over")
     writer.finish("stopped", "element 12 at 3 s – why")
     writer.close()

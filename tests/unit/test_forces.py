@@ -79,7 +79,7 @@ def test_a_ramp_that_stays() -> None:
 
 
 def test_a_pulse_that_begins_late_with_jumps() -> None:
-    """A time that stands twice is a jump; nothing acts outside of the table."""
+    """A time that is given twice is a jump; nothing acts outside of the table."""
     r = oscillator(f"FORCES\n TABLE 2 {F} POINTS=0.503,1,1.1,1,1.1,-2,1.7,-2", 0.05)
     jumps = ((0.503, 1.0), (1.1, -3.0), (1.7, 2.0))
     same(r.u[:, 1, 0], F * sum(by * step_response(r.time - t, 0.05) for t, by in jumps))
@@ -255,7 +255,7 @@ def test_what_jumps_beside_a_spring_with_memory_needs_mass(cards: str) -> None:
     """Without mass nothing says along which path the spring yields or unloads; the run says so at once."""
     r = run_text(SERIES.format(cards))
     assert r.status == "stopped" and "A505" in r.message
-    assert "node 2 ux, which has no mass, and deforms the spring 1 X in no time" in r.message
+    assert "node 2 ux, which has no mass, and deforms the spring 1 X instantly" in r.message
     for cure in (" 2 1\n", "DAMPING\n RAYLEIGH BETA=0.01\n"):
         assert run_text(SERIES.format(cure + cards)).status == "done"
 

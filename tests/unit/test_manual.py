@@ -159,6 +159,20 @@ def test_the_pages_are_in_plain_english(phrase):
     assert not found
 
 
+#: and of phrases that messages, docstrings and comments got rid of
+GONE_FROM_SOURCE = (
+    r"\bin no time\b", r"\bstands twice\b", r"\bis none of\b", r"\bmeans it so\b", r"\bby their numbers\b",
+    r"\bis no part of\b", r"\bwhere it stands\b",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("phrase", GONE_FROM_SOURCE)
+def test_the_source_is_in_plain_english(phrase):
+    modules = [p for room in ("solver", "parser") for p in (ROOT / room).rglob("*.py")]
+    assert len(modules) > 300
+    assert not [p.name for p in modules if re.search(phrase, p.read_text("utf-8"))]
+
+
 def test_formulas_are_closed():
     for page in (*MANUAL.glob("theory-*.md"), MANUAL / "hysteresis.md"):
         text = prose(page)

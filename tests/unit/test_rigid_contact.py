@@ -600,6 +600,6 @@ def test_the_report_tells_impacts_from_forces_and_rigid_bodies_do_not_overlap(me
     (summary,) = r.tables["contact_summary"]
     lasting = np.isfinite(r.tables["collisions"]["peak_force"])
     assert lasting.sum() == 1
-    start = f"{len(lasting)}, {len(lasting) - 1} of them impacts in no time, without a force, "
+    start = f"{len(lasting)}, {len(lasting) - 1} of them instantaneous impacts without a force, "
     assert told.startswith(start + "largest force while closed 5 N at ")
     assert summary["peak_penetration"] == summary["min_gap"] == 0.0

@@ -6,7 +6,7 @@ from pound_solve.results.schema import Column
 
 NODE = Column("node", fmt="int", doc="node number")
 ELEMENT = Column("element", fmt="int", doc="element number")
-ITEM = Column("item", doc="what the value is")
+ITEM = Column("item", doc="name of the value")
 VALUE = Column("value", doc="value with its unit, as text")
 DEFAULT = Column("default", " ", doc="`*` for a default value")
 UNIT = Column("unit", doc="unit of the numbers in this row")

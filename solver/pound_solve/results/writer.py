@@ -412,7 +412,7 @@ class Writer:
     def finish(self, status: str, message: str = "") -> None:
         """Store the final status: ``done``, or ``stopped`` with a message that states place and reason."""
         if status not in STATUSES:
-            raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
+            raise ValueError(f"status {status!r} is not one of {', '.join(STATUSES)}")
         parts = {name: digest.hexdigest() for name, digest in self._digests.items()}
         with undisturbed():
             for name, dataset in self._history.items():

@@ -76,6 +76,6 @@ def check_jumps(structure: Structure, jumping: Array, live: Flags) -> None:
             where = int(z[int(np.argmax(np.abs(sudden).max(axis=1)))])
             raise ReductionError(
                 f"a force jumps or a load is released at {label(structure.dofs.free[where])}, which has "
-                f"no mass, and deforms the spring {spring.element} {spring.component} in no time: give the "
+                f"no mass, and deforms the spring {spring.element} {spring.component} instantly: give the "
                 "node weight, or let the force change within a short time (FORCES)"
             )

@@ -67,7 +67,7 @@ def _coordinates(items: Sequence[str]) -> dict[str, str]:
     for item in items:
         key, equals, value = item.partition("=")
         if not equals or key in coordinates:
-            what = f"{key} stands twice" if equals else f"{item} is no KEY=VALUE, such as node=12"
+            what = f"{key} is given twice" if equals else f"{item} is no KEY=VALUE, such as node=12"
             text = f"--history: {what}; repeat --history for further columns"
             raise SystemExit(common.complain(text, common.MISTAKES))
         coordinates[key] = value

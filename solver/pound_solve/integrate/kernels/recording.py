@@ -47,7 +47,7 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     law = i - outputs - n_laws
     d, v = laws.now.deformation[law], laws.now.rate[law]
     value, slope = tangent.stiffness[law] * d + tangent.offset[law], tangent.stiffness[law] * v
-    if definition.viscous[law] and tangent.damping[law] != 0.0:  # damping is no part of a spring's force
+    if definition.viscous[law] and tangent.damping[law] != 0.0:  # a spring is reported without its damping
         value += tangent.damping[law] * v
         slope += tangent.damping[law] * row_product(rows, law, now.acceleration)
         # the acceleration of an unknown without mass is a jump of its velocity over a step, or a part

@@ -242,7 +242,7 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
 
 
 def joints_jump(laws: Laws, series: Series, top: int) -> bool:
-    """Whether the laws at joints without mass deform in no time; the inputs have `top` coefficients."""
+    """Whether the laws at joints without mass deform instantly; the inputs have `top` coefficients."""
     massless, most, far = series.massless, 0.0, 0.0
     for i in massless.laws:
         d = laws.now.deformation[i]

@@ -14,7 +14,7 @@ from pound_solve.results import Results
 def collisions(results: Results, choice: Choice) -> Any:
     """Draw a line for the peak of each collision, and below a bar for its time.
 
-    Impacts in no time have no force: where all are so, the lines are their impulses.
+    Instantaneous impacts have no force: if all are instantaneous, the lines are their impulses.
     """
     names = list(results.labels("contact/force"))
     figure = style.figure(9.5, 0.3 * len(names) + 3.4, "Collisions")

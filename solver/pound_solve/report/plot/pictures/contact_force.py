@@ -45,7 +45,7 @@ def _caption(results: Results, name: str, choice: Choice) -> str:
     times = {0: "not closed", 1: "closed once"}.get(len(collisions), f"closed {len(collisions)} times")
     peaks = collisions[np.isfinite(collisions["peak_force"])]
     if not len(peaks):
-        return f"{name}: {times}" + (", impacts in no time (bars)" if len(collisions) else "")
+        return f"{name}: {times}" + (", instantaneous impacts (bars)" if len(collisions) else "")
     top = peaks[np.argmax(peaks["peak_force"])]
     return (
         f"{name}: {times}, largest force {top['peak_force']:.5g} {units.force} at {top['t_peak']:.6g} "

@@ -139,7 +139,7 @@ def _collisions(run: RunRecord) -> str:
     lasting = [c for c in collisions if c.peak == c.peak]
     count = str(len(collisions))
     if impacts := len(collisions) - len(lasting):
-        count += f", {impacts} of them impacts in no time, without a force"
+        count += f", {impacts} of them instantaneous impacts without a force"
     if not lasting:
         return count
     worst = max(lasting, key=lambda c: c.peak)
