@@ -1,9 +1,13 @@
-r"""The motion that TAYLOR has kept for the envelopes, as a `Course`: at the ends of the cells of every step
-and of every interval in modes, and at any instant between these.
+r"""The motion that TAYLOR keeps for envelopes, as a `Course`.
 
-Over an interval in modes every quantity is a product of a row with :math:`x = (\mathrm{Re}\,c,
-\mathrm{Im}\,c, \sigma_0, \sigma_1)` of its start (see `modal_tables`).  At a place s of the interval the
-row :math:`(\rho_r, \rho_i, r_0, r_1)` is
+A run keeps two kinds of spans: steps, whose motion is a power series, and intervals that were advanced in
+modes (see `modal_tables`).  Either is divided into cells; a `Course` gives the motion at the ends of the
+cells and at any instant between them.
+
+Over an interval of length h every quantity is the product of a row with the vector :math:`x =
+(\mathrm{Re}\,c, \mathrm{Im}\,c, \sigma_0, \sigma_1)`: coefficients c of the free motions of eigenvalues
+:math:`\lambda`, inputs :math:`\sigma_0`, and their changes over the interval :math:`\sigma_1`.  Let
+:math:`(\rho_r, \rho_i, r_0, r_1)` be the row at the start.  At the share s of the interval it is
 
 .. math:: \bigl(\mathrm{Re}\,g\,\rho_r + \mathrm{Im}\,g\,\rho_i,\; \mathrm{Re}\,g\,\rho_i -
           \mathrm{Im}\,g\,\rho_r,\; r_0,\; r_1 + s\,r_0\bigr), \qquad g = e^{\lambda h s} .
