@@ -5,8 +5,8 @@
 ``KP KPA KPLOT JOUT DSTORT DFACT XMAX YMAX NLEVEL NUP IRESID KDUMP``,
 ``MAXIT MAXCIT FTEST WAVEX THETA DXMAX D OMEGA F0``.
 
-The values of one deck whose results are known are certain (2 0 1 0 2 0 0 0 0 0 0); what others mean is
-recalled, but for ICTYPE 0 and 6.
+Only the values 2 0 1 0 2 0 0 0 0 0 0 are confirmed, by a deck with known results.  The meaning of other
+values, except ICTYPE 0 and 6, is recalled from memory.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 r"""Closed rigid contacts in statics: constraints on the unknowns, and the forces of the contacts.
 
 With the rows B of the closed contacts, rates of displacement obey :math:`B\dot u = 0`.  In each row one
-unknown follows the others, :math:`u = Z u`, and equilibrium along the remaining motions is
+unknown follows the others, :math:`\dot u = Z\dot v`, and for loads :math:`\lambda p` equilibrium along the
+remaining motions is
 
-.. math:: Z^T K Z\,\dot u = Z^T p, \qquad B^T \dot r = p - K\dot u
+.. math:: Z^T K Z\,\dot v = \dot\lambda\,Z^T p, \qquad B^T \dot r = \dot\lambda\,p - K\dot u
 
 The forces r of contacts with dependent rows are shared evenly: the solution has the least norm.
 """

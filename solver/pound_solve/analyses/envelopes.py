@@ -107,7 +107,7 @@ class Envelopes:
         Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
         accelerations "a" (total).
     output : Envelope
-    total : dict of Envelope
+    sums : dict of Envelope
         Of the sums, by their names.
     shown : ndarray of bool, shape (n,)
         Unknowns that the envelopes depend on.

@@ -155,7 +155,9 @@ class HistoryResult:
 
     @property
     def checks(self) -> list[Check]:
-        """Self-checks: the balance of energy, and those of the method."""
+        """Self-checks: energy balance, equilibrium of the buildings, hinge peaks, memory of the close-ups,
+        and those of the method.
+        """
         checks = [self._energy(), *self._balance(), *self._hinges(), *self._closeups()]
         return checks + self.returned.checks
 

@@ -18,7 +18,7 @@ from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-EVENT_TOLERANCE = 1e-12  #: share of its largest value below which an exit counts as not reached
+EVENT_TOLERANCE = 1e-12  #: share of its largest value up to which an event function is not above zero
 SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
 MAX_BETWEEN = 0.1  #: limit of such a share; a sine with seven steps in its period reaches it

@@ -37,7 +37,7 @@ class Extreme:
 
 @dataclass
 class Collision:
-    """One closure of a contact."""
+    """One collision, from touch to parting; a contact that is released and pressed again continues it."""
 
     law: int
     t_start: float

@@ -82,7 +82,7 @@ class DenseOutput:
     def kept(self) -> DenseOutput:
         """Return a copy that does not change when the run goes on."""
         snapshot = copy.copy(self)
-        snapshot.__dict__.pop("end", None)  # nobody asks for it then
+        snapshot.__dict__.pop("end", None)  # cached; not used in a snapshot
         snapshot.branches = list(self.branches)
         snapshot.subsystems = copy.copy(self.subsystems)
         snapshot.subsystems.present = [copy.copy(x) for x in self.subsystems.present]

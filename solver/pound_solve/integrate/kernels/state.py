@@ -13,8 +13,11 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
-#: why a kernel returns to Python; FALL: a force falls that holds a joint without mass; SHORT: steps are too
-#: short for the clock; LOOSE: nothing holds an unknown without mass; STRIKE: a rigid contact strikes, parts
+#: why a kernel returns to Python.  DONE: all goals are reached; FULL: Python must empty the buffers;
+#: RUNAWAY: the energy grows without bound; CHATTER, CROWD: too many changes of branch at an instant, in a
+#: step; PIVOT: a matrix is singular; NEWTON: no convergence; FALL: a law that holds a massless unknown has
+#: lost its force; SHORT: the step is lost in the rounding of the time; LOOSE: nothing holds a massless
+#: unknown; STRIKE: a rigid contact strikes or parts
 DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL, SHORT, LOOSE, STRIKE = range(11)
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns

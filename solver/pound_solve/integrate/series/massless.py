@@ -152,8 +152,8 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
     return -1
 
 
-def undamped_unknowns(laws: Laws, massless: Massless) -> Index:
-    """Numbers of the unknowns of order one that take part in the motion which dashpots resist least."""
+def least_damped_unknowns(laws: Laws, massless: Massless) -> Index:
+    """Numbers of the unknowns of order one that take part in their least damped motion."""
     form_matrix(laws.tangent, massless, DAMPING)
     c = np.zeros((len(massless.unknown), len(massless.unknown)))
     c[massless.pattern.ai, massless.column] = c[massless.column, massless.pattern.ai] = massless.matrix

@@ -8,7 +8,8 @@ and :math:`G = B M^{-1} B^T` of `rigid.contacts`,
           r_{k-2} = \frac{k(k-1)}{h^2}\, x_k
 
 :math:`B_s s_k` being the part of the inputs and g the gaps.  The first two coefficients, which are the
-present state, are freed of their rounding so in every step.  A contact parts where its force falls to zero.
+present state, are corrected for rounding in this way in every step.  A contact parts where its force falls
+to zero.
 """
 
 from __future__ import annotations

@@ -320,7 +320,7 @@ class Taylor(KernelEngine):
             int(np.flatnonzero(self.massless.unknown == fault)[0]),
         )
         if self.massless.damped[n]:
-            whole = massless.undamped_unknowns(self.laws, self.massless)
+            whole = massless.least_damped_unknowns(self.laws, self.massless)
             names = [self.system.name(i) for i in sorted(self.order[self.massless.unknown[whole]].tolist())]
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"

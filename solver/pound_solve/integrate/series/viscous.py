@@ -32,7 +32,7 @@ from pound_solve.integrate.series.state import Series, Viscous
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
-SLOW_RATE = 1e-10  #: share of the largest rate, or of the force there, below which it does
+SLOW_RATE = 1e-10  #: share of the largest rate, or of the force there, below which it is linear
 SLOW_RATE_OF_UNIT = 1e-12  #: the same, of the rate one
 DEAD_BAND = 1e-3  #: share of this rate between the two events, lest they follow one another
 RATE_CONVERGED = 1e-6  #: share of a rate that Newton's iteration changes last: it leaves the square of that

@@ -2,7 +2,7 @@ r"""CENTRAL: explicit central differences, events located within the step.
 
 Newmark's :math:`\beta = 0`, :math:`\gamma = \tfrac12` is the central difference method
 with a start of its own.  It is stable for :math:`h < 2/\omega_{max}`; the limit is computed
-with every contact pressed and every spring elastic, and a longer step is refused.
+with every contact pressed and every other law on its steepest branch; a longer step is refused.
 
 References
 ----------
@@ -29,9 +29,9 @@ from pound_solve.structure.reduction import ReducedSystem
 
 
 def limit(system: ReducedSystem, u: Array) -> float:
-    """Largest stable step [T]: 2 over the highest frequency with all contacts pressed
-    and all springs elastic, members as they are at displacements `u`.  The stiffness of a curved contact
-    is not known before it is pressed: it is left out.
+    """Largest stable step [T]: 2 over the highest frequency with all contacts pressed and all other laws on
+    their steepest branches, members as they are at displacements `u`.  The stiffness of a curved contact is
+    not known before it is pressed: it is left out.
     """
     laws = system.structure.laws
     stiffest = [0.0 if s.role.collides and s.law.curved else s.steepest for s in laws]
