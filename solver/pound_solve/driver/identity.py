@@ -12,7 +12,9 @@ MOTION = "motion"  #: first word of the parts that another earthquake changes
 
 
 def identity(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> dict[str, str]:
-    """Structure and loading of a deck as text: the name of each part and its values with all digits."""
+    """Return the structure and loading of a deck as text: the name of each part and its values with all
+    digits.
+    """
     return dict(_parts(model, motions, forces))
 
 

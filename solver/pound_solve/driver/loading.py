@@ -39,7 +39,7 @@ def context(model: Model, request: Request) -> LoadingContext:
 
 
 def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Motion]:
-    """Ground motions of all EQUAKE cards; a wave gives one for each place."""
+    """Return the ground motions of all EQUAKE cards; a wave gives one for each place."""
     motions: list[Motion] = []
     place = {node.id: node.x for node in model.nodes.values()}
     apart = [card for card in model.equake if card["SUPPORTS"] is not None]
@@ -66,7 +66,7 @@ def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagno
 
 
 def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]:
-    """Warn if a history ends before the share `LEAST_ACTED` of the Arias intensity has acted."""
+    """Yield a warning if a history ends before the share `LEAST_ACTED` of the Arias intensity has acted."""
     histories = [c for c in model.analyses if c.spec.name == "HISTORY" and not c["RESTART"]]
     for history in histories if card.spec.name in EARTHQUAKES else ():
         unit, end = model.units.time, motion.acceleration.end
@@ -81,7 +81,7 @@ def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]
 
 
 def forces(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Force]:
-    """Time-dependent forces of all FORCES cards."""
+    """Return the time-dependent forces of all FORCES cards."""
     forces: list[Force] = []
     for card in model.forces:
         force: Force | None = _built(card, surroundings, diagnostics)
@@ -92,7 +92,7 @@ def forces(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnos
 
 
 def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) -> None:
-    """Warn if a card truncates its motion, and if its record contradicts its header."""
+    """Add a warning if a card truncates its motion, and if its record contradicts its header."""
     notes = info.get("notes", ())
     cuts = info.get("cuts", ())
     diagnostics += [
@@ -102,7 +102,9 @@ def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) ->
 
 
 def _built(card: Card, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> Any:
-    """Motion or force of a card of EQUAKE or FORCES; None, with a diagnostic, if it has a mistake."""
+    """Return the motion or force of a card of EQUAKE or FORCES; None, with a diagnostic, if it has a
+    mistake.
+    """
     try:
         return card.spec.impl(card.values, surroundings)
     except RecordError as err:
@@ -117,7 +119,8 @@ def saved_state(
     forces: Sequence[Force],
     diagnostics: list[Diagnostic],
 ) -> dict[str, Array]:
-    """State in a results file from which a history with RESTART continues; empty without RESTART.
+    """Return the state in a results file from which a history with RESTART continues; empty without
+    RESTART.
 
     Parameters
     ----------
@@ -138,7 +141,9 @@ def saved_state(
 def _taken_up(
     card: Card, path: Path, signature: Mapping[str, str], diagnostics: list[Diagnostic]
 ) -> dict[str, Array]:
-    """State of a results file, at time zero for NEW=MOTION; adds diagnostics if it does not fit."""
+    """Return the state of a results file, set to time zero for NEW=MOTION; add diagnostics if it does not
+    fit.
+    """
     place, message, hint = card.place("RESTART"), "", ""
     try:
         with Results.open(path) as results:

@@ -23,9 +23,10 @@ MARKS: Final = {".h5": FILETYPE.encode(), ".rpt": b"POUND-SOLVE"}
 
 
 def overwritten(model: Model, request: Request, context: LoadingContext) -> list[Diagnostic]:
-    """Diagnostics for a deck, an included file, a record or a saved state that an output would overwrite.
+    """Report a deck, an included file, a record or a saved state that an output would overwrite.
 
-    Results may replace those from which a RESTART continues: these are read before and kept until the end.
+    Results may replace those from which a RESTART continues: the run reads these first and keeps them until
+    its end.
     """
     results, report = request.path(".h5"), request.path(".rpt")
     outputs = {path.resolve() for path in (results, report, partial(results), partial(report))}
@@ -39,7 +40,7 @@ def overwritten(model: Model, request: Request, context: LoadingContext) -> list
 
 
 def taken(request: Request) -> list[Diagnostic]:
-    """Diagnostics for files of other programs at the paths of results and report."""
+    """Report files of other programs at the paths of results and report."""
     marks = {request.path(suffix): mark for suffix, mark in MARKS.items()}
     return [
         Diagnostic(

@@ -20,8 +20,10 @@ MEETING: Final = ("DIRECTION", "SUPPORTS", "WAVE", "ABOUT")
 
 
 def overridden(model: Model, request: Request, diagnostics: list[Diagnostic]) -> Model:
-    """Return the model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards and with the motion of
-    the request; add mistakes to `diagnostics`.
+    """Return the model with the options of a request; add mistakes to `diagnostics`.
+
+    ``--method``, ``--dt`` and ``--tol`` apply to every HISTORY card; the motion of the request replaces
+    that under EQUAKE.
     """
     if request.motion is not None:
         model = with_motion(model, request.motion, diagnostics)
@@ -65,7 +67,9 @@ def with_motion(model: Model, motion: Card, diagnostics: list[Diagnostic]) -> Mo
 def _changed(
     card: Card, name: str | None, asked: Mapping[str, float], diagnostics: list[Diagnostic]
 ) -> Card | None:
-    """HISTORY card with the requested method and items; None, with diagnostics, if they are wrong."""
+    """Return the HISTORY card with the requested method and items; None, with diagnostics, if they are
+    wrong.
+    """
     method = _method(name or card["METHOD"], diagnostics)
     if method is None:
         return None
@@ -83,7 +87,7 @@ def _changed(
 
 
 def _method(name: str, diagnostics: list[Diagnostic]) -> Spec | None:
-    """Spec of a method by its name; None, with a diagnostic, if it does not exist."""
+    """Return the Spec of a method by its name; None, with a diagnostic, if it does not exist."""
     methods = catalog().family("method")
     method = methods.get(name.upper())
     if method is None:
@@ -128,9 +132,10 @@ def _outside(value: Any, field: Field) -> str:
 
 
 def with_method(card: Card, method: Spec, settings: Mapping[str, Any]) -> Card:
-    """HISTORY card with another method.  Its items are those of `settings`, else those on the card's line
-    within the method's limits, else the method's defaults; limits and defaults of an item may differ
-    between methods.
+    """Return a HISTORY card with another method.
+
+    Its items are those of `settings`, else those on the card's line within the method's limits, else the
+    method's defaults; limits and defaults of an item may differ between methods.
     """
     items = {
         f.name: card.values[f.name]

@@ -75,8 +75,8 @@ def unsteady(structure: Structure) -> list[Diagnostic]:
 
 
 def misbuilt(structure: Structure) -> list[Diagnostic]:
-    """Report buildings that are `unsteady`, for each the first implausible one of height, period and
-    weight, and values inconsistent with their periods.
+    """Report `unsteady` buildings, the first implausible one of height, period and weight of each building,
+    and values inconsistent with the periods.
     """
     parts, first = supported_parts(structure), dict[str, Diagnostic]()
     wrong = (*outsized(structure), *implausible_periods(structure, parts), *misweighed(structure))
@@ -130,10 +130,10 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
 
 
 def causes(structure: Structure) -> list[Diagnostic]:
-    """Diagnostics of a structure whose damping and contacts could not be assembled."""
+    """Report why the damping and contacts of a structure could not be assembled."""
     return [diagnostic for check in (unsteady, *FRAME_CHECKS) for diagnostic in check(structure)]
 
 
 def preflight(structure: Structure) -> list[Diagnostic]:
-    """Diagnostics of the assembly and of all checks: mistakes and warnings."""
+    """Return the diagnostics of the assembly and of all checks: mistakes and warnings."""
     return [*structure.remarks, *(diagnostic for check in CHECKS for diagnostic in check(structure))]

@@ -70,7 +70,7 @@ class Ground:
 
 
 def ground(request: Request, deck: Deck | None = None) -> Ground:
-    """Motions of the EQUAKE cards of a deck; a wave gives one for each place.
+    """Return the motions of the EQUAKE cards of a deck; a wave gives one for each place.
 
     Parameters
     ----------

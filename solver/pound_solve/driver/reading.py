@@ -41,7 +41,7 @@ class Deck(NamedTuple):
     translation: Translation | None = None
 
     def moved(self, diagnostics: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
-        """Diagnostics with lines of the user's file `name`, if that is an old deck."""
+        """Return diagnostics with lines of the user's file `name`, if that is an old deck."""
         return (
             self.translation.moved(diagnostics, name + AS_READ) if self.translation else list(diagnostics)
         )
@@ -75,7 +75,7 @@ def read(request: Request) -> Deck:
 def imported(
     name: str, records: Sequence[File] = (), shown: str = "", run: bool = False
 ) -> tuple[str, Translation]:
-    """Text of an old deck, and its translation; see `translate`.
+    """Return the text of an old deck, and its translation; see `translate`.
 
     Raises
     ------

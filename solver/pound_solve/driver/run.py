@@ -92,7 +92,7 @@ def in_temporary_folder(request: Request) -> Results:
 
 
 def writer_of(ready: Prepared, path: Path) -> Writer:
-    """Writer of the results file of a prepared deck."""
+    """Return the writer of the results file of a prepared deck."""
     return Writer(path, title=ready.model.title, units=ready.model.units, program_version=__version__)
 
 
@@ -138,7 +138,7 @@ def solve(
 
 
 def report_of(path: Path) -> str:
-    """Report of a results file."""
+    """Return the report of a results file as text."""
     from pound_solve.report.text import render
 
     with Results.open(path) as results:

@@ -20,7 +20,7 @@ from pound_solve.structure.structure import Structure
 
 
 class AssemblyError(Exception):
-    """The model cannot be assembled; carries the Diagnostics."""
+    """Raised if a model cannot be assembled; holds the diagnostics."""
 
     def __init__(self, diagnostics: list[Diagnostic]) -> None:
         super().__init__("; ".join(d.message for d in diagnostics))
@@ -28,7 +28,7 @@ class AssemblyError(Exception):
 
 
 def _refusal(model: Model, label: str, message: str, item: str, elements: list[Element]) -> Diagnostic:
-    """One Diagnostic for all elements of a property set that share a mistake."""
+    """Return one diagnostic for all elements of a property set that share a mistake."""
     first, *others = elements
     more = f" and {len(others)} more" if others else ""
     return Diagnostic(
@@ -121,8 +121,9 @@ def _loads(model: Model, dofs: DofMap, parts: Sequence[Parts]) -> tuple[Array, A
 
 
 class _Elements:
-    """The elements of a model, built one after the other; contacts last, because they need the mass of the
-    nodes.
+    """Builder of the elements of a model.
+
+    Contacts are built last, because they need the mass of the nodes.
 
     Attributes
     ----------
@@ -199,7 +200,7 @@ class _Elements:
 
 
 def _built(context: ElementContext) -> Parts:
-    """Parts of an element; raises ElementError also if a number overflows."""
+    """Return the parts of an element; raise ElementError also if a number overflows."""
     beyond = "its values and its nodes are too far apart in magnitude to be computed with"
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):

@@ -101,8 +101,8 @@ def parts(model: Model) -> list[tuple[int, ...]]:
 
 
 def stands(model: Model, nodes: Collection[int]) -> bool:
-    """Whether a connected part has height and members, like a frame and unlike a ball, a floor or a
-    horizontal bar.
+    """Whether a connected part has height and members, as a frame has; a ball, a floor or a horizontal bar
+    does not.
     """
     inside = frozenset(nodes)
     joined = any(i in inside and j in inside for i, j in joints(model))
@@ -191,12 +191,12 @@ class Levels:
 
 
 def building(structure: Structure, name: str) -> Building:
-    """The building with a name.
+    """Return the building of that name.
 
     Raises
     ------
     KeyError
-        There is none; the text lists the buildings that exist.
+        No building has this name; the message lists those that exist.
     """
     named = {b.name: b for b in buildings(structure)}
     if name not in named:
@@ -220,7 +220,7 @@ def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection
 
 
 def misnamed(structure: Structure) -> list[Diagnostic]:
-    """Cards of BUILDINGS that match no building, several, or one that is already named."""
+    """Report cards of BUILDINGS that match no building, several buildings, or one that is already named."""
     problems, names, of = list[Diagnostic](), set[str](), {}
     for i, nodes in enumerate(parts(structure.model)):
         of.update(dict.fromkeys(nodes, i))
@@ -245,7 +245,7 @@ def misnamed(structure: Structure) -> list[Diagnostic]:
 
 
 def _no_floors(structure: Structure, card: Card, nodes: Sequence[int]) -> Iterator[Diagnostic]:
-    """Nodes in FLOORS that lie at no floor of the building."""
+    """Yield warnings for nodes in FLOORS that lie at no floor of the building."""
     stack = Levels(structure.model, nodes, own_mass(structure, 0))
     for n in card["FLOORS"] or ():
         if n not in nodes:

@@ -40,16 +40,20 @@ class Condensed:
     loads: Array
 
     def put_in(self, t: Array, before: bool = False) -> Array:
-        """Work of the loads on condensed DOFs by the part of their displacements that is proportional to
-        the loads, counted from zero loads [F L], at some times, or just before the loads jump then.
+        """Return the work of the loads on condensed DOFs at times `t`, shape (n_times,) [F L].
+
+        It is the work by the part of the displacements that is proportional to the loads, counted from zero
+        loads.  With `before` it is the work just before the loads jump at these times.
         """
         s = np.vstack([self.system.excitation.values(t, before=before).T, np.ones(len(t))])
         displacements = np.column_stack([self.follow, self.constant]) @ s
         return np.asarray(0.5 * (displacements * (self.loads @ s)).sum(axis=0))
 
     def all(self, u: Array, s: Array, order: int = 0) -> Array:
-        """All unknowns from the remaining ones and the inputs `s`, shape (n,); `order` 1: velocities, 2:
-        accelerations.  Columns are instants where there are several.
+        """Return all unknowns, shape (n,), from the remaining ones `u` and the inputs `s`.
+
+        With `order` 1 or 2, `u`, `s` and the result are velocities or accelerations.  Several instants are
+        columns.
         """
         whole = self.expand @ u + self.follow @ s
         return (whole.T + self.constant).T if order == 0 else whole

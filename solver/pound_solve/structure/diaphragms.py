@@ -32,7 +32,7 @@ class DiaphragmCollision:
     sides : tuple of Diaphragm
         Behind I and J.
     pair : Pair or None
-        The theory; None where a mass is zero, or rigid without the card saying so.
+        The theory; None if a mass is zero, or rigid without being specified as such on the card.
     lumped_error : float
         Error of the changes of velocity with lumped masses [-].
     note : str
@@ -44,29 +44,29 @@ class DiaphragmCollision:
     note: str
 
     def plateau(self, impulse: float, duration: float) -> float:
-        """Mean force of a collision, its ringing averaged out [F].
+        """Return the mean force of a collision, which averages its oscillation [F].
 
-        The impulse is spread over the duration, but over no longer than the first force of the theory
-        would take for its impulse: the weak second phase of a staircase and the tail of a coarse mesh are
-        no plateau.
+        The mean is the impulse over the duration.  The duration is at most the time in which the first
+        force of the theory produces its impulse: this excludes the weak second phase of a stepwise
+        decreasing force and the tail of a coarse mesh.
         """
         if self.pair is not None and not self.pushing(duration):
             duration = min(duration, self.pair.impulse / self.pair.force)
         return impulse / duration if duration > 0.0 else math.nan
 
     def predicted(self, approach: float, duration: float) -> float:
-        """First force of the theory at that approach speed [F]; NaN where it does not hold."""
+        """Return the first force of the theory at an approach speed [F]; NaN if it does not apply."""
         return math.nan if self.pair is None or self.pushing(duration) else self.pair.force * approach
 
     def pushing(self, duration: float) -> bool:
-        """Whether a contact lasts too long for a collision of waves: more than twice the theory's time."""
+        """Whether a contact lasts more than twice the theory's time, too long for a collision of waves."""
         return self.pair is not None and duration > 2.0 * self.pair.duration
 
 
 def sides(
     structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring
 ) -> tuple[Diaphragm, Diaphragm]:
-    """Diaphragms on the sides of I and J of a contact; a wall and a fixed node have infinite mass.
+    """Return the diaphragms on the sides of I and J of a contact; a wall or a fixed node has infinite mass.
 
     `members` are the numbers of the elements at each node.
     """
@@ -83,7 +83,7 @@ def sides(
 
 
 def diaphragm_collisions(structure: Structure) -> dict[int, DiaphragmCollision]:
-    """The two diaphragms of every contact, by the number of its law."""
+    """Return the two diaphragms of every contact, keyed by the number of its law."""
     members: dict[int, list[int]] = {}
     for e in structure.model.elements.values():
         if e.j is not None:
@@ -107,7 +107,7 @@ def _diaphragm_collision(
     known = prop["DIAPHRAGMS"] is not None
     rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
     if rigid and not known:
-        # a mass at a column is no floor: its supports matter, which the theory leaves out
+        # a mass at a column is not a floor: its supports matter, and the theory omits them
         who = " and ".join(rigid)
         what = f"no theory: {who} rigid, no member behind; DIAPHRAGMS under PROPS gives a stiffness"
         return DiaphragmCollision(both, None, math.nan, what)
@@ -122,7 +122,7 @@ def _diaphragm_collision(
 
 
 def _verdict(lumped: bool, error: float) -> str:
-    """Whether lumped mass is good enough."""
+    """Return a text on whether lumped mass is adequate."""
     rule = f"(rule: up to {100 * GOOD_ENOUGH:g} %)"
     if abs(error) <= GOOD_ENOUGH:
         return f"lumped mass is good enough {rule}"
@@ -134,7 +134,7 @@ def _verdict(lumped: bool, error: float) -> str:
 def _behind(
     structure: Structure, members: Mapping[int, Sequence[int]], node: int, direction: tuple[float, float]
 ) -> Diaphragm | None:
-    """The chain of members that goes from a node along a direction; None for a rigid one."""
+    """Return the chain of members that extends from a node along a direction; None for a rigid one."""
     nodes = structure.model.nodes
     mass = flexibility = 0.0
     while True:
@@ -156,7 +156,9 @@ def _behind(
 def _straight_on(
     structure: Structure, members: Sequence[int], node: int, direction: tuple[float, float]
 ) -> dict[int, float]:
-    """Nodes straight on that members join to this one, and the stiffness between along a direction."""
+    """Return the nodes that members join to this one straight along a direction, with the stiffness
+    between.
+    """
     nodes, stiffness = structure.model.nodes, dict[int, float]()
     here = nodes[node]
     for member in members:

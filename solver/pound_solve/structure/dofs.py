@@ -1,9 +1,9 @@
 """Degrees of freedom (DOFs): which are unknown, which follow a master, which are prescribed.
 
 Every node has ``ux``, ``uy`` and ``rz``; an element may have internal DOFs in addition (the rotations of
-its hinges).  A fixed one is zero, a slaved one follows its master with the rigid arm between them, one at a
-moved support is prescribed; the rest are the unknowns.
-Columns of every assembled matrix are the unknowns first, then the prescribed DOFs.
+its hinges).  A fixed DOF is zero, a slaved one follows its master with the rigid arm between them, and one
+at a moved support is prescribed; the rest are the unknowns.  The columns of every assembled matrix are the
+unknowns, then the prescribed DOFs.
 """
 
 from __future__ import annotations
@@ -116,8 +116,8 @@ class DofMap:
 def number(
     nodes: Mapping[int, Node], moved: Collection[Dof] = (), internal: Collection[Dof] = ()
 ) -> DofMap:
-    """Number the DOFs of `nodes` and the `internal` ones of elements;
-    those in `moved` (fixed ones) get prescribed columns.
+    """Number the DOFs of `nodes` and the `internal` ones of elements; fixed DOFs in `moved` get prescribed
+    columns.
     """
     moved, prescribed = tuple(sorted(moved)), frozenset(moved)
     free = tuple(

@@ -40,8 +40,8 @@ def fixed_dofs(structure: Structure) -> list[Dof]:
 
 
 def released(structure: Structure) -> Structure:
-    """The structure with its geometric stiffness on supports that may move; its damping is only the part
-    that acts between nodes.
+    """Return the structure with its geometric stiffness on supports that may move; its damping is only the
+    part that acts between nodes.
     """
     model = replace(structure.model, damping=())
     bare = assemble(model, fixed_dofs(structure), structure.self_weight)
@@ -68,7 +68,7 @@ class Weights:
     inertia : Matrix
         Mass times acceleration relative to the ground, if it moves uniformly.
     ridden : Matrix
-        Mass times the ground acceleration, which adds up to total acceleration.
+        Mass times the ground acceleration; with `inertia` it gives the total acceleration.
     ground : Matrix
         Mass-proportional and modal damping.
     loads : Matrix

@@ -11,8 +11,8 @@ from pound_solve.structure.structure import Structure
 
 
 def extract_building(structure: Structure, nodes: Collection[int]) -> Structure:
-    """The building formed by some nodes as a structure, without other buildings, contacts with them, and
-    damping.
+    """Return the building formed by some nodes as a structure, without other buildings, contacts with them,
+    and damping.
     """
     inside, model = frozenset(nodes), structure.model
     elements = {

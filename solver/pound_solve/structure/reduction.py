@@ -127,8 +127,9 @@ class ReducedSystem:
         )
 
     def applied(self, s: Array) -> Array:
-        """Held loads and FORCES on all unknown DOFs at inputs `s`; columns are instants
-        where there are several.
+        """Return the held loads and FORCES on all unknown DOFs at inputs `s`, shape (n_free,) [F].
+
+        Several instants are columns.
         """
         constant = self.structure.retained_loads[: self.structure.n_free]
         return ((self.force_inputs @ s).T + constant).T
@@ -166,7 +167,7 @@ class ReducedSystem:
         return label(self.dofs[index])
 
     def explain_massless(self, index: int, softens: bool = False) -> str:
-        """Explains in words why a massless unknown has no equilibrium, and the remedy.
+        """Explain in words why a massless unknown has no equilibrium, and the remedy.
 
         Parameters
         ----------

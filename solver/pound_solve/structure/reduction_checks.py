@@ -22,11 +22,11 @@ from pound_solve.structure.structure import Structure
 
 
 class ReductionError(Exception):
-    """A structure whose motion no method can compute."""
+    """Raised for a structure whose motion no method can compute."""
 
 
 def check_inertia(m: Matrix, dofs: Sequence[Dof]) -> None:
-    """Raise ReductionError where mass on the arms of slaved nodes leaves a motion without inertia.
+    """Raise ReductionError if mass on the arms of slaved nodes leaves a motion without inertia.
 
     Parameters
     ----------

@@ -21,8 +21,10 @@ from pound_solve.structure.proportional import Proportional
 
 @dataclass
 class Structure:
-    """The assembled structure; arrays run over `DOFs` columns (unknowns, then prescribed),
-    matrices are dense or sparse (see `matrices`).
+    """The assembled structure.
+
+    Arrays run over `DOFs` columns: the unknowns, then the prescribed DOFs.  Matrices are dense or sparse;
+    see `matrices`.
 
     Attributes
     ----------
@@ -112,7 +114,9 @@ class Structure:
         return self.vibration(None)
 
     def vibration(self, count: int | None) -> modes.Modes:
-        """The `count` slowest modes of the initial structure, contacts open, or more; None: all."""
+        """Return at least the `count` slowest modes of the initial structure, contacts open; all if `count`
+        is None.
+        """
         if "free_vibration" in self.__dict__:
             return self.free_vibration
         slowest = modes.solve(self.constrained(self.initial_stiffness), self.constrained(self.mass), count)
@@ -128,7 +132,9 @@ class Structure:
         return np.array([self.dofs.value(g.dofs, g.axial, u) + g.constant for g in self.geometric])
 
     def stressed(self, axial: Array) -> Structure:
-        """The structure with the geometric stiffness of these axial forces, shape (n_geometric,)."""
+        """Return the structure with the geometric stiffness of these axial forces, shape (n_geometric,)
+        [F].
+        """
         if not len(axial):
             return self
         rows: dict[tuple[int, str], Array] = {}
@@ -150,7 +156,7 @@ class Structure:
         )
 
     def displaced(self, u: Array) -> Structure:
-        """The structure whose initial stiffness is that at displacements `u` of the unknowns."""
+        """Return the structure whose initial stiffness is that at displacements `u` of the unknowns."""
         if not self.corotational:
             return self
         pad = np.zeros(len(self.dofs.moved))
@@ -158,8 +164,8 @@ class Structure:
         return replace(self, initial_stiffness=k)
 
     def free_block(self, k: Matrix) -> Matrix:
-        """Part of a matrix over all columns or over the unknowns that belongs to the unknowns; zeros
-        elsewhere.
+        """Return the part of a matrix over all columns or over the unknowns that belongs to the unknowns;
+        zeros elsewhere.
         """
         (i, j, x), n = entries(k), self.n_free
         inside = (i < n) & (j < n)

@@ -1,4 +1,4 @@
-"""Contacts that cannot close, miss the other body, or close as the bodies move apart."""
+"""Checks of contacts: those that cannot close, miss the other body, or close as the bodies move apart."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.structure import Structure
 
-SAME: Final = 1e-9  #: share of the distance of nodes that counts as zero
-#: gap over the distance of the nodes: less than one, since the bodies lie between them; a parameter study
-#: may vary the gap and keep the coordinates
+SAME: Final = 1e-9  #: distance that counts as zero, as a share of that of the nodes
+#: largest gap over the distance of the nodes.  The bodies lie between the nodes, so this ratio is below
+#: one, but a parameter study may vary the gap and keep the coordinates
 WIDEST: Final = 3.0
 LEAST_ANGLE: Final = 1e-6  #: tolerance of the slope of a contact [degrees]
 LEVEL: Final = 0.1  #: share of a difference in height that counts as none
@@ -28,8 +28,8 @@ ALONG: Final = 0.99  #: cosine of the angle between a member and a contact that 
 
 
 def wide(structure: Structure) -> list[Diagnostic]:
-    """Contacts whose gap exceeds the height of the adjacent buildings, or far exceeds the distance of the
-    nodes; reported once per property set.
+    """Report contacts whose gap exceeds the height of the adjacent buildings, or far exceeds the distance
+    of the nodes, once per property set.
 
     A falling body may start above the ground by more than its height, so only shaken structures are
     checked.
@@ -75,7 +75,7 @@ def _between(model: Model, e: Element, between: float) -> Diagnostic:
 
 
 def misplaced(structure: Structure) -> list[Diagnostic]:
-    """Contacts between nodes of one floor, or with I and J exchanged."""
+    """Report contacts between nodes of one floor, or with I and J exchanged."""
     model, problems = structure.model, list[Diagnostic]()
     floors, columns = _floors(model), _columns(model)
     collide = [s for s in structure.laws if s.role.collides and apart(model, s) > 0.0]
@@ -91,7 +91,9 @@ def misplaced(structure: Structure) -> list[Diagnostic]:
 
 
 def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
-    """Contacts with the same nodes, direction and gap; between two bodies, also the same property set."""
+    """Report contacts with the same nodes, direction and gap, and between two bodies also the same property
+    set.
+    """
     model, first, problems = structure.model, dict[tuple[object, ...], Element](), list[Diagnostic]()
     for spring in (s for s in structure.laws if s.role.collides):
         e, angle = model.elements[spring.element], round(spring.facts["angle"], 6) % 360.0
@@ -106,7 +108,7 @@ def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
 
 
 def idle(structure: Structure) -> list[Diagnostic]:
-    """Contacts along X between buildings that an earthquake along Y alone shakes."""
+    """Report contacts along X between buildings that an earthquake along Y alone shakes."""
     model = structure.model
     ways = shaken(model)
     of = {n: k for k, nodes in enumerate(parts(model)) if stands(model, nodes) for n in nodes}
@@ -146,7 +148,9 @@ def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -
 def _misaligned(
     model: Model, columns: Mapping[float, Sequence[Node]], spring: LawSpring, e: Element
 ) -> Iterator[Diagnostic]:
-    """A contact between floors of different heights, or one that acts across the line between its nodes."""
+    """Yield a warning for a contact between floors of different heights, or for one that acts across the
+    line between its nodes.
+    """
     assert e.j is not None
     i, j = model.nodes[e.i], model.nodes[e.j]
     across, along = abs(i.x - j.x), abs(i.y - j.y)
@@ -211,7 +215,9 @@ def apart(model: Model, spring: LawSpring) -> float:
 
 
 def _backwards(model: Model, spring: LawSpring, e: Element, twin: bool) -> Iterator[Diagnostic]:
-    """A contact that closes as its nodes move apart, without a counterpart that closes as they approach."""
+    """Yield a warning for a contact that closes as its nodes move apart, without a counterpart that closes
+    as they approach.
+    """
     if apart(model, spring) < 0.0 <= spring.gap and not twin:
         message = (
             f"contact {e.name or e.id} closes as nodes {e.i} and {e.j} move apart: "

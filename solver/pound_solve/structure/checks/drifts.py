@@ -1,4 +1,4 @@
-"""Drifts that do not belong to a storey."""
+"""Check of drifts that do not belong to a storey."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pound_solve.structure.structure import Structure
 
 
 def doubtful_drifts(structure: Structure) -> list[Diagnostic]:
-    """Drifts between nodes of two buildings, or from the upper node to the lower one.
+    """Report drifts between nodes of two buildings, or from the upper node to the lower one.
 
     A drift with an explicit HEIGHT, or between nodes at one height, may measure the distance of two
     buildings.

@@ -1,4 +1,4 @@
-"""Unsupported ends of members: free column feet, and coincident nodes that nothing joins."""
+"""Checks of unsupported ends of members: free column feet, and coincident nodes that nothing joins."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ SAME_PLACE = 1e-6  #: tolerance for coincident nodes, as a share of the structur
 
 
 def loose_ends(structure: Structure) -> list[Diagnostic]:
-    """Ends of members that hang free or miss the node they should end at: one for each line of the deck."""
+    """Report ends of members that hang free or miss the node they should end at, one for each line of the
+    deck.
+    """
     ends = Ends(structure.model)
     problems: dict[Span, Diagnostic] = {}
     for n, d in (*_apart(ends), *_feet(ends)):
@@ -97,7 +99,7 @@ def places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
 
 
 def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
-    """Free lower ends of members at or below the supports of their building.
+    """Yield the free lower ends of members at or below the supports of their building, with warnings.
 
     A structure that hangs from its supports is intended.
     """
@@ -121,7 +123,7 @@ def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
 
 
 def _apart(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
-    """Coincident nodes that nothing joins although one needs the other.
+    """Yield coincident nodes that nothing joins although one needs the other, with warnings.
 
     A node without a column, such as a beam end, needs the node that has one; a free end needs any. Adjacent
     frames have columns on both sides and are not reported.

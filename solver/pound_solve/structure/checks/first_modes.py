@@ -19,16 +19,16 @@ from pound_solve.structure.structure import Structure
 #: by dashpots, which may include a snubber that ties equipment to a building
 MOST_OWN, MOST_ADDED = 0.2, 10.0
 LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode
-LEAST_ADDED: Final = 1e-3  #: by dashpots that someone wrote down
+LEAST_ADDED: Final = 1e-3  #: least share of critical damping by dashpots, if there are any
 #: stiffness of a contact over the axial one of the beams behind it; slabs may stiffen them tenfold
 STIFFEST: Final = 300.0
-#: a collision in which sound of 3500 m/s does not pass a column [s]
+#: duration of a collision in which sound at 3500 m/s does not cross a column [s]
 BRIEFEST: Final = 1e-4
 RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be textbook inputs
 
 
 def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Buildings whose first mode is implausibly damped, or undamped under an earthquake."""
+    """Report buildings whose first mode is implausibly damped, or undamped under an earthquake."""
     model, problems = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
     for b, part in parts:
@@ -62,8 +62,8 @@ def misdamped(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> l
 
 
 def frequencies_in_hertz(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Circular frequencies of DAMPING below the first mode of all damped buildings, probably given in
-    hertz.
+    """Report circular frequencies of DAMPING below the first mode of all damped buildings, which are
+    probably given in hertz.
     """
     model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
@@ -117,9 +117,9 @@ def _axial(model: Model) -> dict[int, float]:
 
 
 def contact_stiffnesses(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Contacts, one for each property set, so soft that the weight of the bodies would compress them by
-    more than the height of their buildings, or so stiff that the beams behind them, or the duration of a
-    collision, make it implausible.
+    """Report implausible contacts, one for each property set: so soft that the weight of the bodies would
+    compress them by more than the height of their buildings, or too stiff for the beams behind them or for
+    the duration of a collision.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
     beams = _axial(model)

@@ -1,4 +1,6 @@
-"""Members and buildings that are missing, misplaced or given twice, judged by their surroundings."""
+"""Checks for members and buildings that are missing, misplaced or given twice, judged by their
+surroundings.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ from pound_solve.structure.checks.members import kinds, length, lies
 from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
 
-SHORTEST: Final = 0.25  #: height of a storey over the middle one of its columns
+SHORTEST: Final = 0.25  #: least height of a column over the median length of its property set
 
 GENTLE, STEEP = 10.0, 70.0  #: slopes of braces from and to [degrees]
 
@@ -26,7 +28,7 @@ _warn = partial(Diagnostic, severity="warning")
 
 
 def framing_mistakes(structure: Structure) -> list[Diagnostic]:
-    """Buildings that coincide with others, and members that are missing or slope by mistake."""
+    """Report buildings that coincide with others, and members that are missing or slope by mistake."""
     model = structure.model
     if not shaken(model):
         return []
@@ -39,7 +41,7 @@ def framing_mistakes(structure: Structure) -> list[Diagnostic]:
 
 
 def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
-    """Frames whose nodes all coincide with those of another frame."""
+    """Yield warnings for frames whose nodes all coincide with those of another frame."""
     _, at = places(model)
     first: dict[int, int] = {}
     frames = [p for p in parts(model) if stands(model, p) and len({model.nodes[n].x for n in p}) > 1]
@@ -110,7 +112,7 @@ class Lines:
 
 
 def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
-    """Ends of beams above a column that ends below them."""
+    """Yield warnings for ends of beams above a column that ends below them."""
     nodes = lines.model.nodes
     upright = defaultdict[float, list[int]](list)
     for n in sorted(b.nodes, key=lambda n: nodes[n].y):
@@ -128,7 +130,9 @@ def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
 
 
 def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
-    """Pairs of columns without a beam between them, though one joins them at the floor below."""
+    """Yield warnings for pairs of columns without a beam between them, though one joins them at the floor
+    below.
+    """
     for below, floor in pairwise(b.floors):
         for left, right in pairwise(_by_x(lines.model, floor)):
             feet = [_foot(lines, n, below) for n in (left, right)]
@@ -143,7 +147,7 @@ def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
 
 
 def _passing_a_floor(lines: Lines, b: Building) -> Iterator[Diagnostic]:
-    """Elements that pass through the place of a node at which a lower element ends."""
+    """Yield warnings for elements that pass through the place of a node at which a lower element ends."""
     nodes = lines.model.nodes
     ends = [n for n in b.nodes if lines.down[n] and not lines.up[n] and n not in lines.grounded]
     for n in ends:
@@ -166,7 +170,9 @@ def _foot(lines: Lines, n: int, floor: Floor) -> int | None:
 
 
 def _sloping_beams(model: Model) -> Iterator[Diagnostic]:
-    """The single sloping beam of a property set with at least two horizontal beams and no column."""
+    """Yield a warning for the only sloping beam of a property set with at least two horizontal beams and no
+    column.
+    """
     for members in kinds(model).values():
         flat = [e for e in members if lies(model, e)]
         others = [e for e in members if not lies(model, e)]
@@ -183,7 +189,9 @@ def _sloping_beams(model: Model) -> Iterator[Diagnostic]:
 
 
 def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
-    """Dashpots along X alone between nodes on a slope, as in a brace; reported once per property set."""
+    """Yield warnings for dashpots along X alone between nodes on a slope, as in a brace, once per property
+    set.
+    """
     told = set[str]()
     for e in model.elements.values():
         card = model.props[e.prop]
@@ -199,7 +207,7 @@ def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
 
 
 def _short_columns(structure: Structure) -> Iterator[Diagnostic]:
-    """Columns between floors that are far shorter than the others of their property set."""
+    """Yield warnings for columns between floors far shorter than the others of their property set."""
     model = structure.model
     floors = {n for b in buildings(structure) for floor in b.floors for n in floor.nodes}
     for label, members in kinds(model).items():

@@ -1,4 +1,4 @@
-"""Hinges in series whose rotations equilibrium does not determine."""
+"""Check of hinges in series whose rotations equilibrium does not determine."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from pound_solve.structure.structure import Structure
 
 EQUAL: Final = 1e-6  #: relative difference up to which two strengths count as equal
 BEYOND: Final = 1.01  #: deformation over that at yield at which the hardening of a rule is examined
-FLAT: Final = 1e-9  #: share of the initial stiffness that is no hardening
+FLAT: Final = 1e-9  #: stiffness that counts as no hardening, as a share of the initial one
 
 
 def facing(structure: Structure) -> list[Diagnostic]:
-    """Hinges of equal strength without hardening on both sides of a joint that nothing else restrains.
+    """Report hinges of equal strength without hardening on both sides of a joint that nothing else
+    restrains.
 
     Both carry the same moment, so at their common strength only the sum of their rotations is determined.
     Dashpots across the hinges divide the sum, except in a PUSHOVER, which has no rates.
@@ -70,7 +71,7 @@ def _flat_strength(spring: LawSpring, side: int) -> float:
 
 
 def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:
-    """The warning for two hinges.
+    """Return the warning for two hinges.
 
     The cure names a rule with R, since ELASTO_PLASTIC has none.  A member without hinges may have no rule.
     """

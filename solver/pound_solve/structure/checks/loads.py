@@ -1,4 +1,4 @@
-"""Static loads against the weights of the buildings that bear them."""
+"""Checks of static loads against the weights of the buildings that bear them."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ SIDEWAYS: Final = 0.5
 LIGHTEST, HEAVIEST = 0.01, 8.0
 UPWARDS: Final = 0.3  #: ratio of upward loads to downward loads
 PART: Final = 0.3  #: ratio of loads to the weight below which P-Delta covers only part of the weight
-TWICE: Final = (0.7, 1.4)  #: of the same beside the weight itself, which they repeat
-SEVERAL: Final = 3  #: floors of a building one of which may lack its load
-PRESSES: Final = 0.1  #: the same of the floors that bear loads beside one without any
+TWICE: Final = (0.7, 1.4)  #: range of this ratio in which the loads repeat a weight that acts already
+SEVERAL: Final = 3  #: least number of floors of a building in which one without load is reported
+PRESSES: Final = 0.1  #: least ratio of loads to the weight of the other floors
 
 
 class Load(NamedTuple):
@@ -36,9 +36,9 @@ class Load(NamedTuple):
 
 
 def loads_on_nodes(model: Model) -> Iterator[Load]:
-    """Loads on nodes from LOADS that stay and from MEMBER_LOADS, half of the latter at either end."""
+    """Yield loads on nodes: those of LOADS that stay, and half of each of MEMBER_LOADS at either end."""
     for c in model.loads:
-        if c.spec.name == "LOADS" and c["HELD"] == "YES":  # not those that weights make
+        if c.spec.name == "LOADS" and c["HELD"] == "YES":  # excludes the loads made from weights
             yield from (Load(n, c["FX"], c["FY"], c, "FY") for n in c["NODES"])
     for c in model.member_loads:
         item = "WY" if c["WY"] else "PY"
@@ -49,12 +49,12 @@ def loads_on_nodes(model: Model) -> Iterator[Load]:
 
 
 def gravity_acts(model: Model) -> bool:
-    """Whether STATIC lets the weights press."""
+    """Whether STATIC applies the weights as loads."""
     return any(c.values.get("GRAVITY") == "YES" for c in model.analyses)
 
 
 def unloaded(structure: Structure) -> list[Diagnostic]:
-    """Buildings whose members take P-Delta into account, but bear no load."""
+    """Report buildings whose members take P-Delta into account but bear no load."""
     model, problems = structure.model, list[Diagnostic]()
     if not model.geometry.startswith("PDELTA") or not model.analyses or gravity_acts(model):
         return problems
@@ -79,7 +79,7 @@ def unloaded(structure: Structure) -> list[Diagnostic]:
 
 
 def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
-    """Loads of a building that are a small part of its weight, so that P-Delta has hardly an effect."""
+    """Report loads that are so small a part of the weight that P-Delta has hardly any effect."""
     model = structure.model
     inside, weight = set(b.nodes), b.mass * model.gravity
     loads = [load for load in loads_on_nodes(model) if load.node in inside]
@@ -97,7 +97,7 @@ def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
 
 
 def misloaded(structure: Structure) -> list[Diagnostic]:
-    """Buildings whose loads contradict their weight: the first contradiction of each."""
+    """Report buildings whose loads contradict their weight, with the first contradiction of each."""
     model, problems = structure.model, list[Diagnostic]()
     if not shaken(model):
         return problems
@@ -112,7 +112,7 @@ def misloaded(structure: Structure) -> list[Diagnostic]:
 
 
 def _lifted(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """Loads that pull upwards by more than a share of what others press."""
+    """Report upward loads that exceed a share of the downward ones."""
     unit = structure.model.units.force
     up = sum(load.y for load in loads if load.y > 0.0)
     press = -sum(load.y for load in loads if load.y < 0.0)
@@ -126,7 +126,7 @@ def _lifted(structure: Structure, b: Building, loads: list[Load]) -> list[Diagno
 
 
 def _sideways(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """Loads along x of the size of the weight."""
+    """Report loads along x of the size of the weight."""
     model, push = structure.model, sum(load.x for load in loads)
     weight, unit = b.mass * model.gravity, model.units.force
     if abs(push) < SIDEWAYS * weight:
@@ -138,7 +138,7 @@ def _sideways(structure: Structure, b: Building, loads: list[Load]) -> list[Diag
 
 
 def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """Loads that repeat the weight, or seem to be in other units."""
+    """Report loads that repeat the weight, or seem to be in other units."""
     model, press = structure.model, -sum(load.y for load in loads)
     weight, unit = b.mass * model.gravity, model.units.force
     if not press or not weight:
@@ -157,7 +157,7 @@ def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnos
 
 
 def _forgotten(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """A floor without load, where the others bear loads of the size of their weights."""
+    """Report a floor without load if the other floors bear loads of the size of their weights."""
     model = structure.model
     if gravity_acts(model) or len(b.floors) < SEVERAL:
         return []

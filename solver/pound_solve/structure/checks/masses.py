@@ -1,4 +1,4 @@
-"""Missing masses, and masses that are fixed within a moving building."""
+"""Checks for missing masses, and for masses that are fixed within a moving building."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pound_solve.structure.structure import Structure
 
 
 def massless(structure: Structure) -> list[Diagnostic]:
-    """Structures and buildings without mass, though the deck requires modes or the motion under an
+    """Report structures and buildings without mass if the deck requires modes or the motion under an
     earthquake.
 
     A part without height, such as a bumper's spring, may be massless.
@@ -40,7 +40,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
 
 
 def roof_without_mass(structure: Structure) -> list[Diagnostic]:
-    """Buildings whose highest beams end at nodes without mass, while others end at nodes with mass."""
+    """Report buildings whose highest beams end at nodes without mass while others end at masses."""
     model, problems = structure.model, list[Diagnostic]()
     group, at = places(model)
     own_mass = {n for (n, d), mass in structure.nodal_mass.items() if d == 0 and mass > 0.0}
@@ -63,7 +63,7 @@ def roof_without_mass(structure: Structure) -> list[Diagnostic]:
 
 
 def immovable(structure: Structure) -> list[Diagnostic]:
-    """Weights above the base of a building at nodes that are fixed along x alone, where others move."""
+    """Report weights above the base of a building at nodes that are fixed along x while others move."""
     model, problems = structure.model, list[Diagnostic]()
     moved = {owner for owner, _ in structure.dofs.moved}
     swings = {n for n, d in structure.dofs.free if d == 0 and structure.nodal_mass.get((n, d))}

@@ -1,4 +1,4 @@
-"""Material, soil and section properties that are impossible in the deck's units."""
+"""Checks for material, soil and section properties that are impossible in the deck's units."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHEAR, SOIL, WIDEST = (5e5, 1e11), (8e3, 35e3), 100.0
 
 
 def impossible_materials(structure: Structure) -> list[Diagnostic]:
-    """Property sets of members and footings with values that no material has."""
+    """Report property sets of members and footings with values that no material has."""
     model = structure.model
     newton, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
     if not newton or not metre:
@@ -54,7 +54,9 @@ def _soft(model: Model, card: Card, pascal: float) -> Iterator[Diagnostic]:
 def _heavy(
     model: Model, label: str, members: list[Element], by_length: float, face: float
 ) -> Iterator[Diagnostic]:
-    """Columns whose weight by length has the value of the weight by volume of concrete or steel."""
+    """Yield warnings for columns whose weight per length has the value of the weight per volume of concrete
+    or steel.
+    """
     card, nodes = model.props[label], model.nodes
     upright = all(nodes[e.i].x == nodes[e.j or e.i].x for e in members)
     weight, area = card["WGT"] * by_length, card["A"] / face

@@ -1,4 +1,4 @@
-"""Mechanisms within a building, and periods implausible for its height."""
+"""Checks for mechanisms within a building, and for periods implausible for its height."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FASTEST: Final = 1000.0
 
 
 def find_mechanisms(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Buildings of members whose nodes can move although their base is held, as with too many pins."""
+    """Report buildings of members whose nodes can move although the base is held, as with too many pins."""
     problems = list[Diagnostic]()
     for b, part in parts:
         slack = part.slack()
@@ -41,7 +41,7 @@ def find_mechanisms(structure: Structure, parts: Sequence[tuple[Building, Part]]
 def implausible_periods(
     structure: Structure, parts: Sequence[tuple[Building, Part]]
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings whose first period is implausible for their height, with the warning.
+    """Yield the names of buildings whose first period is implausible for their height, each with a warning.
 
     A building slower than an inverted pendulum of its height falls over under its own weight.  Buildings on
     springs may be rigid on purpose.
@@ -78,8 +78,8 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
 
 
 def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
-    """Histories of fewer than `FEWEST` steps in the first period of every building, and output intervals
-    longer than that period.
+    """Report histories of fewer than `FEWEST` steps in the first period of every building, and output
+    intervals longer than that period.
     """
     model, problems = structure.model, list[Diagnostic]()
     longest, unit = max((part.period for _, part in parts), default=0.0), model.units.time
@@ -112,7 +112,7 @@ def supported_parts(structure: Structure) -> list[tuple[Building, Part]]:
 
 
 def _part(structure: Structure, columns: Index) -> Part | None:
-    """Stiffness of a building; None where its numbers leave the range of computation."""
+    """Stiffness of a building; None if its numbers overflow or the decomposition fails."""
     try:
         with np.errstate(all="ignore"):
             return Part(structure, columns)

@@ -1,4 +1,4 @@
-"""Members with inconsistent values: shapes of sections, lengths, strengths of hinges.
+"""Checks for members with inconsistent values: shapes of sections, lengths, strengths of hinges.
 
 A rectangle with the same A and I is sqrt(12 I/A) deep.  Mixed units or exchanged items make it deeper than
 the whole building, or thinner than any real section.
@@ -19,14 +19,14 @@ from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
 MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
-#: depth over length; no more than a core of 16 m in storeys of 3 m has; a section must also fit into its
+#: depth over length: a core of 16 m in storeys of 3 m has no more; a section must also fit into its
 #: building
 DEEPEST: Final = 5.0
 USUAL: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
 ALONG: Final = 0.999  #: cosine of the largest slope of a horizontal member
 THINNEST: Final = 1.0 / 300.0  #: depth over length of a member that bends
 SLENDER: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
-LONGEST: Final = 6.0  #: length over the median of its property set; a slipped digit makes it ten
+LONGEST: Final = 6.0  #: length over the median of its property set; an error of one digit makes it ten
 #: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
 #: 0.0005 to 0.01, so that a factor of a thousand is beyond these limits
 LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
@@ -57,7 +57,7 @@ def lies(model: Model, e: Element) -> bool:
 
 
 def misshapen(structure: Structure) -> list[Diagnostic]:
-    """Sections and members of impossible proportions, once for each property set."""
+    """Report sections and members of impossible proportions, once for each property set."""
     model, problems = structure.model, dict[str, Diagnostic]()
     sizes = _sizes(model)
     for label, members in kinds(model).items():
@@ -119,8 +119,8 @@ def _out_of_proportion(model: Model, card: Card, e: Element, depth: str, hint: s
 def _area_in_smaller_units(
     model: Model, card: Card, members: list[Element], face: float
 ) -> Diagnostic | None:
-    """An area in mm^2 or cm^2 in a deck in m, larger than the `face` of the building [L^2], beside I in
-    m^4.
+    """Return a warning for an area in mm^2 or cm^2 in a deck in m, larger than the `face` of the building
+    [L^2], beside I in m^4.
 
     A large area alone may model an axially rigid member, so it is reported only if the factor makes it
     usual.
@@ -141,8 +141,8 @@ def _area_in_smaller_units(
 
 
 def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Diagnostic | None:
-    """A section as thin as a wire in members that bend; an area above the `face` of the building [L^2]
-    models an axially rigid member.
+    """Return a warning for a section as thin as a wire in members that bend; an area above the `face` of
+    the building [L^2] models an axially rigid member.
     """
     if h >= THINNEST * length(model, e) or card["PIN"] == "BOTH" or card["A"] > face:
         return None
@@ -152,7 +152,7 @@ def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Di
 
 
 def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Diagnostic | None:
-    """A member that is too slender and far longer than the others of its property set."""
+    """Return a warning for a member too slender and far longer than the others of its property set."""
     e = max(members, key=lambda e: length(model, e))
     long, middle = length(model, e), median(length(model, m) for m in members)
     if long <= LONGEST * middle or h >= SLENDER * long:
@@ -164,8 +164,8 @@ def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Dia
 
 
 def doubled(structure: Structure) -> list[Diagnostic]:
-    """Members between the same two nodes, except sets all of whose members are parallel to others, such as
-    column jackets.
+    """Report members between the same two nodes, except in sets all of whose members are parallel to
+    others, such as column jackets.
     """
     problems, sets = list[Diagnostic](), kinds(structure.model)
     at = defaultdict[frozenset[int | None], list[Element]](list)
@@ -185,8 +185,8 @@ def doubled(structure: Structure) -> list[Diagnostic]:
 
 
 def misjudged(structure: Structure) -> list[Diagnostic]:
-    """Hinges of members with an implausible yield strain of the section or ductility, and hinges and
-    springs with a stiffness of their own that yield at an implausible rotation: one for each property set.
+    """Report hinges of members with an implausible yield strain of the section or ductility, and hinges and
+    springs with a stiffness of their own that yield at an implausible rotation, one for each property set.
 
     The latter may be rigid until they yield, so small strains and large ductilities are not reported.
     """
@@ -211,8 +211,8 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
 
 
 def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[Diagnostic]:
-    """Hinges at both ends that together are longer than a typical member, or whose hardening is
-    implausible.
+    """Yield warnings for hinges at both ends that together are longer than a typical member, or whose
+    hardening is implausible.
     """
     card, e = model.props[label], sorted(members, key=lambda e: length(model, e))[len(members) // 2]
     both = card.values.get("HINGES") == "BOTH" or None not in (card.values.get("MI"), card.values.get("MJ"))
@@ -235,7 +235,9 @@ def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[D
 def _strain(
     model: Model, card: Card, element: Element, strengths: tuple[float, float]
 ) -> Iterator[Diagnostic]:
-    """A yield moment that does not fit the stiffness of its section: the strain at yield is implausible."""
+    """Yield a warning for a yield moment that does not fit the stiffness of its section, so that the strain
+    at yield is implausible.
+    """
     h, unit = depth(card), model.units.text("F*L")
     moment = max((abs(m) for m in strengths if math.isfinite(m)), default=0.0)
     ei = card["E"] * card["I"]
@@ -253,8 +255,8 @@ def _strain(
 
 
 def _rotation(model: Model, card: Card, spring: LawSpring) -> Iterator[Diagnostic]:
-    """A yield moment that a hinge or spring with a specified stiffness reaches at an implausible
-    rotation.
+    """Yield a warning for a yield moment that a hinge or spring with a specified stiffness reaches at an
+    implausible rotation.
     """
     at = max((abs(x) for x in spring.yields or () if math.isfinite(x)), default=0.0)
     if at > MOST_ROTATION:

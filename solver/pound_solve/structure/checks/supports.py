@@ -1,4 +1,4 @@
-"""Rigid-body motions that nothing resists while the ground shakes, usually for lack of supports.
+"""Checks for rigid-body motions that nothing resists while the ground shakes, usually for lack of supports.
 
 A deck with an initial motion or with forces may intend them.
 """
@@ -27,7 +27,9 @@ ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is 
 
 
 def unsupported(structure: Structure) -> list[Diagnostic]:
-    """Directions in which nothing connects the structure, or one of its buildings, to the shaken ground."""
+    """Report directions in which nothing connects the structure, or one of its buildings, to the shaken
+    ground.
+    """
     problems = []
     for way, card in shaken(structure.model).items():
         d = DIRECTIONS.index(way)
@@ -50,7 +52,7 @@ def shaken(model: Model) -> dict[str, Card]:
 
 
 def _unsupported(structure: Structure) -> list[Diagnostic]:
-    """Buildings on shaken ground that can move as a rigid body with open contacts.
+    """Report buildings on shaken ground that can move as a rigid body with open contacts.
 
     A body without height, such as a ball or a bar between walls, may fly on purpose.
     """
@@ -68,8 +70,8 @@ def _unsupported(structure: Structure) -> list[Diagnostic]:
 
 
 def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -> str:
-    """Describes a rigid-body motion of a building that nothing resists and the ground excites; empty if
-    none.
+    """Describe a rigid-body motion of a building that nothing resists and the ground excites; empty if
+    there is none.
 
     Columns of the matrices here are shifts along x and y and a turn about the middle of the building, in
     units that move its edge by one.
@@ -110,7 +112,7 @@ def some(nodes: Sequence[int], most: int = 6) -> str:
 
 
 def unmoved_feet(structure: Structure) -> list[Diagnostic]:
-    """Feet of a building that stay fixed while SUPPORTS moves its other feet."""
+    """Report feet of a building that stay fixed while SUPPORTS moves its other feet."""
     model, problems = structure.model, list[Diagnostic]()
     cards = [c for c in model.equake if c["SUPPORTS"] is not None and c["DIRECTION"] != "Y"]
     moved = {n for c in cards for n in c["SUPPORTS"]}

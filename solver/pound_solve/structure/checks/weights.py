@@ -1,4 +1,4 @@
-"""Weights and strengths that do not fit the structure."""
+"""Checks for weights and strengths that do not fit the structure."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ LOWEST, HIGHEST = 0.1, 1000.0  #: height of a building or a model of one [m]
 
 
 def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings, with the warning, lower than any shaking-table model or higher than any building;
-    centrifuge models, recognised by their gravity, are skipped.
+    """Yield the names of buildings lower than any shaking-table model or higher than any building, each
+    with a warning; centrifuge models, recognised by their gravity, are skipped.
     """
     model = structure.model
     metre = METRE.get(model.units.length.lower())
@@ -48,8 +48,8 @@ def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
 
 
 def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings, with the warning, that weigh hardly more than their frame or more than their
-    columns can carry.
+    """Yield the names of buildings that weigh hardly more than their frame or more than their columns can
+    carry, each with a warning.
     """
     model = structure.model
     force, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
@@ -85,8 +85,8 @@ def _weights(model: Model, b: Building, told: str, unless: str = "") -> Diagnost
 
 
 def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> float:
-    """Weight of the members whose E is that of concrete or steel and whose section is usual [N]; 0 where
-    the deck gives weights of members.
+    """Weight of the members whose E is that of concrete or steel and whose section is usual [N]; 0 if the
+    deck gives weights of members.
     """
     inside, total = frozenset(b.nodes), 0.0
     for e in model.elements.values():
@@ -128,7 +128,7 @@ def _lowest(model: Model, b: Building) -> list[Element]:
 
 
 def misarmed(structure: Structure) -> list[Diagnostic]:
-    """Buildings on springs whose total strength is implausible for the weight that they carry."""
+    """Report buildings on springs whose total strength is implausible for the weight that they carry."""
     model, problems = structure.model, list[Diagnostic]()
     along = {s.element: s for s in structure.laws if s.component == "X" and s.strengths is not None}
     for b in _standing(structure):
@@ -150,7 +150,9 @@ def misarmed(structure: Structure) -> list[Diagnostic]:
 
 
 def far(structure: Structure) -> list[Diagnostic]:
-    """Springs weaker than the weight that yield at a deformation beyond the height of their building."""
+    """Report springs weaker than the weight that yield at a deformation beyond the height of their
+    building.
+    """
     model, problems = structure.model, dict[str, Diagnostic]()
     high = {n: b for b in _standing(structure) for n in b.nodes}
     for s in structure.laws:
@@ -178,6 +180,6 @@ def far(structure: Structure) -> list[Diagnostic]:
 
 
 def _standing(structure: Structure) -> Iterator[Building]:
-    """Buildings with height that the ground shakes along x."""
+    """Yield the buildings with height that the ground shakes along x."""
     if "X" in shaken(structure.model):
         yield from (b for b in buildings(structure) if stands(structure.model, b.nodes))

@@ -120,7 +120,7 @@ class Group:
 
 
 class DampingError(ItemError):
-    """Contradictory damping; `item` names the field at fault."""
+    """Raised for contradictory damping; `item` names the field at fault."""
 
 
 def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext) -> Array:

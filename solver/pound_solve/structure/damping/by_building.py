@@ -9,8 +9,8 @@ from pound_solve.structure.structure import Structure
 
 
 def uneven(structure: Structure) -> list[Diagnostic]:
-    """Buildings damped by several cards, one of them by name, and undamped buildings if others are damped
-    by name.
+    """Report buildings damped by several cards, one of them by name, and undamped buildings if others are
+    damped by name.
 
     A card for some NODES or PROPS only is expected to combine with others.
     """
@@ -31,7 +31,7 @@ def uneven(structure: Structure) -> list[Diagnostic]:
 
 
 def _apart(structure: Structure) -> list[Diagnostic]:
-    """Cards whose NODES and PROPS have nothing in common: K is damped elsewhere than M."""
+    """Report cards whose NODES and PROPS have nothing in common, so that K is damped elsewhere than M."""
     model, problems = structure.model, list[Diagnostic]()
     for card in model.damping:
         props, nodes = card.values.get("PROPS"), card.values.get("NODES")

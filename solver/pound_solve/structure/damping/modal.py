@@ -4,8 +4,8 @@ r"""MODAL: damping ratios of the modes, as a constant matrix.
 
 with the modes of the initial structure, contacts open.  XI is either a list, mode by mode, whose last value
 applies to the rest (one value: uniform damping), or the ratio at some frequencies (OMEGA) or modes (MODES):
-then it is linear from one to the next, over frequency or over the number of the mode, and beyond the first
-and the last it stays constant or follows its line (:math:`\xi` at two points: tri-linear or linear
+between these it is linear, over frequency or over the number of the mode, and beyond the first and the last
+it stays constant or continues linearly (:math:`\xi` at two points: tri-linear or linear
 damping).
 
 References

@@ -104,7 +104,7 @@ class LawSpring:
 
     @property
     def gap(self) -> float:
-        """Of a contact: the deformation at which it touches [L]."""
+        """Deformation at which a contact touches [L]."""
         return self.law.p[GAP]
 
     @property
@@ -255,7 +255,7 @@ class ElementContext:
 
 
 class ElementError(ItemError):
-    """An element that cannot be built; `item` names the field of the card at fault."""
+    """Raised if an element cannot be built; `item` names the field of the card at fault."""
 
     @classmethod
     def of_law(cls, refusal: ValueError, item: str) -> Self:
@@ -305,7 +305,7 @@ def hysteretic(
     strength: tuple[float, float],
     share: float = 1.0,
 ) -> LawSpring:
-    """A component that follows a hysteresis rule.
+    """Return a component that follows a hysteresis rule.
 
     Parameters
     ----------

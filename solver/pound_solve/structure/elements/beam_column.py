@@ -4,7 +4,7 @@ A hinge is a row of axial springs across the section.  Springs side by side at d
 the axis, each of which yields at :math:`\pm F_i`, carry :math:`N = \sum f_i` and
 :math:`M = -\sum f_i y_i`; their capacity is the sum of the segments :math:`\pm F_i (1, -y_i)`, a
 convex polygon that is symmetric about its centre, and every such polygon is a sum of segments.
-So an N-M diagram becomes its springs, edge by edge:
+An N-M diagram therefore defines its springs, edge by edge:
 
 .. math:: y_i = -\Delta M_i / \Delta N_i, \qquad F_i = |\Delta N_i| / 4
 
@@ -18,7 +18,7 @@ yield forces are then :math:`(s_i \pm 1) F_i` with :math:`s_i = \alpha + \beta y
 The stiffness of the springs is proportional to their strength, and together they are as stiff in bending as
 a length LP of the beam.  Their flexibility is subtracted from the beam between the hinges, so that the
 elastic member is exactly that of E, A, I. For long hinges only a share is subtracted, as in `frame`, and
-each spring gives up the rest.
+each spring excludes the rest.
 
 References
 ----------

@@ -13,8 +13,9 @@ and rocking is a dashpot whose far end carries a separate mass (no radiation at 
 These are exact for the cone at all frequencies.  :math:`c` is the speed of shear waves along x, else that
 of compression waves, at most twice that of shear waves (soil that is nearly incompressible).
 
-With UPLIFT the soil takes no tension: a row of springs below the footing gives the rotation its stiffness,
-:math:`K' = 3K_r/B^2` in all, and a spring between footing and row makes the vertical stiffness right,
+With UPLIFT the soil takes no tension.  A row of springs below the footing, of stiffness
+:math:`K' = 3K_r/B^2` in all, gives the rocking stiffness; a spring between footing and row corrects the
+vertical stiffness,
 :math:`1/K_s = 1/K_y - 1/K'`.  With a bearing strength the springs can crush.
 
 References

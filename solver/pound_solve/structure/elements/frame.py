@@ -4,9 +4,10 @@ The one-component member: an elastic beam (`beam`) in series with a rotational s
 flexible length, which follows a hysteresis rule. The hinge has its own stiffness KH (moment over rotation),
 or a length LP over which the section of the beam yields (moment over curvature): its stiffness is then
 :math:`EI/L_p`, and its flexibility :math:`L_p/EI` is subtracted from the beam, so that the elastic member
-is exactly that of EI. A slender beam can give up the flexibility of :math:`L_p = L/4` at one end or
-:math:`L_p = L/6` at both.  Flexibility beyond nine tenths of that stays with the beam: the hinge then opens
-by the rotation of its length less this elastic part.  A hinge is at most as long as the member.
+is exactly that of EI. From a slender beam the flexibility of :math:`L_p = L/4` can be subtracted at
+one end, or of :math:`L_p = L/6` at both.  Flexibility beyond nine tenths of that stays with the beam: the
+rotation of the hinge is then that of its length less this elastic part.  A hinge is at most as long as the
+member.
 
 Moments and rotations of hinges are positive where the member sags: tension on the right of the line from
 I to J.  Only the hinges with a strength are built.
