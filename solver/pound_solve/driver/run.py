@@ -73,7 +73,7 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     path.parent.mkdir(parents=True, exist_ok=True)
     with writer_of(ready, partial(path)) as writer:
         message = analyse(ready, writer, progress, began, request)
-        with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to interrupt
+        with suppress(KeyboardInterrupt), undisturbed():  # the analyses have ended
             path = put_in_place(path, report_of(partial(path)), whole=not message.startswith(BROKEN_OFF))
     status = FILES if message.startswith("A508") else STOPPED if message else DONE
     return status, Results.open(path), ready
@@ -118,7 +118,7 @@ def analyse(
         Number and text of the message on why the analyses stopped; empty if they did not.
     """
     message = AnalysisSequence(ready, request, writer, progress, began).run()
-    with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to interrupt
+    with suppress(KeyboardInterrupt), undisturbed():  # the analyses have ended
         try:
             writer.finish("stopped" if message else "done", message)
         except NoRoomError:  # the reserved space is free from now on

@@ -137,7 +137,7 @@ class AnalysisSequence:
             try:
                 return self._analyses()
             finally:
-                with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to interrupt
+                with suppress(KeyboardInterrupt), undisturbed():  # the analyses have ended
                     self._write(Stage.END)
                     if self.explain:
                         self._write(Stage.EXPLAIN)
@@ -226,7 +226,7 @@ class AnalysisSequence:
     def _history(self, card: Card, state: static.StaticState) -> None:
         record = self.record
         result = history.run(record.structure, state, card, self.loading, self.output, self.settled.items)
-        with suppress(KeyboardInterrupt), undisturbed():  # the motion is over
+        with suppress(KeyboardInterrupt), undisturbed():  # the motion has ended
             record.history, self.settled.items = result, result.items
             record.solve_seconds += result.seconds
             record.cpu_seconds += result.cpu_seconds

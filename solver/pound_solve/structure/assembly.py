@@ -1,4 +1,4 @@
-"""Assembly: a Model becomes matrices, laws and load vectors over its DOFs."""
+"""Assembly of matrices, laws and load vectors over the DOFs of a model."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
 SAME_LEVEL = 1e-3  #: share of a building's height by which nodes of one level may differ in height
-LEAST = 0.1  #: share of the mass of a building's heaviest level that makes a floor of another
+LEAST = 0.1  #: least mass of a floor, as a share of the mass of the building's heaviest level
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class Building:
     floors : tuple of Floor
         From below.
     mass : float
-        Of all its nodes along x, or along y where there is none [F T^2/L].
+        Of all its nodes along x, or along y if there is none along x [F T^2/L].
     reach : float
         Largest distance along x or y of its nodes from the middle of its base [L].
     """

@@ -127,7 +127,7 @@ class ReducedSystem:
         )
 
     def applied(self, s: Array) -> Array:
-        """Return the held loads and FORCES on all unknown DOFs at inputs `s`, shape (n_free,) [F].
+        """Return the held loads and FORCES on all unknown DOFs at inputs `s`, shape (n_free,) [F, F L].
 
         Several instants are columns.
         """

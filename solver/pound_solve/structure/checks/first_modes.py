@@ -15,7 +15,7 @@ from pound_solve.structure.checks.mechanisms import Part
 from pound_solve.structure.checks.members import kinds, length, lies
 from pound_solve.structure.structure import Structure
 
-#: shares of critical damping of a first mode: by DAMPING, which materials and walls make 0.01 to 0.1, and
+#: shares of critical damping of a first mode: by DAMPING, where materials and walls give 0.01 to 0.1, and
 #: by dashpots, which may include a snubber that ties equipment to a building
 MOST_OWN, MOST_ADDED = 0.2, 10.0
 LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode

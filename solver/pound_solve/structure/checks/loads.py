@@ -26,7 +26,7 @@ PRESSES: Final = 0.1  #: least ratio of loads to the weight of the other floors
 
 
 class Load(NamedTuple):
-    """A force on a node [F], and the card that makes it, with its item along y."""
+    """A force on a node [F], with the card that gives it and the item of its component along y."""
 
     node: int
     x: float

@@ -98,7 +98,7 @@ def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, Part]]) -
 
 
 def supported_parts(structure: Structure) -> list[tuple[Building, Part]]:
-    """Buildings with a height that the ground shakes along x, with their stiffness, where it can be
+    """Return the buildings with a height that the ground shakes along x, with their stiffness, if it can be
     computed.
     """
     model, pairs = structure.model, list[tuple[Building, Part]]()

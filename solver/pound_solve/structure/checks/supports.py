@@ -73,8 +73,8 @@ def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -
     """Describe a rigid-body motion of a building that nothing resists and the ground excites; empty if
     there is none.
 
-    Columns of the matrices here are shifts along x and y and a turn about the middle of the building, in
-    units that move its edge by one.
+    Columns of the matrices here are translations along x and y and a rotation about the middle of the
+    building, in units that move its edge by one.
     """
     nodes = [structure.model.nodes[n] for n in b.nodes]
     if any(set(DIRECTIONS) <= set(n.fixed) for n in nodes):
@@ -139,7 +139,7 @@ def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Ar
     Parameters
     ----------
     motions : mapping of int to ndarray, shape (3, count)
-        By node: along x and y, and the turn.
+        Keyed by node: translations along x and y, and the rotation.
     """
     columns = [*structure.dofs.free, *structure.dofs.moved]
     moved = np.zeros((len(columns), count))

@@ -68,7 +68,7 @@ class LawSpring:
     unit : str
         Dimension of the force, ``F`` or ``F*L``.
     beta : float
-        Dashpot as a multiple of the present stiffness, where that is positive [T] (damping models set it).
+        Dashpot as a multiple of the present stiffness while that is positive [T]; damping models set it.
     secant : float
         Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
     yields : tuple of float or None

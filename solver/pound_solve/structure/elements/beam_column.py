@@ -122,7 +122,7 @@ def springs(corners: Array) -> Springs:
     """
     half = np.ptp(corners, axis=0) / 2
     centre, lever = corners.min(axis=0) + half, half[1] / half[0]
-    by_angle: dict[float, tuple[Array, float]] = {}  # parallel edges make one spring
+    by_angle: dict[float, tuple[Array, float]] = {}  # parallel edges share one spring
     for edge in np.roll(corners, -1, axis=0) - corners:
         reach = max(abs(edge[0]), abs(edge[1]) / (OUTMOST * lever)) * (-1 if tuple(edge) < (0, 0) else 1)
         d, f = edge / reach, abs(reach) / 4

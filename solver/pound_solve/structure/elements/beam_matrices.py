@@ -76,7 +76,7 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
     pins : list of int
         Local DOFs that are not held.
     soft : ndarray, shape (6, 6)
-        Flexibility of the joints [L/F, 1/F, 1/(F L)]; negative where the beam is stiffened.
+        Flexibility of the joints [L/F, 1/F, 1/(F L)]; negative if the beam is stiffened.
 
     Returns
     -------
