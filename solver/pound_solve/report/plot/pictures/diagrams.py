@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,7 @@ UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 def diagrams(results: Results, choice: Choice) -> Any:
     """Draw the three beside or below each other, at an instant or as envelopes."""
-    s = structure(results, choice)
-    chosen = list(lines(results, s.place, choice))
+    s, chosen = spread(results, choice)
     shown = [q for q in QUANTITIES if any(q in line.low for line in chosen)]
     if not shown:
         raise Nothing("members with forces at both ends")
@@ -37,11 +37,15 @@ def diagrams(results: Results, choice: Choice) -> Any:
     return figure
 
 
-def structure(results: Results, choice: Choice) -> geometry.DrawnStructure:
-    """The structure with neighbours so far apart that their diagrams do not overlap."""
+def spread(results: Results, choice: Choice) -> tuple[geometry.DrawnStructure, list[Line]]:
+    """The structure and the forces along the chosen members, with neighbours so far apart that their
+    diagrams do not overlap.
+    """
     s = geometry.DrawnStructure(results)
     members = list(lines(results, s.place, choice))
-    return geometry.DrawnStructure(results, geometry.apart(2.0 * _largest_drawn(s, members) / s.size))
+    s = geometry.DrawnStructure(results, geometry.apart(2.0 * _largest_drawn(s, members) / s.size))
+    moves = {int(e["element"]): s.place[int(e["i"])] - s.true[int(e["i"])] for e in s.elements}
+    return s, [replace(x, i=x.i + moves[x.element], j=x.j + moves[x.element]) for x in members]
 
 
 def _largest_drawn(s: geometry.DrawnStructure, members: list[Line]) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 from pound_solve.check import looked
 from pound_solve.report.plot import courses, style
 from pound_solve.report.plot.geometry import DrawnStructure, apart
-from pound_solve.report.plot.members import lines, members
+from pound_solve.report.plot.members import members
 from pound_solve.report.plot.pictures import base_shear, capacity, diagrams, frame, storeys
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
@@ -66,8 +66,7 @@ def _rows(results: Results) -> list[Any]:
 
 def _moments(axes: Any, results: Results) -> None:
     """Draw the bending moments of the static state."""
-    s = diagrams.structure(results, Choice())
-    diagrams.panel(axes, s, list(lines(results, s.place, Choice())), "M")
+    diagrams.panel(axes, *diagrams.spread(results, Choice()), "M")
 
 
 def _structure(axes: Any, results: Results) -> None:
