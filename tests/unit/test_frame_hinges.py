@@ -592,7 +592,7 @@ PROPS
         ),
         ("MI=100 MJ=9 PIN=I LP=0.3 RULE=BILINEAR", "MI", "no hinge yields: leave out MI$"),
         ("MI=1 MJ=1 PIN=BOTH KH=3 RULE=BILINEAR", "MI", "ends I and J .*: leave out MI, MJ, RULE, KH"),
-        ("MI=1,1 MJ=1,1 LP=0.3 RULE=BILINEAR", "MI", "MI and MJ need a positive value"),
+        ("MI=1,1 MJ=1,1 LP=0.3 RULE=BILINEAR", "MI", "MI and MJ need a positive value, then a negative"),
         ("MJ=-100,100 LP=0.3 RULE=BILINEAR", "MJ", "a positive value, then a negative one"),
         ("MI=100 LP=4.1 RULE=BILINEAR", "LP", "4.1 is longer than the flexible length, 4$"),
         (
