@@ -38,7 +38,7 @@ def main() -> None:
 
 def take(path: Path) -> None:
     """Copy the library from the user's cache to a path; build it first where the cache has none."""
-    cache = kernel_cache.place().folder
+    cache = kernel_cache.cache_folder().folder
     if cache is None:
         build(path)
         return

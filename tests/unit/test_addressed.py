@@ -81,7 +81,7 @@ def use(own: Parts, out: Array) -> float:
 
 def test_compiled_code_reads_and_writes_the_parts_as_python_does(monkeypatch: pytest.MonkeyPatch) -> None:
     # what is kept of a function whose module cannot be imported cannot be loaded again
-    monkeypatch.setattr(kernel_cache, "place", lambda: kernel_cache.Place(None))
+    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: kernel_cache.CacheFolder(None))
     slow, fast = parts(), parts()
     out, same = np.zeros(3), np.zeros(3)
     called = jit.Numba().ready(use)

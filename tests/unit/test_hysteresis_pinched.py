@@ -206,7 +206,7 @@ def test_it_fails_at_zero_force() -> None:
 
 
 def test_it_fails_on_the_pinched_line_of_the_other_side() -> None:
-    # the falling branch is 34 - d, that line is 0.5 d - 4: both are 8.667 at 25.33
+    # the softening branch is 34 - d, that line is 0.5 d - 4: both are 8.667 at 25.33
     law = rule("WAYNE_STEWART", **(PLAIN | {"RPINCH": 0.05}))
     at = 38.0 / 1.5
     assert forces(law, [at - 1e-9])[0] == pytest.approx(34.0 - at, rel=1e-8)

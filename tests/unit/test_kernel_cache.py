@@ -13,7 +13,7 @@ from kernels import NUMBA
 from pound_solve.cli.progress import StatusLine
 from pound_solve.numerics import jit, kernel_cache
 from pound_solve.numerics.digest import digest
-from pound_solve.numerics.kernel_cache import MAX_AGE, NOT_KEPT, VARIABLE, Place
+from pound_solve.numerics.kernel_cache import MAX_AGE, NOT_KEPT, VARIABLE, CacheFolder
 
 POSIX = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owners here")
 OWN = f"pound-solve-{os.getuid() if hasattr(os, 'getuid') else 0}"
@@ -24,7 +24,7 @@ def twice(x):
     return 2.0 * x
 cold = jit.cold(twice)
 assert jit.compiled(twice)(2.0) == 4.0
-print(cold, *kernel_cache.place(), sep="|")
+print(cold, *kernel_cache.cache_folder(), sep="|")
 """
 
 
@@ -40,8 +40,8 @@ def places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def place() -> Place:
-    return kernel_cache.place.__wrapped__()
+def cache_folder() -> CacheFolder:
+    return kernel_cache.cache_folder.__wrapped__()
 
 
 def no_home(places: Path) -> None:
@@ -51,20 +51,20 @@ def no_home(places: Path) -> None:
 
 
 def test_kernels_are_kept_in_the_users_cache_folder(places: Path) -> None:
-    assert place() == Place(kernel_cache.user_cache() / digest())
+    assert cache_folder() == CacheFolder(kernel_cache.user_cache() / digest())
     assert places / "home" in kernel_cache.user_cache().parents
 
 
 def test_without_platformdirs_too(places: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "platformdirs", None)
-    assert place().folder == places / "home/.cache/pound-solve" / digest()
+    assert cache_folder().folder == places / "home/.cache/pound-solve" / digest()
     monkeypatch.setenv("XDG_CACHE_HOME", str(places / "xdg"))
-    assert place().folder == places / "xdg/pound-solve" / digest()
+    assert cache_folder().folder == places / "xdg/pound-solve" / digest()
 
 
 def test_a_folder_that_is_named_comes_first(places: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, str(places / "named"))
-    assert place() == Place(places / "named" / digest())
+    assert cache_folder() == CacheFolder(places / "named" / digest())
 
 
 def test_a_named_folder_that_cannot_be_written_is_told(
@@ -73,9 +73,9 @@ def test_a_named_folder_that_cannot_be_written_is_told(
     named = places / "named"
     named.write_text("")
     monkeypatch.setenv(VARIABLE, str(named))
-    found = place()
+    found = cache_folder()
     assert found.folder == kernel_cache.user_cache() / digest()
-    assert f"{VARIABLE}={named}" in found.told and str(found.folder.parent) in found.told
+    assert f"{VARIABLE}={named}" in found.notice and str(found.folder.parent) in found.notice
 
 
 @pytest.mark.parametrize("platformdirs", [True, False])
@@ -87,7 +87,7 @@ def test_without_a_home_no_folder_of_that_name_appears(
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
     if not platformdirs:
         monkeypatch.setitem(sys.modules, "platformdirs", None)
-    assert place() == Place(places / "tmp" / OWN / digest())
+    assert cache_folder() == CacheFolder(places / "tmp" / OWN / digest())
     assert not (places / "~").exists()
 
 
@@ -96,12 +96,12 @@ def test_without_a_home_no_folder_of_that_name_appears(
 def test_folders_are_closed_to_others(places: Path, loose: str) -> None:
     if loose == "tmp":
         no_home(places)
-    first = place().folder
+    first = cache_folder().folder
     assert first is not None and places / loose in first.parents
     for folder in (first, first.parent):
         assert folder.stat().st_mode & 0o777 == 0o700
         folder.chmod(0o777)
-    assert place().folder == first
+    assert cache_folder().folder == first
     assert {f.stat().st_mode & 0o777 for f in (first, first.parent)} == {0o700}
 
 
@@ -116,10 +116,10 @@ def test_nobody_elses_code_is_loaded(places: Path, monkeypatch: pytest.MonkeyPat
         folder.symlink_to(places / "elsewhere")
     else:
         folder.mkdir()
-    assert place().folder == folder / digest()
+    assert cache_folder().folder == folder / digest()
     monkeypatch.setattr(os, "getuid", lambda: me + 1)
     folder.rename(places / "tmp" / f"pound-solve-{me + 1}")
-    assert place() == Place(None, NOT_KEPT)
+    assert cache_folder() == CacheFolder(None, NOT_KEPT)
 
 
 def test_versions_that_no_run_uses_any_more_go(places: Path) -> None:
@@ -135,17 +135,17 @@ def test_versions_that_no_run_uses_any_more_go(places: Path) -> None:
         (root / name / "folder").mkdir(parents=True)
         if old:
             os.utime(root / name, (before, before))
-    assert place().folder == root / digest()
+    assert cache_folder().folder == root / digest()
     assert {f.name for f in root.iterdir()} == {"mine", "0123456789abcde0", digest()}
 
 
 def test_a_run_keeps_its_version_alive(places: Path) -> None:
-    own = place().folder
+    own = cache_folder().folder
     assert own is not None
     before = kernel_cache.time.time() - 2 * MAX_AGE
     os.utime(own, (before, before))
     (own / "kernel").write_text("")
-    assert place().folder == own and (own / "kernel").exists()
+    assert cache_folder().folder == own and (own / "kernel").exists()
 
 
 def test_two_processes_prune_at_once(places: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,7 +162,7 @@ def test_two_processes_prune_at_once(places: Path, monkeypatch: pytest.MonkeyPat
         return rename(self, target)
 
     monkeypatch.setattr(Path, "rename", beaten)
-    assert place().folder == root / digest()
+    assert cache_folder().folder == root / digest()
     assert (root / "0123456789abcdef-old-other").is_dir()  # the other one deletes it
 
 
@@ -199,7 +199,7 @@ def test_one_library_is_built_for_all_checkouts_of_a_source(
         path.write_bytes(b"library %d" % len(built))
 
     monkeypatch.setattr(ahead, "build", build)
-    monkeypatch.setattr(kernel_cache, "place", kernel_cache.place.__wrapped__)
+    monkeypatch.setattr(kernel_cache, "cache_folder", kernel_cache.cache_folder.__wrapped__)
     for checkout in ("one", "other"):
         ahead.take(places / checkout)
         assert (places / checkout).read_bytes() == b"library 1"

@@ -12,7 +12,7 @@ from pound_solve.cli.main import main
 from pound_solve.integrate.kernels import engine
 from pound_solve.laws import functions
 from pound_solve.numerics import jit, kernel_cache, providers
-from pound_solve.numerics.kernel_cache import NOT_KEPT, VARIABLE, Place
+from pound_solve.numerics.kernel_cache import NOT_KEPT, VARIABLE, CacheFolder
 from pound_solve.numerics.providers import INTERPRETED, Interpreter
 from pound_solve.results import Results
 
@@ -60,7 +60,7 @@ class Uncompiled(NamedTuple):
 def test_error_stream_and_report_say_that_nothing_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(kernel_cache, "place", lambda: Place(None, NOT_KEPT))
+    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: CacheFolder(None, NOT_KEPT))
     monkeypatch.setattr(
         jit, "compiled", lambda kernel, *signature: kernel if signature else Uncompiled(kernel)
     )

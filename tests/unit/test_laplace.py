@@ -223,8 +223,8 @@ ANALYSIS
 
 
 def test_motion_that_grows_is_that_of_exact() -> None:
-    """Falling branches: poles right of the line of other motions.  Transforms on that line gave velocities
-    that jump, and events without an end."""
+    """Softening branches have poles right of the line of other motions.  Transforms on that line gave
+    velocities that jump, and events without an end."""
     exact = run_text(SOFTENING, method="EXACT")
     off = []
     for dt in (1e-3, 5e-4):
@@ -243,8 +243,8 @@ def figure(r: Ran, item: str) -> int:
 
 def test_events_between_the_samples_without_an_end_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two springs of the deck yield 0.04 ms apart."""
-    monkeypatch.setattr(laplace, "CHANGES", 1)
-    monkeypatch.setattr(laplace, "CHANGES_PER_LAW", 0)
+    monkeypatch.setattr(laplace, "MAX_CHANGES", 1)
+    monkeypatch.setattr(laplace, "MAX_CHANGES_PER_LAW", 0)
     r = run_text(SOFTENING, method="LAPLACE", dt=1e-3)
     assert r.message.startswith("A503 at t = 0.0051") and "2 changes of branch within one DT" in r.message
     assert "METHOD=EXACT" in r.message

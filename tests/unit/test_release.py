@@ -155,7 +155,7 @@ def test_members_that_turn_far_take_the_way_with_their_own_stiffness():
 def test_the_force_that_falls_does_the_work_of_its_joint():
     """The joint moves on D and on the unloading line of B, along which B comes from the yield line."""
     r = run_text(UNLOADS, method="TAYLOR")
-    far = (14.0 + 200.0 * 0.05 + 0.5) / (200.0 + 90.0)  # the falling branch meets the pinched line
+    far = (14.0 + 200.0 * 0.05 + 0.5) / (200.0 + 90.0)  # the softening branch meets the pinched line
     lost = 90.0 * far - 0.5
     area = 0.5 * 10.0 * 0.01 + 12.0 * 0.04 + 0.5 * (14.0 + lost) * (far - 0.05)
     pull = lost + 300.0 * far

@@ -171,7 +171,7 @@ def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
 @NUMBA
 def test_a_kernel_is_cold_until_it_is_compiled(tmp_path, monkeypatch):
     monkeypatch.setattr(jit.numba().config, "CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(kernel_cache, "place", lambda: kernel_cache.Place(tmp_path, ""))
+    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: kernel_cache.CacheFolder(tmp_path, ""))
     assert jit.cold(cubic.cubic_rise) and jit.cold(cubic.cubic_peak)
     peak = jit.compiled.__wrapped__(cubic.cubic_peak)
     assert jit.cold(cubic.cubic_peak)

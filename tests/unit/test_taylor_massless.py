@@ -346,7 +346,7 @@ def test_the_cure_is_that_of_what_snaps_through() -> None:
     stub = SimpleNamespace(dofs=dofs, name=lambda i: label(dofs[i]))
     told = [ReducedSystem.explain_massless(stub, i, softens=True).rpartition("; ")[2] for i in range(3)]
     assert told[0] == "give it weight" and told[1] == "give the joints WR in WEIGHTS"
-    assert told[2] == "give element 4 a flatter falling branch, or a longer LP"
+    assert told[2] == "give element 4 a flatter softening branch, or a longer LP"
     assert "element 4 rotation inside J has no mass and nothing" in ReducedSystem.explain_massless(stub, 2)
 
 

@@ -27,7 +27,7 @@ def chosen(case):
     laws = {"linear": {""}, "contact": {"LINEAR", "KELVIN_VOIGT"}, "hysteresis": {"BILINEAR"}}
     quick = {
         "massless node that is met", "gap", "two contacts at the same instant",
-        "falling branch to collapse", "rigid-body modes", "repeated eigenvalues",
+        "softening branch to collapse", "rigid-body modes", "repeated eigenvalues",
     }  # fmt: skip
     return case.law in laws[case.family] and case.scene in quick
 

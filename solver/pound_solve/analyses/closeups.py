@@ -17,7 +17,7 @@ from pound_solve.integrate.protocol import Course, Motion
 from pound_solve.numerics.crests import NODES, crests, on_nodes
 from pound_solve.numerics.types import Array, Flags, Index
 
-FOR_PEAKS: Final = 0.25  #: share of the memory reserved for force peaks
+FOR_PEAKS: Final = 0.25  #: fraction of the memory reserved for force peaks
 MEGABYTE: Final = 10**6  #: of `OUTPUT CLOSEUPS`
 BLOCK: Final = 1024  #: largest number of instants per block
 

@@ -16,7 +16,7 @@ import numpy as np
 from pound_solve.numerics.matrices import Matrix, gathered
 from pound_solve.numerics.types import Array, Index
 
-DEPENDENT = 1e-12  #: share of a row that is left of one that depends on others
+DEPENDENT = 1e-12  #: fraction of a row that is left of one that depends on others
 
 
 class ContactConstraints:

@@ -16,9 +16,9 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.equations import fixed_dofs, rigid_motions
 from pound_solve.structure.structure import Structure
 
-#: share of the terms of a sum of forces that is the rounding of a solution
+#: fraction of the terms of a sum of forces that is the rounding of a solution
 SOLUTION_ROUNDING = 16 * 2.2e-16
-SUM_ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
+SUM_ROUNDING = 1e-9  #: fraction of the largest term below which a sum of forces is zero
 
 
 class SupportReactions:

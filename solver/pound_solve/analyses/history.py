@@ -37,7 +37,7 @@ BALANCE = "base shear and overturning moment less inertia and loads, over the la
 CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: allowed height of a crest between two steps, at ten steps per period
-DISPLACEMENT_ROUNDING = 1e-13  #: share of the size of a structure below which a displacement is rounding
+DISPLACEMENT_ROUNDING = 1e-13  #: fraction of the size of a structure below which a displacement is rounding
 BEARING = 0.25  #: height over that of the highest storey below which a drift belongs to a bearing
 ROWS = 1000  #: approximate rows of stored histories, if OUTPUT gives no interval
 

@@ -14,7 +14,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
-GAP_ROUNDING = 1e-12  #: share of a deformation by which a rigid contact may be short of its gap
+GAP_ROUNDING = 1e-12  #: fraction of a deformation by which a rigid contact may be short of its gap
 
 
 def initial(structure: Structure) -> tuple[Array, Array]:

@@ -28,7 +28,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import buildings, columns_of
 from pound_solve.structure.structure import Structure
 
-TELLING: Final = 0.1  #: share of a mode's kinetic energy below which a building is not named [%]
+TELLING: Final = 0.1  #: fraction of a mode's kinetic energy below which a building is not named [%]
 SPEC = Spec(
     "analysis",
     "MODAL",

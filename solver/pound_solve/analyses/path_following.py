@@ -45,12 +45,12 @@ from pound_solve.numerics.modes import scaling
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
-RATE_ROUNDING = 1e-12  #: share of its terms below which a rate is rounding
-#: share of the fastest rate that is rounding, scaled by roots of stiffness
+RATE_ROUNDING = 1e-12  #: fraction of its terms below which a rate is rounding
+#: fraction of the fastest rate that is rounding, scaled by roots of stiffness
 SOLUTION_ROUNDING = 1e-14
-FORCE_JUMP = 1e-12  #: share of its terms above which a force has changed at once
-EVENT_REACHED = 1e-13  #: share of its terms below which an event is reached
-JUST_CLOSED = 1e-6  #: share of its final stiffness below which a curved contact has only just closed
+FORCE_JUMP = 1e-12  #: fraction of its terms above which a force has changed at once
+EVENT_REACHED = 1e-13  #: fraction of its terms below which an event is reached
+JUST_CLOSED = 1e-6  #: fraction of its final stiffness below which a curved contact has only just closed
 INCREMENTS = 20  #: least number of increments to the first mark with curved laws
 #: Newton iterations for one point; the error in a contact with force overlap^n shrinks by 1 - 1/n at each
 ITERATIONS = 80

@@ -14,7 +14,7 @@ from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
-DUST = 1e-12  #: share of the largest value below which a number is rounding
+DUST = 1e-12  #: fraction of the largest value below which a number is rounding
 
 
 class ElementForce(NamedTuple):

@@ -60,7 +60,7 @@ SERIES_FIRST, SERIES_ALWAYS = 1.0, 0.25
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
 SERIES = "all forces have power series between events, so no time step is needed; stepping would cost more"
-DEAR = "EXACT would cost more: too many unknowns or changes of stiffness"
+EXACT_TOO_COSTLY = "EXACT would cost more: too many unknowns or changes of stiffness"
 RIGID = "steps take no rigid contacts"
 
 #: the decision that implicit series were taken
@@ -222,7 +222,8 @@ def by_choice(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) ->
             if err.dear:
                 return by_series(problem)
         series = np.inf  # which stop there, too
-    return to_tolerance(StepRefinement(problem, options), stepped(system, reason or DEAR), trial, series)
+    method = stepped(system, reason or EXACT_TOO_COSTLY)
+    return to_tolerance(StepRefinement(problem, options), method, trial, series)
 
 
 def integrate(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> Outcome:

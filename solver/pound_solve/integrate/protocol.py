@@ -18,13 +18,13 @@ from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-EVENT_TOLERANCE = 1e-12  #: share of its largest value up to which an event function is not above zero
-SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
+EVENT_TOLERANCE = 1e-12  #: fraction of its largest value up to which an event function is not above zero
+SAME_INSTANT = 1e-13  #: fraction of the time within which two events are at one instant
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
 MAX_BETWEEN = 0.1  #: limit of such a share; a sine with seven steps in its period reaches it
-MAX_ROUNDING = 1e-2  #: share of a spring's largest force that rounding may make
+MAX_ROUNDING = 1e-2  #: fraction of a spring's largest force that rounding may make
 RUNAWAY_TEXT = "the motion grows without bound: its energy {:.3g} is far above what was put in"
-CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
+MAX_CHANGES, MAX_CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
 CHATTER_TEXT = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
 INTERRUPTED = "interrupted; what was computed up to then is kept"
 
@@ -370,8 +370,8 @@ def between_check(peaks: Peaks) -> Check:
     """Check how far peaks depend on the motion between the steps, which is interpolated by the rates at
     their ends: wrong rates give peaks that never occurred.
     """
-    told = "peaks lie far above both ends of a step; a shorter DT shows them"
-    return at_most(Subject.STEPS, BETWEEN, peaks.between, MAX_BETWEEN, told)
+    remark = "peaks lie far above both ends of a step; a shorter DT shows them"
+    return at_most(Subject.STEPS, BETWEEN, peaks.between, MAX_BETWEEN, remark)
 
 
 def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
@@ -385,15 +385,15 @@ def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
     contact = f"{rigid.rule} of element {rigid.element}"
     if not (methods := without_steps(system)):
         other = "another GEOMETRY" if system.structure.corotational else "laws that are linear in pieces"
-        told = f"no method takes a rigid contact, which {contact} is, where {not_in_series(system)}"
-        cure = f"give the contact a LAW with a stiffness, or choose {other}"
+        reason = f"no method takes a rigid contact, which {contact} is, where {not_in_series(system)}"
+        remedy = f"give the contact a LAW with a stiffness, or choose {other}"
     elif method in ("AUTO", "EXACT", "TAYLOR"):
         return
     else:
-        told = f"{method} knows no rigid contact, and {contact} is one"
+        reason = f"{method} knows no rigid contact, and {contact} is one"
         takes = "TAYLOR and EXACT take" if "EXACT" in methods else "TAYLOR takes"
-        cure = f"{takes} it, or a LAW with a stiffness"
-    raise Stop("A505", problem.begin, f"{told}: {cure}")
+        remedy = f"{takes} it, or a LAW with a stiffness"
+    raise Stop("A505", problem.begin, f"{reason}: {remedy}")
 
 
 def goals(system: ReducedSystem, times: Array) -> tuple[Array, Flags]:

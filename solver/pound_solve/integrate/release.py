@@ -1,4 +1,4 @@
-r"""Joints without mass at the instant at which the force of a law falls.
+r"""Joints without mass at the instant at which a law loses its force.
 
 A law that fails may lose its force suddenly.  Joints without mass and without dashpots (unknowns Z) then
 move instantly, and other laws there may yield, unload or fail on the way.  The path is found by reducing
@@ -6,7 +6,7 @@ the lost force F of the law, which acts along :math:`b`, gradually while everyth
 
 .. math:: K_{ZZ}\,u_Z + f_Z(u_Z) = p_Z - (1 - \lambda)\,F\,b_Z, \qquad 0 \le \lambda \le 1 ,
 
-from one change of branch to the next.  The work of the falling force counts as a loss of the law that
+from one change of branch to the next.  The work of the lost force counts as a loss of the law that
 failed; the work of the loads along the path counts as input.
 """
 
@@ -17,7 +17,7 @@ from typing import Protocol
 
 import numpy as np
 
-from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, Stop
+from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW, Stop
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch, EventFunction
 from pound_solve.numerics import polynomial
@@ -26,10 +26,10 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-AT_REST = 1e-9  #: share of the largest change of a deformation below which a law counts as at rest
-FORCE_JUMP = 1e-9  #: share of a force's terms above which a change of branch has made it jump
-PATH_COMPLETE = 1e-13  #: share of the largest deformation that is no way any more
-JOINT_ROUNDING = 1e-14  #: share of the forces at a joint that their sum may be by rounding
+AT_REST = 1e-9  #: fraction of the largest change of a deformation below which a law counts as at rest
+FORCE_JUMP = 1e-9  #: fraction of a force's terms above which a change of branch has made it jump
+PATH_COMPLETE = 1e-13  #: fraction of the largest deformation below which nothing moves any more
+JOINT_ROUNDING = 1e-14  #: fraction of the forces at a joint that their sum may be by rounding
 
 
 class JumpingRun(Protocol):
@@ -57,7 +57,7 @@ class JumpingRun(Protocol):
         """Let a law leave its branch at deformation `d` on a way in the direction of `v`."""
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
+        """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
         the input.
         """
 
@@ -65,7 +65,7 @@ class JumpingRun(Protocol):
         """Return the exception that ends the run here."""
 
 
-def falls(before: Branch, after: Branch, d: float) -> bool:
+def force_jumps(before: Branch, after: Branch, d: float) -> bool:
     """Whether the force of a law at rest jumps where it changes branch at the deformation `d`.
 
     A jump within the rounding of the forces that the branch `before` reaches is none: where nothing has
@@ -77,9 +77,9 @@ def falls(before: Branch, after: Branch, d: float) -> bool:
     return abs(before.force(d, 0.0) - after.force(d, 0.0)) > FORCE_JUMP * terms
 
 
-def share_of_way(event: EventFunction, d: float, move: float) -> float:
-    """Share of the change `move` of a law's deformation, from `d` on, at which an event occurs; infinite if
-    it does not.
+def fraction_to_event(event: EventFunction, d: float, move: float) -> float:
+    """Fraction of the change `move` of a law's deformation, from `d` on, at which an event occurs; infinite
+    if it does not.
     """
     if event.d_factor == 0.0:
         return 0.0 if event.v_factor * move > 0.0 else np.inf
@@ -87,20 +87,20 @@ def share_of_way(event: EventFunction, d: float, move: float) -> float:
     return max(-value, 0.0) / rise if event.v_factor == 0.0 and rise > 0.0 else np.inf
 
 
-def first_on_way(branches: Sequence[Branch], d: Array, move: Array) -> tuple[float, int, int]:
-    """Share of the changes `move` of all deformations `d` up to the first event, its law and its number; 1
-    and -1 where there is none.
+def first_event_on_path(branches: Sequence[Branch], d: Array, move: Array) -> tuple[float, int, int]:
+    """Fraction of the changes `move` of all deformations `d` up to the first event, its law and its number;
+    1 and -1 where there is none.
     """
     first = 1.0, -1, -1
     for i in np.flatnonzero(np.abs(move) > AT_REST * np.abs(move).max(initial=0.0)).tolist():
         for e, event in enumerate(branches[i].events):
-            share = share_of_way(event, float(d[i]), float(move[i]))
-            if share < first[0]:
-                first = share, i, e
+            fraction = fraction_to_event(event, float(d[i]), float(move[i]))
+            if fraction < first[0]:
+                first = fraction, i, e
     return first
 
 
-def quick(system: ReducedSystem, branches: Sequence[Branch]) -> Index:
+def undamped_massless(system: ReducedSystem, branches: Sequence[Branch]) -> Index:
     """Unknowns with neither mass nor dashpot on the present branches."""
     damped = np.flatnonzero([b.damping != 0.0 for b in branches])
     resisted = used_rows(system.damping) | used_rows(system.law_rows[damped].T)
@@ -124,8 +124,8 @@ def release(run: JumpingRun, law: int) -> None:
     rows, coefs = system.law_rows, system.excitation.about(np.array([run.t]))[0]
     columns = np.array(system.columns)
     s = polynomial.value(coefs, 0.0, 0)
-    for _ in range(CHANGES + CHANGES_PER_LAW * len(run.branches)):
-        z = quick(system, run.branches)
+    for _ in range(MAX_CHANGES + MAX_CHANGES_PER_LAW * len(run.branches)):
+        z = undamped_massless(system, run.branches)
         if not len(z):
             return
         d = rows @ run.u + system.law_inputs @ s
@@ -148,11 +148,11 @@ def release(run: JumpingRun, law: int) -> None:
         move = rows[:, z] @ way
         if np.abs(move).max(initial=0.0) <= PATH_COMPLETE * np.abs(d).max(initial=0.0):
             return
-        share, i, e = first_on_way(run.branches, d, move)
-        run.u[z] += share * way
-        put_in = float(system.applied(s) @ (system.expand[:, z] @ (share * way)))
-        run.take_release(law, float(left @ way) * (share - 0.5 * share * share), put_in)
-        d += share * move
+        fraction, i, e = first_event_on_path(run.branches, d, move)
+        run.u[z] += fraction * way
+        put_in = float(system.applied(s) @ (system.expand[:, z] @ (fraction * way)))
+        run.take_release(law, float(left @ way) * (fraction - 0.5 * fraction * fraction), put_in)
+        d += fraction * move
         for j in np.flatnonzero(move).tolist():  # extremes stand at the ends of the straight parts
             run.tracker.deformation(j).take(float(d[j]), run.t)
             run.tracker.force(j).take(run.force(j, float(d[j]))[0], run.t)

@@ -15,7 +15,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-MINOR_PEAK = 1e-3  #: share of the largest peak of its unit below which a peak is not examined
+MINOR_PEAK = 1e-3  #: fraction of the largest peak of its unit below which a peak is not examined
 
 
 @dataclass

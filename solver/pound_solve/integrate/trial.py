@@ -18,7 +18,7 @@ from pound_solve.numerics.providers import loading
 
 TRIAL_SHARE = 0.5  #: limit of the cost of all trials, as a share of the cost of the other methods
 COST_OF_REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
-CHECKED_AFTER = 0.2  #: share of a trial's budget after which its progress is checked
+CHECKED_AFTER = 0.2  #: fraction of a trial's budget after which its progress is checked
 EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need
 #: decompositions that a trial may make (where combinations of stiffnesses do not return, more will come),
 #: and laws from which on it is not the first thing that is tried (combinations seldom return); both for the

@@ -34,12 +34,14 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-NO_STIFFNESS = 1e-9  #: share of the elastic stiffness below which a tangent counts as none
-PARTICIPATION = 1e-6  #: share of the largest deformation of the motion that is not held
+NO_STIFFNESS = 1e-9  #: fraction of the elastic stiffness below which a tangent counts as none
+PARTICIPATION = 1e-6  #: fraction of the largest deformation of the motion that is not held
 MAX_NAMED = 4  #: elements that are named
-PERTURBATION = 1e-6  #: share of its yield deformation by which a spring goes beyond yield, or stays below
+PERTURBATION = (
+    1e-6  #: fraction of its yield deformation by which a spring goes beyond yield, or stays below
+)
 CYCLES = 12  #: cycles after that, in which the forces are compared
-MAX_DIFFERENCE = 1e-3  #: share of the elastic force at yield above which the forces differ
+MAX_DIFFERENCE = 1e-3  #: fraction of the elastic force at yield above which the forces differ
 ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight between"
 
 
@@ -79,7 +81,7 @@ class Uniqueness:
 
     def __init__(self, system: ReducedSystem) -> None:
         self.system, self.first, self.elements = system, math.nan, list[int]()
-        self._falls: list[tuple[float, int, dict[int, int]]] = []  # instants, laws, the branches of others
+        self._losses: list[tuple[float, int, dict[int, int]]] = []  # instants, laws, the branches of others
         self._straight = not system.structure.corotational
         self._light = massless(system.mass)
         self._undamped = self._light & ~used_rows(system.damping)
@@ -94,17 +96,17 @@ class Uniqueness:
         t : float
             [T]
         stiffness, damping : ndarray, shape (n_laws,)
-            Tangents and dashpots of the laws if all that are tied go on [F/L], [F T/L].  Where a force has
-            fallen: minus infinity for others that come to lose theirs, and the branches they go to.
+            Tangents and dashpots of the laws if all that are tied go on [F/L], [F T/L].  Where a force is
+            lost: minus infinity for others that come to lose theirs, and the branches they go to.
         rising : ndarray, shape (n_laws,)
             Above zero for laws whose deformation rises to the end of its branch, below zero where it falls
             to it, zero for all others.
         """
         if self.elements:
             return
-        if (fall := np.isneginf(stiffness)).any():
-            law = int(np.flatnonzero((rising != 0.0) & ~fall)[0])
-            self._falls.append((t, law, {int(i): int(damping[i]) for i in np.flatnonzero(fall)}))
+        if (lost := np.isneginf(stiffness)).any():
+            law = int(np.flatnonzero((rising != 0.0) & ~lost)[0])
+            self._losses.append((t, law, {int(i): int(damping[i]) for i in np.flatnonzero(lost)}))
             return
         if not self._straight:  # the tangents of the members move
             return
@@ -121,7 +123,7 @@ class Uniqueness:
 
     def record_change(self, t: float, law: int, branch: int) -> None:
         """Record that a law changes from its branch to another, by number."""
-        for since, first, others in self._falls:
+        for since, first, others in self._losses:
             if t >= since and others.pop(law, branch) != branch:
                 self._tell(since, [first, law])
 
@@ -159,7 +161,7 @@ class Uniqueness:
 
     def checks(self) -> list[Check]:
         """The check of a run: none where its motion is unique."""
-        for since, first, others in self._falls:
+        for since, first, others in self._losses:
             if others:
                 self._tell(since, [first, *others])
         if not self.elements:

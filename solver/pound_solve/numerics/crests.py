@@ -24,7 +24,9 @@ GRID_CELLS = 48  #: cells of the grid on which the extreme of a polynomial is lo
 NEWTON_ITERATIONS = 3  #: iterations to it
 SAMPLES_BESIDE = 2  #: samples before and after them that tell how the quantity bends
 MARGIN = 1.5  #: over the change over a cell, by which a quantity may exceed its samples
-EXCESS = 0.5  #: share of a quantity's changes from node to node, by which it may exceed the largest there
+EXCESS = (
+    0.5  #: fraction of a quantity's changes from node to node, by which it may exceed the largest there
+)
 CURVATURE_MARGIN = 1.5  #: over the range of its second differences, by which it may bend more
 
 _AROUND = np.arange(-SAMPLES_BESIDE, GROUP + SAMPLES_BESIDE + 1)

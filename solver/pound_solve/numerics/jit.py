@@ -37,7 +37,7 @@ def numba() -> Any:
         import numba as found
     except ImportError:
         return None
-    setattr(found.config, "CACHE_DIR", str(kernel_cache.place().folder or ""))  # noqa: B010
+    setattr(found.config, "CACHE_DIR", str(kernel_cache.cache_folder().folder or ""))  # noqa: B010
     lighten(found)
     return found
 
@@ -114,7 +114,7 @@ def compiling() -> Iterator[None]:
 
 def cold(function: Function) -> bool:
     """Whether numba has yet to compile a kernel, each of which is compiled in one version only."""
-    folder = kernel_cache.place().folder
+    folder = kernel_cache.cache_folder().folder
     return folder is None or not any(folder.rglob(f"*.{function.__name__}-*.nbc"))
 
 
@@ -149,7 +149,7 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
-    kept = kernel_cache.place().folder is not None
+    kept = kernel_cache.cache_folder().folder is not None
     how = {"cache": kept, "error_model": "numpy", "_nrt": False}
     if inner:  # Python never calls it: it needs no wrapper, but a separate name in the cache
         twin.__qualname__ += INNER
@@ -174,25 +174,25 @@ class Numba:
 
     Parameters
     ----------
-    told : str
+    notice : str
         What a user has to know before every run.
     """
 
     fast, loading = True, 1.0
 
-    def __init__(self, told: str = "") -> None:
-        self._told, self.name = told, "compiled by numba"
+    def __init__(self, notice: str = "") -> None:
+        self._notice, self.name = notice, "compiled by numba"
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """See `providers.Provider`."""
-        self.name = "; ".join(filter(None, ["compiled by numba", kernel_cache.place().told]))
+        self.name = "; ".join(filter(None, ["compiled by numba", kernel_cache.cache_folder().notice]))
         return compiled(kernel, signature) if signature else Called(compiled(kernel))
 
     def notice(self, kernel: Function) -> str:
         """See `providers.Provider`."""
-        place = kernel_cache.place()
-        compiling = COMPILING if place.folder and cold(kernel) else ""
-        return "; ".join(filter(None, [self._told, place.told, compiling]))
+        cache = kernel_cache.cache_folder()
+        compiling = COMPILING if cache.folder and cold(kernel) else ""
+        return "; ".join(filter(None, [self._notice, cache.notice, compiling]))
 
 
 class Called:

@@ -28,15 +28,15 @@ MAX_AGE = 30 * 86400.0  #: age from which on a version that no run has used is d
 OF_A_VERSION = re.compile("[0-9a-f]{16}(-old-.*)?")  #: names of its folder, and of one being deleted
 
 
-class Place(NamedTuple):
+class CacheFolder(NamedTuple):
     """Folder of the compiled kernels, None without one, and a message about it to the user."""
 
     folder: Path | None
-    told: str = ""
+    notice: str = ""
 
 
 @cache
-def place() -> Place:
+def cache_folder() -> CacheFolder:
     """Create the folder of this version and return it; folders of versions no longer used are deleted."""
     asked = os.environ.get(VARIABLE)
     for root in roots(asked):
@@ -47,8 +47,8 @@ def place() -> Place:
         except OSError:
             continue
         prune(root)
-        return Place(folder, ELSEWHERE.format(asked, root) if asked and str(root) != asked else "")
-    return Place(None, NOT_KEPT)
+        return CacheFolder(folder, ELSEWHERE.format(asked, root) if asked and str(root) != asked else "")
+    return CacheFolder(None, NOT_KEPT)
 
 
 def roots(asked: str | None) -> Iterator[Path]:

@@ -24,7 +24,7 @@ from pound_solve.numerics.types import Array, Index
 
 #: positions of entries: without a sign, so that none is counted from the end, for which a kernel would look
 #: at each before it reads or writes there
-Place = NDArray[np.uint32]
+Positions = NDArray[np.uint32]
 
 
 SPARE_ENTRIES = 0.05  #: entries that the factor may gain, an unknown, for the sake of diagonals
@@ -43,12 +43,12 @@ class Pattern(NamedTuple):
         Rows of L: pointers, columns, and positions in the arrays of L.
     """
 
-    ap: Place
-    ai: Place
-    lp: Place
-    li: Place
-    rp: Place
-    rk: Place
+    ap: Positions
+    ai: Positions
+    lp: Positions
+    li: Positions
+    rp: Positions
+    rk: Positions
     rq: Index
 
 
@@ -146,12 +146,12 @@ def filled(columns: Sequence[set[int]]) -> list[list[int]]:
     return below
 
 
-def pointers(lists: Sequence[Sized]) -> Place:
+def pointers(lists: Sequence[Sized]) -> Positions:
     """Where each of some lists begins when they are concatenated, and where the last ends."""
     return np.concatenate([[0], np.cumsum([len(x) for x in lists])]).astype(np.uint32)
 
 
-def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Place, Place]:
+def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Positions, Positions]:
     """Pointers and entries of a list of lists in one array."""
     return pointers(lists), np.array([x for row in lists for x in row], np.uint32)
 

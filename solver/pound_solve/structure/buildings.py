@@ -25,7 +25,7 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
-SAME_LEVEL = 1e-3  #: share of a building's height by which nodes of one level may differ in height
+SAME_LEVEL = 1e-3  #: fraction of a building's height by which nodes of one level may differ in height
 LEAST = 0.1  #: least mass of a floor, as a share of the mass of the building's heaviest level
 
 

@@ -30,7 +30,7 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
-ROUNDING = 1e-9  #: share of its terms below which an entry of a sum of rows is rounding
+ROUNDING = 1e-9  #: fraction of its terms below which an entry of a sum of rows is rounding
 
 
 def fixed_dofs(structure: Structure) -> list[Dof]:

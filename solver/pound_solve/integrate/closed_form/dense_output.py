@@ -18,7 +18,7 @@ from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
 
-#: share of the length of an interval by which instants may differ from those of another
+#: fraction of the length of an interval by which instants may differ from those of another
 SAME_LENGTH = 1e-12
 Kinematics = tuple[Array, Array, Array]  #: displacement, velocity and acceleration of the unknowns
 

@@ -12,9 +12,9 @@ import numpy as np
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.events.functions import RowSet
 from pound_solve.integrate.protocol import (
-    CHANGES,
-    CHANGES_PER_LAW,
     CHATTER_TEXT,
+    MAX_CHANGES,
+    MAX_CHANGES_PER_LAW,
     RUNAWAY_TEXT,
     Outcome,
     Problem,
@@ -22,7 +22,7 @@ from pound_solve.integrate.protocol import (
     Stop,
     light,
 )
-from pound_solve.integrate.release import falls, release
+from pound_solve.integrate.release import force_jumps, release
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.integrate.uniqueness import Uniqueness
 from pound_solve.laws.automaton import Branch, State
@@ -86,16 +86,16 @@ class EventDrivenRun(ABC):
 
     def change(self, law: int, event_index: int, d: Array, v: Array) -> None:
         """Let a law leave its branch, note which others come to the ends of theirs at the same instant, and
-        release joints without mass where its force falls; `d` and `v` are those of all laws.
+        release joints without mass where it loses its force; `d` and `v` are those of all laws.
         """
         law, event_index = self._before_slack(law, event_index, d, v)
         self._look_for_rests(law, event_index, d, v)
         before, deformation = self.branches[law], float(d[law])
         self.transition(law, event_index, deformation, float(v[law]))
-        fell = self._massless_laws[law] and falls(before, self.branches[law], deformation)
-        if fell or self.branches[law].stiffness < before.stiffness:
-            self._look_for_ties(law, d, v, fell)
-        if fell:
+        lost_force = self._massless_laws[law] and force_jumps(before, self.branches[law], deformation)
+        if lost_force or self.branches[law].stiffness < before.stiffness:
+            self._look_for_ties(law, d, v, lost_force)
+        if lost_force:
             release(self, law)
 
     def force(self, law: int, d: float) -> tuple[float, float]:
@@ -103,7 +103,7 @@ class EventDrivenRun(ABC):
         return self.laws[law].law.force(self.states[law], d)[:2]
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
+        """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
         the input.
         """
         at, d, work, m = self.states[law]
@@ -140,7 +140,7 @@ class EventDrivenRun(ABC):
             return law, event_index
         state = self.laws[law].law.transition(self.states[law], event_index, deformation, float(v[law]))
         after = self.laws[law].branch(state)
-        if is_slack(after) and not falls(before, after, deformation):
+        if is_slack(after) and not force_jumps(before, after, deformation):
             for i, n, _, its in self._arriving(law, d, v):
                 if not is_slack(its):
                     return i, n
@@ -173,18 +173,18 @@ class EventDrivenRun(ABC):
                 return self.laws[law].law.transition(state, n, d, v)[0]
         return state[0] if entered else -1
 
-    def _look_for_ties(self, law: int, d: Array, v: Array, fell: bool) -> None:
+    def _look_for_ties(self, law: int, d: Array, v: Array, lost_force: bool) -> None:
         """Record which laws come to the ends of their branches together with one that has become softer, or
-        whose force `fell`.
+        that has lost its force.
         """
         k, c = (np.array([getattr(b, name) for b in self.branches]) for name in ("stiffness", "damping"))
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
         if self.laws[law].role.collides or not self._massless_laws[law]:
             return
         for i, _, state, after in self._arriving(law, d, v):
-            if fell and falls(self.branches[i], after, float(d[i])):
+            if lost_force and force_jumps(self.branches[i], after, float(d[i])):
                 k[i], c[i], rising[i] = -np.inf, state[0], float(v[i])
-            elif not fell and after.stiffness < k[i]:
+            elif not lost_force and after.stiffness < k[i]:
                 k[i], rising[i] = after.stiffness, float(v[i])
         if np.count_nonzero(rising) > 1:
             self.uniqueness.examine_tie(self.t, k, c, rising)
@@ -198,7 +198,7 @@ class EventDrivenRun(ABC):
 
     def stop_chatter(self, law: int, remedy: str) -> None:
         """Stop where too many changes of branch fall on one instant."""
-        if self.changes_at_instant > CHANGES + CHANGES_PER_LAW * len(self.laws):
+        if self.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(self.laws):
             s, count = self.laws[law], self.changes_at_instant
             why = CHATTER_TEXT.format(count, s.element, s.rule, self.branches[law].name, remedy)
             raise self.stop("A503", why)

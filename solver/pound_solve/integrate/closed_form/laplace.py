@@ -32,9 +32,9 @@ from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, monitored_functions
 from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
-    CHANGES,
-    CHANGES_PER_LAW,
     INTERRUPTED,
+    MAX_CHANGES,
+    MAX_CHANGES_PER_LAW,
     Course,
     Motion,
     Outcome,
@@ -50,7 +50,7 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 
 TRANSFORM_TOLERANCE = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
-SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: share of the time within which two events are at one instant
+SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: fraction of the time within which two events are at one instant
 MAX_NUMBERS = 6e7  #: complex ones of all dynamic stiffnesses that are kept: 1 GB
 
 
@@ -160,7 +160,7 @@ class Laplace(EventDrivenRun):
         if self.t - self._since > self.dt:
             self._since, self._changes = self.t, 0
         self._changes += 1
-        if self._changes > CHANGES + CHANGES_PER_LAW * len(self.laws):
+        if self._changes > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(self.laws):
             why = f"{self._changes} changes of branch within one DT, each of which takes a transform"
             raise self.stop("A503", f"{why}: try a shorter DT, or METHOD=EXACT")
 

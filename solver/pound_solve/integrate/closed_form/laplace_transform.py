@@ -14,8 +14,8 @@ is subtracted before the inversion.  What remains has kinks where the excitation
 is of order DT^3 in displacements and DT^2 in velocities (straight-line records).
 :math:`\alpha` is such that the window's repetition and the rounding, which both grow with
 :math:`e^{\alpha t}`, are :math:`10^{-10}` in the first half of the window; only that is used.  Where the
-motion itself grows, on a falling branch, the line lies as far to the right of the fastest growth as else of
-zero: all poles must be on its left, and both errors are the same share of the motion.
+motion itself grows, on a softening branch, the line lies as far to the right of the fastest growth as it
+otherwise does of zero: all poles must be on its left, and both errors are the same fraction of the motion.
 
 References
 ----------

@@ -26,7 +26,7 @@ from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.types import Array, Flags
 
 MAX_FINE_STEPS = 64  #: of the fine grid in one cell
-#: share of an event function's scale that its curvature may contribute within a cell
+#: fraction of an event function's scale that its curvature may contribute within a cell
 CURVATURE_SHARE = 0.05
 CERTAIN = 1e3  #: times the tolerance of event functions: a value above is sure to count as an event
 

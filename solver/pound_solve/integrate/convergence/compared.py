@@ -25,7 +25,7 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
-MIN_SCALE = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
+MIN_SCALE = 0.05  #: fraction of the largest peak of its kind that a peak is measured against at least
 MIN_RISE = 0.05  #: smallest time for twice the rise of a force, as a share of the duration of its collision
 RESPONSE, ALL = "RESPONSE", "ALL"  #: values of PEAKS: what TOL applies to
 RESPONSES, ACCELERATIONS, FORCES = range(3)  #: kinds of peaks with tolerances of their own

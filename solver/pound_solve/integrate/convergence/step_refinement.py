@@ -29,7 +29,7 @@ MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
 MAX_STALE_RUNS = 6  #: runs in a row that do not halve the error, after which shorter steps are given up
 MAX_STALE_OF_SEVERAL = 2  #: the same where the motion is one of several: each step may find another one
-TARGET_SHARE = 0.6  #: share of the tolerance that the next step aims at
+TARGET_SHARE = 0.6  #: fraction of the tolerance that the next step aims at
 MIN_RUNS = 3  #: runs that a tolerance is met with: two may agree by chance
 STEPS_OF_COLLISION = 10.0  #: steps that the collision of the largest force takes at least
 FIRST_RATIO = 0.5  #: the second step over the first, where collisions are resolved
@@ -37,7 +37,7 @@ FIRST_RATIO = 0.5  #: the second step over the first, where collisions are resol
 MIN_RATIO, MAX_RATIO = 1.0 / 8.0, 0.7
 #: retries after runs that stopped, one after another, before and after one that was completed
 MAX_RETRIES, MAX_SHORTER = 10, 3
-#: share of the run; where one stops before, another step is that share of its own
+#: fraction of the run; where one stops before, another step is that share of its own
 EARLY, NEARBY = 0.01, 0.6
 
 #: why no shorter steps are tried
@@ -208,11 +208,11 @@ class StepRefinement:
         """Return checks beyond those of a single run; `ended` is why no shorter steps follow."""
         steps = outcome.figures["steps"]
         resolved = self.met or self.error > 1.0  # else the steps are too long for a collision
-        checks, told = list[Check](), f"not shown with {steps} steps, {ended}"
+        checks, remark = list[Check](), f"not shown with {steps} steps, {ended}"
         for kind, tol in self.tolerances.items():
             error, about = self.errors[kind], f"estimated error of {NAMES[kind]}"
             judge = at_most if resolved else beyond
-            checks.append(judge(Subject.ERROR, about, error, tol, told))
+            checks.append(judge(Subject.ERROR, about, error, tol, remark))
         return [
             *checks,
             between_check(outcome.peaks),

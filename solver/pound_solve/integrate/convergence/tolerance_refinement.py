@@ -167,9 +167,9 @@ class ToleranceRefinement:
 
     def checks(self, outcome: Outcome, ended: str) -> list[Check]:
         """Return checks of a run with the estimates; `ended` is why no smaller tolerances follow."""
-        told = f"not shown with TOL={self.tol:.2g} of LAGUERRE, {ended}"
+        remark = f"not shown with TOL={self.tol:.2g} of LAGUERRE, {ended}"
         estimates = [
-            at_most(Subject.ERROR, f"estimated error of {NAMES[kind]}", self.errors[kind], tol, told)
+            at_most(Subject.ERROR, f"estimated error of {NAMES[kind]}", self.errors[kind], tol, remark)
             for kind, tol in self.tolerances.items()
         ]
         return [*estimates, *outcome.checks]

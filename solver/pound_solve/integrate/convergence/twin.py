@@ -85,8 +85,8 @@ def checks(problem: Problem[EnvelopeRecorder], run: Outcome, watch: Watch, tol: 
     except Stop as stop:
         if stop.code == "A506":
             raise Stop("A506", float(problem.start.times[-1]), INTERRUPTED, run) from None
-        told = f"it stops then: {stop.code} at t = {stop.t:.6g}; {MAGNIFIED}"
-        return [beyond(Subject.MAGNIFICATION, ABOUT, np.inf, tol, told)]
+        remark = f"it stops then: {stop.code} at t = {stop.t:.6g}; {MAGNIFIED}"
+        return [beyond(Subject.MAGNIFICATION, ABOUT, np.inf, tol, remark)]
     first, second = figures(system, run.peaks, watch), figures(system, twin.peaks, witness)
     apart = np.abs(first.values - second.values) / np.where(first.scales > 0.0, first.scales, 1.0)
     return [at_most(Subject.MAGNIFICATION, ABOUT, apart.max(initial=0.0), tol, MAGNIFIED)]

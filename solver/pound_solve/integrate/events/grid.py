@@ -18,7 +18,7 @@ from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.cubic import cubic_peak
 from pound_solve.numerics.types import Array, Flags
 
-SHALLOW = 1e-9  #: share of its steepest slope below which a function that starts at zero may fall first
+SHALLOW = 1e-9  #: fraction of its steepest slope below which a function that starts at zero may fall first
 #: value and slope of function n in some segment and cell at time t
 Evaluate = Callable[[int, int, int, float], tuple[float, float]]
 ValueAndSlope = Callable[[float], tuple[float, float]]  #: of one function in one cell

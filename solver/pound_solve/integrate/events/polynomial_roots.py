@@ -23,7 +23,7 @@ from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 
 MAX_HALVINGS = 44  #: halvings of a cell, at most
-COEFFICIENT_ROUNDING = 1e-15  #: share of the sum of the coefficients that is rounding
+COEFFICIENT_ROUNDING = 1e-15  #: fraction of the sum of the coefficients that is rounding
 #: what the kernels work on has the polynomial in row 0, cells in the others, of which the last is looked
 #: at; the columns after their coefficients are their place and their width
 POLYNOMIAL, CELLS = range(2)

@@ -37,6 +37,6 @@ def earlier(first: LocatedEvent, law: int, event_index: int, at: float) -> Locat
     return LocatedEvent(law, event_index, at) if sooner else first
 
 
-def none(end: float) -> LocatedEvent:
+def no_event(end: float) -> LocatedEvent:
     """No event up to the time `end`: law -1, for compiled code, which needs one type."""
     return LocatedEvent(-1, -1, end)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.events.protocol import CONTACT_SAMPLES, LocatedEvent, none
+from pound_solve.integrate.events.protocol import CONTACT_SAMPLES, LocatedEvent, no_event
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
@@ -13,8 +13,8 @@ from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 #: `EVENT_TOLERANCE` times this: share of their displacements within which bodies that move alike stay
 #: together in steps; each of their events is met to `EVENT_TOLERANCE`
 MOVING_ALIKE = 1e3
-SLOPE_ROUNDING = 1e-9  #: share of its terms below which a slope is rounding
-#: share of its largest rate that a law must move back with before that counts as a reversal
+SLOPE_ROUNDING = 1e-9  #: fraction of its terms below which a slope is rounding
+#: fraction of its largest rate that a law must move back with before that counts as a reversal
 REVERSE_RATE = 1e-6
 
 
@@ -82,7 +82,7 @@ def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
     hinge of one has yielded, and that of the other has not yet.
     """
     definition = laws.definition
-    first = none(np.inf)
+    first = no_event(np.inf)
     for i in range(len(definition.rule)):
         for e in range(0 if definition.contact[i] else laws.events.n_events[i]):
             at = time_of_event(laws, step, i, e, h)

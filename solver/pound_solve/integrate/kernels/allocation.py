@@ -14,6 +14,7 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES
 from pound_solve.numerics import ldl
+from pound_solve.numerics.ldl import Positions
 from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
 from pound_solve.numerics.memo import by_content
 from pound_solve.numerics.modes import massless
@@ -27,7 +28,7 @@ SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
 MAX_HELD = 2**20  #: numbers of one kind in those samples at most, except that two samples always fit
 #: motions of one step, and of whole steps between two visits, that envelopes see at least
 MIN_SHOWN = 64
-SOLUTION_ROUNDING = 16.0 * float(np.finfo(float).eps)  #: share of a force that solving for it loses
+SOLUTION_ROUNDING = 16.0 * float(np.finfo(float).eps)  #: fraction of a force that solving for it loses
 MAX_DELAY = 1e-6  #: longest time e by which massless velocities are found, as a share of the longest step
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
 
@@ -64,7 +65,7 @@ def sparse_rows(a: Matrix) -> Rows:
     return Rows(*_rows(rows, np.arange(a.shape[0]), columns, values))
 
 
-def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[ldl.Place, ldl.Place, Array]:
+def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[Positions, Positions, Array]:
     """The entries of some rows, which come row by row, as pointers, columns and values."""
     pointers = np.append(np.searchsorted(rows, wanted), len(rows)).astype(np.uint32)
     return pointers, columns.astype(np.uint32), np.ascontiguousarray(values)
@@ -170,14 +171,14 @@ def linear_system(
     )
 
 
-def places(chosen: Index, count: int) -> Index:
+def inverse_index(chosen: Index, count: int) -> Index:
     """Place of each of `count` things among the `chosen` ones, -1 for others."""
     place = np.full(count, -1)
     place[chosen] = np.arange(len(chosen))
     return place
 
 
-def places_in_pattern(rows: Rows, layout: Layout) -> tuple[ldl.Place, ldl.Place, Array]:
+def places_in_pattern(rows: Rows, layout: Layout) -> tuple[Positions, Positions, Array]:
     """Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
     pairs: list[list[tuple[int, float]]] = [[] for _ in layout.joins]
     for i in np.flatnonzero(layout.joins).tolist():
@@ -410,6 +411,6 @@ def run_record(t: float, initial_energy: float) -> state.Run:
     run: state.Run = record(state.Run)
     run.time, run.factor_length, run.initial_energy = t, -1.0, initial_energy
     run.longest_part = np.inf
-    run.fault = run.fell = -1
+    run.fault = run.lost_force = -1
     run.remaining_step = run.jumped = -1.0
     return run

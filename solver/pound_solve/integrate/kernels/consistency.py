@@ -27,10 +27,10 @@ from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
 
-#: share of its largest value within which an event is accepted where it cannot be met better
+#: fraction of its largest value within which an event is accepted where it cannot be met better
 NEARLY_MET = 1e-6
-FORCE_JUMP = 10.0 * NEARLY_MET  #: share of the forces of a law above which it has lost one at an event
-DELAY = 1e-8  #: share of the longest C / K among massless unknowns that e is
+FORCE_JUMP = 10.0 * NEARLY_MET  #: fraction of the forces of a law above which it has lost one at an event
+DELAY = 1e-8  #: fraction of the longest C / K among massless unknowns that e is
 
 
 def touches_massless(linear: LinearSystem, rows: Rows, i: int) -> bool:
@@ -42,7 +42,9 @@ def touches_massless(linear: LinearSystem, rows: Rows, i: int) -> bool:
     return False
 
 
-def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: float, d: float) -> bool:
+def loses_force(
+    linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: float, d: float
+) -> bool:
     """Whether law `i` lost a force that had held an unknown without mass, when it left a branch of that
     `stiffness` and `offset` at the deformation `d`.
     """

@@ -17,8 +17,8 @@ from pound_solve.structure.corotational import (
     quantity_stiffness,
 )
 
-FORCE_TOLERANCE = 1e-12  #: share of the largest force that the members' forces are found to
-MEMBER_ROUNDING = 1e-15  #: share of a member's axial stiffness that its forces are rounded to
+FORCE_TOLERANCE = 1e-12  #: fraction of the largest force that the members' forces are found to
+MEMBER_ROUNDING = 1e-15  #: fraction of a member's axial stiffness that its forces are rounded to
 
 
 def form_quantities(members: Corotational, u: Array, inputs: Array, out: Array) -> None:

@@ -65,10 +65,10 @@ class KernelEngine(ABC):
     def __init__(self, problem: Problem[Recorder], scheme: Scheme, dt: float, name: str) -> None:
         system, start, recorder = problem.system, problem.start, problem.recorder
         self.system, self.recorder, self.scheme, self.dt, self.name = system, recorder, scheme, dt, name
-        self.springs, self.times = system.structure.laws, start.times
-        self.tracker = ResponseTracker(self.springs, len(problem.monitored.names))
+        self.law_springs, self.times = system.structure.laws, start.times
+        self.tracker = ResponseTracker(self.law_springs, len(problem.monitored.names))
         self.accumulator = EnergyAccumulator(system, start)
-        rules = list(dict.fromkeys(s.law.rule for s in self.springs))
+        rules = list(dict.fromkeys(s.law.rule for s in self.law_springs))
         self.rules = functions.tables(rules or [bilinear.RULE])  # never empty, which compiles to nothing
         layout = allocation.layout(system, scheme)
         self.order = layout.order
@@ -80,19 +80,19 @@ class KernelEngine(ABC):
         self.inverse_order = layout.inverse_order
         seen = layout.inverse_order[np.flatnonzero(recorder.shown)], recorder.acting
         which, acting = seen if self.shows_steps else np.zeros((2, 0), np.int64)
-        self.buffers = allocation.buffers(system.size, len(self.springs), which, acting)
+        self.buffers = allocation.buffers(system.size, len(self.law_springs), which, acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         works = self.accumulator.works
         self.sim = Simulation(
             self.linear, self.laws, self.members, self.step, self.buffers, works, self.state
         )
-        for i in range(len(self.springs)):
+        for i in range(len(self.law_springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
         law_kernels.linearise_laws(self.laws, self.rules)
         corotational.form_members(self.members, self.step)
         corotational.take_tangents(self.members, self.members.now.quantities)
         self.uniqueness = Uniqueness(system)
-        self.speed = np.zeros(2)  # v M v and a M a, summed over the samples
+        self.motion_norms = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(self.times[0])  # latest instant that the recorder was shown
         self.latest = list[list[float]]()  # transitions that were taken in last
 
@@ -128,7 +128,7 @@ class KernelEngine(ABC):
         runs.
         """
         laws, t = self.laws, float(self.times[0])
-        for i, s in enumerate(self.springs):
+        for i, s in enumerate(self.law_springs):
             kind = s.law.rule.branches[laws.state.branch[i]].kind
             if s.role.collides and kind.closed:
                 d, v = float(laws.now.deformation[i]), float(laws.now.rate[i])
@@ -138,8 +138,8 @@ class KernelEngine(ABC):
         for i in laws.friction.coupled.tolist():
             law_kernels.couple_friction(laws, self.rules, self.step.now.acceleration, i)
         law_kernels.hold_friction_limits(laws)
-        if told := provider().notice(advance):
-            self.recorder.report_progress(t, told)
+        if notice := provider().notice(advance):
+            self.recorder.report_progress(t, notice)
 
     def advance(self, kernel: Function, *given: Any) -> None:
         """Run a kernel until it has reached the end, and fetch what it keeps whenever it returns."""
@@ -176,7 +176,7 @@ class KernelEngine(ABC):
         self.latest = self.buffers.log[: self.state.logged].tolist()
         for row in self.latest:
             law, before, after = (int(x) for x in row[:3])
-            branches = self.springs[law].law.rule.branches
+            branches = self.law_springs[law].law.rule.branches
             if law in self.tracker.open:
                 self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
@@ -204,7 +204,7 @@ class KernelEngine(ABC):
         motions = buffers.displacement, buffers.velocity, buffers.acceleration
         u, v, a = (np.ascontiguousarray(x[:kept, back].T) for x in motions)
         mass = self.system.mass
-        self.speed += (v * (mass @ v)).sum(), (a * (mass @ a)).sum()
+        self.motion_norms += (v * (mass @ v)).sum(), (a * (mass @ a)).sum()
         of_laws = buffers.force, buffers.stored, buffers.lost, buffers.dashpot
         values = LawValues(*(x[:kept].T.copy() for x in of_laws))
         self.recorder.sample(buffers.time[:kept].copy(), u, v, a, values, buffers.works[:kept].T.copy())
@@ -223,7 +223,7 @@ class KernelEngine(ABC):
             return self.stop("A501", self.system.explain_massless(snaps, softens=True))
         place, last = "the members' turning", ""
         if fault >= 0:
-            s = self.springs[fault]
+            s = self.law_springs[fault]
             place = f"element {s.element} ({s.rule})"
             last = f"the last in {place} to {s.law.rule.branches[self.laws.state.branch[fault]].name!r}"
         if why == CHATTER:
@@ -239,7 +239,7 @@ class KernelEngine(ABC):
     def _without_branch(self, law: int) -> int | None:
         """Unknown without mass that a law holds on none of its branches; None if there is none.
 
-        At one instant its rate then has one sign on the falling branch and the other on the branches that
+        At one instant its rate then has one sign on the softening branch and the other on the branches that
         a rate of that sign leads to.
         """
         rows, has_mass = self.laws.definition.rows, self.linear.has_mass
@@ -259,7 +259,8 @@ class KernelEngine(ABC):
         stiffness = self.laws.tangent.stiffness.copy()
         changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.state.time}
         for i in {change[0] for change in changes}:
-            law, d, states = self.springs[i].law, float(self.laws.now.deformation[i]), [self.law_state(i)]
+            law, states = self.law_springs[i].law, [self.law_state(i)]
+            d = float(self.laws.now.deformation[i])
             for state in states:  # it grows by those that follow
                 after = [law.transition(state, n, d) for n in range(len(law.branch(state).events))]
                 seen = {other[0] for other in states}
@@ -276,13 +277,13 @@ class KernelEngine(ABC):
         for law, collision in self.tracker.open.items():
             collision.count(*(float(x[law]) for x in laws.collision))
         peaks = self.tracker.close(self.accumulator.dashpot_losses)
-        states = tuple(self.law_state(i) for i in range(len(self.springs)))
+        states = tuple(self.law_state(i) for i in range(len(self.law_springs)))
         checks = [*self.checks(peaks), *self.uniqueness.checks()]
         return Outcome(peaks, self.figures(), states, checks, self.exact)
 
     def law_state(self, i: int) -> State:
         """State of law `i`."""
-        laws, spring = self.laws, self.springs[i]
+        laws, spring = self.laws, self.law_springs[i]
         variables = laws.state.internal[i, : spring.law.rule.variables].tolist()
         if spring.secant:
             variables += laws.state.internal[i, -2:].tolist()

@@ -27,7 +27,7 @@ class KernelPresent:
         self.t = float(engine.state.time)
         back, now = np.argsort(engine.order), engine.step.now
         self.u, self.v = now.displacement[back], now.velocity[back]
-        self._branches = [s.branch(engine.law_state(i)) for i, s in enumerate(engine.springs)]
+        self._branches = [s.branch(engine.law_state(i)) for i, s in enumerate(engine.law_springs)]
 
     @property
     def branches(self) -> Sequence[Branch]:
@@ -43,7 +43,7 @@ class KernelPresent:
         self.enter(law)
         log_transition(engine.sim, law, before, self.t, 0.0)
         engine.fetch_transitions()
-        self._branches[law] = engine.springs[law].branch(engine.law_state(law))
+        self._branches[law] = engine.law_springs[law].branch(engine.law_state(law))
 
     def enter(self, law: int) -> None:
         """Linearise the branch that a law has changed to, if the law is curved."""
@@ -54,10 +54,10 @@ class KernelPresent:
 
     def force(self, law: int, d: float) -> tuple[float, float]:
         """Force of a law at rest at deformation `d`, and its tangent."""
-        return self.engine.springs[law].law.force(self.engine.law_state(law), d)[:2]
+        return self.engine.law_springs[law].law.force(self.engine.law_state(law), d)[:2]
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Add the work that a falling force has `lost` to the work done on its law, and that of loads to
+        """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
         the input.
         """
         self.engine.laws.state.entry_work[law] += lost

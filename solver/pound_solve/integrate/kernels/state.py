@@ -10,15 +10,15 @@ from typing import NamedTuple, Protocol
 
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.tracker import Extremes
-from pound_solve.numerics.ldl import Pattern, Place
+from pound_solve.numerics.ldl import Pattern, Positions
 from pound_solve.numerics.types import Array, Flags, Index
 
 #: why a kernel returns to Python.  DONE: all goals are reached; FULL: Python must empty the buffers;
 #: RUNAWAY: the energy grows without bound; CHATTER, CROWD: too many changes of branch at an instant, in a
-#: step; PIVOT: a matrix is singular; NEWTON: no convergence; FALL: a law that holds a massless unknown has
-#: lost its force; SHORT: the step is lost in the rounding of the time; LOOSE: nothing holds a massless
-#: unknown; STRIKE: a rigid contact strikes or parts
-DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL, SHORT, LOOSE, STRIKE = range(11)
+#: step; PIVOT: a matrix is singular; NEWTON: no convergence; LOST_FORCE: a law that holds a massless
+#: unknown has lost its force; SHORT: the step is lost in the rounding of the time; LOOSE: nothing holds a
+#: massless unknown; STRIKE: a rigid contact strikes or parts
+DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, LOST_FORCE, SHORT, LOOSE, STRIKE = range(11)
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns
 WHOLE, PART, MASS, MASSLESS = range(4)
@@ -39,11 +39,11 @@ class Run(Protocol):
     steps: int
     events: int
     same_instant: int  #: transitions at one instant
-    fell: int  #: law whose force has fallen and holds a joint without mass, -1 for none
+    lost_force: int  #: law that held a joint without mass and lost its force, -1 for none
     driven: int  #: branches left in a step that is not cut at events
     updates: int  #: of rank one since the factor was made
     stale: int  #: whether quantities that depend on the branches, such as factors, must be recomputed
-    falling: int  #: steps that are too long for a falling branch
+    softening: int  #: steps that are too long for a softening branch
     tied: int  #: instants at which laws give way together in the buffers
     rests: int  #: laws that rest where a branch begins in the buffers
     fault: int  #: law or unknown at fault, -1 for none
@@ -51,7 +51,7 @@ class Run(Protocol):
     factor_length: float  #: step that the factor at hand is for
     initial_energy: float  #: kinetic and recoverable
     longest_part: float  #: that a step may take at once for now
-    remaining_step: float  #: of a step that stopped where a force fell, negative for none
+    remaining_step: float  #: of a step that stopped where a force lost_force, negative for none
     last_event: float  #: time of the last transition
     jumped: float  #: time at which a load has jumped, negative for none
 
@@ -74,9 +74,9 @@ class Product(NamedTuple):
 
     offsets: Index
     diagonals: Array
-    row: Place
-    pointers: Place
-    columns: Place
+    row: Positions
+    pointers: Positions
+    columns: Positions
     values: Array
 
 
@@ -89,8 +89,8 @@ class Rows(NamedTuple):
     columns, values : ndarray, shape (n_entries,)
     """
 
-    pointers: Place
-    columns: Place
+    pointers: Positions
+    columns: Positions
     values: Array
 
 
@@ -209,10 +209,10 @@ class Corotational(NamedTuple):
     """
 
     parameters: Array
-    pointers: Place
+    pointers: Positions
     unknown: Index
     rows: Array
-    pair_pointers: Place
+    pair_pointers: Positions
     pair: Index
     inputs: Array
     supports: Array
@@ -252,8 +252,8 @@ class LawDefinition(NamedTuple):
 
     rows: Rows
     inputs: Array
-    pair_pointers: Place
-    pair_places: Place
+    pair_pointers: Positions
+    pair_places: Positions
     pair_values: Array
     supports: Array
     rule: Index

@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.consistency import lets_go, touches_massless
+from pound_solve.integrate.kernels.consistency import loses_force, touches_massless
 from pound_solve.integrate.kernels.laws import leave_branch, restore_state, save_state
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation
 from pound_solve.laws.functions import Tables
 
-#: share of its largest terms that an event function may lack of an event at the same instant
+#: fraction of its largest terms that an event function may lack of an event at the same instant
 NEAR_EVENT = 1e-9
-STATIONARY_RATE = 1e-4  #: share of its largest rate up to which a law stands still
+STATIONARY_RATE = 1e-4  #: fraction of its largest rate up to which a law stands still
 
 
 def event_near(a: float, b: float, c: float, d: float, largest: float) -> bool:
@@ -65,7 +65,7 @@ def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event
     save_state(laws, i)
     leave_branch(laws, rules, i, event, d, v)
     no_force = tangent.stiffness[i] == 0.0 and tangent.offset[i] == 0.0
-    slack = no_force and not lets_go(linear, laws, i, k, f0, d)
+    slack = no_force and not loses_force(linear, laws, i, k, f0, d)
     restore_state(laws, rules, i)
     return slack
 
@@ -132,15 +132,15 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
     branch; nothing where no other does.
 
     `law` has just left a branch of that `stiffness` and `offset`.  Where it has become softer, the tangents
-    of other laws that become softer are recorded; where its force has fallen, minus infinity and the next
-    branch of other laws whose forces fall.
+    of other laws that become softer are recorded; where it has lost its force, minus infinity and the next
+    branch of other laws that lose their forces.
     """
     linear, laws, buffers, run = sim.linear, sim.laws, sim.buffers, sim.run
     definition, tangent = laws.definition, laws.tangent
     plain = not definition.contact[law] and not definition.curved[law]
-    fell = lets_go(linear, laws, law, stiffness, offset, laws.now.deformation[law])
+    lost_force = loses_force(linear, laws, law, stiffness, offset, laws.now.deformation[law])
     softer = plain and tangent.stiffness[law] < stiffness and touches_massless(linear, definition.rows, law)
-    if not (fell or softer) or run.tied == len(buffers.ties):
+    if not (lost_force or softer) or run.tied == len(buffers.ties):
         return
     row, count = buffers.ties[run.tied], 0
     rate = laws.now.rate
@@ -152,10 +152,10 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
         d, v, k, f0 = laws.now.deformation[i], rate[i], tangent.stiffness[i], tangent.offset[i]
         save_state(laws, i)
         leave_branch(laws, rules, i, e, d, v)
-        if fell and lets_go(linear, laws, i, k, f0, d):
+        if lost_force and loses_force(linear, laws, i, k, f0, d):
             row[0, i], row[1, i], row[2, i] = -np.inf, laws.state.branch[i], v
             count += 1
-        elif not fell and tangent.stiffness[i] < k:
+        elif not lost_force and tangent.stiffness[i] < k:
             row[0, i], row[2, i] = tangent.stiffness[i], v
             count += 1
         restore_state(laws, rules, i)

@@ -10,7 +10,7 @@ from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 
 MAX_TERMS = 80  #: of the exponential series in a substep
-TRUNCATION = 1e-18  #: share of the sum below which a term ends the series
+TRUNCATION = 1e-18  #: fraction of the sum below which a term ends the series
 
 
 class SeriesPropagator(Propagator):

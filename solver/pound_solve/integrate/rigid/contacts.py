@@ -34,8 +34,8 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-ACCELERATION_ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
-DISPLACEMENT_SHARE = 0.1  #: share of the largest displacement that counts as a term of all
+ACCELERATION_ROUNDING = 1e-12  #: fraction of its terms below which an acceleration is rounding
+DISPLACEMENT_SHARE = 0.1  #: fraction of the largest displacement that counts as a term of all
 MAX_IMPACTS = 100_000  #: at one instant
 MAX_PIVOTS = 10_000
 

@@ -15,9 +15,9 @@ from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
 
-NO_REBOUND = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
+NO_REBOUND = 1e-6  #: fraction of a contact's fastest rate below which an approach has no rebound
 REBOUND_ROUNDING = 4.0  #: rise of a rebound that is lost in rounding, over that rounding
-START_OVERLAP = 1e-10  #: share of its terms beyond which a deformation overlaps at the start
+START_OVERLAP = 1e-10  #: fraction of its terms beyond which a deformation overlaps at the start
 
 
 class RigidRun(Protocol):

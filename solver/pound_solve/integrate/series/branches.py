@@ -5,9 +5,9 @@ from __future__ import annotations
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.laws import law_force, leave_branch
 from pound_solve.integrate.kernels.recording import log_transition
-from pound_solve.integrate.kernels.state import CHATTER, DONE, FALL, LOOSE, Piece, Run, Simulation
+from pound_solve.integrate.kernels.state import CHATTER, DONE, LOOSE, LOST_FORCE, Piece, Run, Simulation
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
-from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, SAME_INSTANT
+from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW, SAME_INSTANT
 from pound_solve.integrate.series.expansion import begin_series, next_term
 from pound_solve.integrate.series.forces import take_over, update_branch_forces
 from pound_solve.integrate.series.friction import touch_event
@@ -121,7 +121,7 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     in_series += len(series.smooth.laws) + len(series.viscous.laws)
     if len(massless.unknown) + in_series == 0:
         return DONE
-    for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.definition.rule)):
+    for _ in range(MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule)):
         change_friction(sim, rules, series)
         if not renew_branches(sim, rules, series):
             return LOOSE
@@ -130,7 +130,7 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
             next_term(sim, series, 0, 1.0, top)
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
         if run.fault >= 0 and joints_jump(laws, series, top):
-            return FALL
+            return LOST_FORCE
         for i in massless.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in massless.laws:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws
@@ -37,7 +37,7 @@ from pound_solve.numerics.types import Array, Flags
 #: no overlap beyond rounding; a force acts; the force would be tensile, and is zero
 APART, PRESSED, RELEASED = range(3)
 NO_OVERLAP = 1e-12  #: overlap that counts as none, over the largest deformation
-FORCE_TRUNCATION = 1e-10  #: share of the force that the last of its terms may be
+FORCE_TRUNCATION = 1e-10  #: fraction of the force that the last of its terms may be
 FIRST_STEP = 0.4  #: length of the first step after a touch, as a share of the time since touch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.constants`
@@ -48,7 +48,7 @@ def allocate(curved: Flags, terms: int) -> Curved:
     laws = np.flatnonzero(curved)
     return Curved(
         laws=laws,
-        index_of=places(laws, len(curved)),
+        index_of=inverse_index(laws, len(curved)),
         constants=np.zeros((len(laws), 6)),
         phase=np.zeros(len(laws), np.int64),
         power=np.zeros((len(laws), 2, terms)),
@@ -167,7 +167,7 @@ def right_part(force: Array, terms: int, end: float) -> float:
     return min(end, (FORCE_TRUNCATION * most / tail) ** (1.0 / last)) if tail > 0.0 else end
 
 
-def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
+def contacts_valid_up_to(curved: Curved, terms: int, end: float) -> float:
     """Fraction or multiple of a step up to which the forces of all contacts are accurate, at most `end`."""
     for r in range(len(curved.laws)):
         if curved.phase[r] != APART:

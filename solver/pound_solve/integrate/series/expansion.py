@@ -17,23 +17,23 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Piece, Simulation
-from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_right_up_to
+from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_valid_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold_contacts
-from pound_solve.integrate.series.smooth import add_remainders, find_rests, smooth_right_up_to
+from pound_solve.integrate.series.smooth import add_remainders, find_rests, smooth_valid_up_to
 from pound_solve.integrate.series.springs import add_product, deformation_term
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.strings import add_strings
-from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
+from pound_solve.integrate.series.viscous import add_drags, drags_valid_up_to, find_drags
 from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
 MAX_TERMS = 32  #: of a series, at most
 UNCHECKED_TERMS = 4  #: terms after which it is checked whether they suffice
-TRUNCATION = 1e-14  #: share of the motion that a term left out may be
-UNSEEN_ENERGY = 1e-13  #: share of its energy that a term may carry that works need not see
+TRUNCATION = 1e-14  #: fraction of the motion that a term left out may be
+UNSEEN_ENERGY = 1e-13  #: fraction of its energy that a term may carry that works need not see
 MAX_GROWTH = 2.0  #: how much longer than the last a step may be
 
 
@@ -120,10 +120,10 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
             new[i] += h * h * springs.constant[i]
     if k < top:
         for j in range(series.inputs.shape[1]):
-            push = h * h * series.inputs[k, j]
-            if push != 0.0:
+            load = h * h * series.inputs[k, j]
+            if load != 0.0:
                 for i in range(n):
-                    new[i] += springs.inputs[j, i] * push
+                    new[i] += springs.inputs[j, i] * load
     for q in range(springs.n_dashpots[0]):
         law = springs.dashpots[q]
         term = deformation_term(laws.definition, series, k + 1, top, law)
@@ -167,11 +167,11 @@ def begin_series(sim: Simulation, series: Series, piece: Piece, h: float) -> Non
             add_massless(laws, sim.step, series, k, h, top)
 
 
-def right_up_to(series: Series, terms: int, end: float) -> float:
+def valid_up_to(series: Series, terms: int, end: float) -> float:
     """Fraction or multiple of a step up to which forces that are series are accurate, at most `end`."""
-    end = contacts_right_up_to(series.curved, terms, end)
-    end = smooth_right_up_to(series.smooth, terms, end)
-    return drags_right_up_to(series.viscous, terms, end)
+    end = contacts_valid_up_to(series.curved, terms, end)
+    end = smooth_valid_up_to(series.smooth, terms, end)
+    return drags_valid_up_to(series.viscous, terms, end)
 
 
 def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
@@ -204,7 +204,7 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
         if tail + last > UNSEEN_ENERGY * most:
             lengths.carried = terms + UNCHECKED_TERMS
         enough = terms > top and tail + last <= TRUNCATION * TRUNCATION * most
-        if enough and right_up_to(series, terms, 1.0) == 1.0:
+        if enough and valid_up_to(series, terms, 1.0) == 1.0:
             break
     # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
     others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
@@ -218,7 +218,7 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
         end = min(end, (TRUNCATION * TRUNCATION * most / tail) ** (0.5 / terms))
     if last > 0.0:
         end = min(end, (TRUNCATION * TRUNCATION * most / last) ** (0.5 / (terms - 1)))
-    return terms, right_up_to(series, terms, end)
+    return terms, valid_up_to(series, terms, end)
 
 
 def derivative_factor(k: int, order: int, h: float) -> float:

@@ -13,7 +13,7 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, highest, s
 from pound_solve.integrate.series.expansion import derivative_factor
 from pound_solve.integrate.series.shown import STEPS
 from pound_solve.integrate.series.state import Shown
-from pound_solve.numerics.ldl import Place
+from pound_solve.numerics.ldl import Positions
 from pound_solve.numerics.types import Array, Index
 
 
@@ -37,8 +37,8 @@ class RowExtremes(NamedTuple):
         Work space, see `polynomial_roots.room`.
     """
 
-    pointers: Place
-    source: Place
+    pointers: Positions
+    source: Positions
     derivative: Index
     factors: Array
     constant: Array

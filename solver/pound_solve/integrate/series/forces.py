@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Laws, LawTangent
 from pound_solve.integrate.series.curved import PRESSED, enter_curved, has_force
-from pound_solve.integrate.series.friction import is_sliding, side_of, update_friction
+from pound_solve.integrate.series.friction import is_sliding, set_sliding_direction, update_friction
 from pound_solve.integrate.series.rigid import is_closed
 from pound_solve.integrate.series.smooth import dashpot_remainder
 from pound_solve.integrate.series.state import Series
@@ -19,7 +19,7 @@ def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
     if series.curved.index_of[i] >= 0:
         enter_curved(laws, rules, series.curved, i)
     if series.friction.index_of[i] >= 0:
-        side_of(laws.state, series.friction, i)
+        set_sliding_direction(laws.state, series.friction, i)
 
 
 def has_series(series: Series, i: int) -> bool:

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
-from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
-from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.events.protocol import LocatedEvent, earlier, no_event
+from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.laws import curved_force, linear_force
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import Laws, LawState
@@ -26,7 +26,7 @@ from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
 
 KT, MU, MUD = range(3)  #: among the parameters
-OVERDUE = 1e-9  #: share of its terms above which an event function has jumped, as the normal force has
+OVERDUE = 1e-9  #: fraction of its terms above which an event function has jumped, as the normal force has
 
 
 def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
@@ -36,28 +36,28 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
     """
     return Friction(
         laws=laws,
-        index_of=places(laws, n_laws),
+        index_of=inverse_index(laws, n_laws),
         normal=normal,
-        side=np.zeros(len(laws)),
+        sliding_direction=np.zeros(len(laws)),
         pressing=np.ones(len(laws), bool),
-        push=np.zeros((len(laws), terms)),
+        normal_force=np.zeros((len(laws), terms)),
         force=np.zeros((len(laws), terms)),
         largest=np.zeros(len(laws)),
     )
 
 
-def side_of(state: LawState, friction: Friction, i: int) -> None:
+def set_sliding_direction(state: LawState, friction: Friction, i: int) -> None:
     """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 where it does not."""
     at = state.branch[i]
-    friction.side[friction.index_of[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
+    friction.sliding_direction[friction.index_of[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
 
 def is_sliding(friction: Friction, i: int) -> bool:
     """Whether law `i` is friction that slides."""
-    return bool(friction.index_of[i] >= 0 and friction.side[friction.index_of[i]] != 0.0)
+    return bool(friction.index_of[i] >= 0 and friction.sliding_direction[friction.index_of[i]] != 0.0)
 
 
-def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
+def normal_force_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
     """Coefficient `k` of the normal force of friction `r`; the inputs have `top` coefficients."""
     tangent = laws.tangent
     j, curved = series.friction.normal[r], series.curved
@@ -81,10 +81,14 @@ def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         i = friction.laws[r]
         if laws.state.branch[i] == OPEN:
             continue
-        friction.push[r, k] = push_term(laws, series, r, k, h, top)
-        if friction.side[r] != 0.0:
-            share = friction.side[r] * laws.definition.parameters[i, MUD] if friction.pressing[r] else 0.0
-            friction.force[r, k] = share * friction.push[r, k]
+        friction.normal_force[r, k] = normal_force_term(laws, series, r, k, h, top)
+        if friction.sliding_direction[r] != 0.0:
+            share = (
+                friction.sliding_direction[r] * laws.definition.parameters[i, MUD]
+                if friction.pressing[r]
+                else 0.0
+            )
+            friction.force[r, k] = share * friction.normal_force[r, k]
             add_row(laws.definition.rows, i, -h * h * friction.force[r, k], new)
 
 
@@ -95,14 +99,16 @@ def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) 
         i = friction.laws[r]
         if state.branch[i] == OPEN:
             continue
-        push, rate = 0.0, 0.0
+        force, rate = 0.0, 0.0
         for k in range(terms - 2, -1, -1):
-            rate = rate * s + push
-            push = push * s + friction.push[r, k]
-        state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(push, 0.0), rate / h
-        friction.largest[r] = max(friction.largest[r], push)
-        if friction.side[r] != 0.0:
-            laws.tangent.offset[i] = friction.side[r] * laws.definition.parameters[i, MUD] * max(push, 0.0)
+            rate = rate * s + force
+            force = force * s + friction.normal_force[r, k]
+        state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(force, 0.0), rate / h
+        friction.largest[r] = max(friction.largest[r], force)
+        if friction.sliding_direction[r] != 0.0:
+            laws.tangent.offset[i] = (
+                friction.sliding_direction[r] * laws.definition.parameters[i, MUD] * max(force, 0.0)
+            )
 
 
 def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
@@ -115,12 +121,12 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
     if bool(pressed) == (state.branch[i] != OPEN):
         return -1
     d, v = laws.now.deformation[j], laws.now.rate[j]
-    push, rate = linear_force(laws.tangent, j, d, v), laws.tangent.stiffness[j] * v
+    force, rate = linear_force(laws.tangent, j, d, v), laws.tangent.stiffness[j] * v
     if laws.definition.curved[j]:
         response = curved_force(laws, rules, j, d, v)
-        push, rate = response[0], response[1] * v
-    friction.pressing[r] = push >= 0.0
-    state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(push, 0.0), rate
+        force, rate = response[0], response[1] * v
+    friction.pressing[r] = force >= 0.0
+    state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(force, 0.0), rate
     return 0 if pressed else RELEASED
 
 
@@ -130,9 +136,9 @@ def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     r = friction.index_of[i]
     sign = -1.0 if friction.pressing[r] else 1.0
     for k in range(terms + 1):
-        p[k] = sign * friction.push[r, k] if k < terms - 1 else 0.0
+        p[k] = sign * friction.normal_force[r, k] if k < terms - 1 else 0.0
     at = first_rise(series.polynomial, terms, end, EVENT_TOLERANCE * friction.largest[r])
-    return earlier(none(end), i, LIFT, at)
+    return earlier(no_event(end), i, LIFT, at)
 
 
 def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
@@ -140,22 +146,25 @@ def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> Locate
     friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
     r, parameters = friction.index_of[i], laws.definition.parameters[i]
     if laws.state.branch[i] == OPEN:
-        return none(extent.end)
+        return no_event(extent.end)
     terms, h = extent.terms, extent.h
     first = lift_event(series, terms, extent.end, i)
-    sliding, pressing = friction.side[r] != 0.0, 1.0 if friction.pressing[r] else 0.0
+    sliding, pressing = friction.sliding_direction[r] != 0.0, 1.0 if friction.pressing[r] else 0.0
     for e in range(1 if sliding else 2):
-        sign = friction.side[r] if sliding else 1.0 - 2.0 * e
+        sign = friction.sliding_direction[r] if sliding else 1.0 - 2.0 * e
         for k in range(terms + 1):
             p[k] = 0.0
         if sliding:  # the slider would turn back
             scale, share = laws.largest.rate[i], pressing * parameters[MUD] / parameters[KT]
             for k in range(terms - 2):
-                p[k] = (k + 1) / h * (share * friction.push[r, k + 1] - sign * d[i, k + 1])
+                p[k] = (k + 1) / h * (share * friction.normal_force[r, k + 1] - sign * d[i, k + 1])
         else:  # the spring reaches the limit
             scale = parameters[KT] * laws.largest.deformation[i] + parameters[MU] * friction.largest[r]
             for k in range(terms - 1):
-                p[k] = sign * parameters[KT] * d[i, k] - pressing * parameters[MU] * friction.push[r, k]
+                p[k] = (
+                    sign * parameters[KT] * d[i, k]
+                    - pressing * parameters[MU] * friction.normal_force[r, k]
+                )
             p[0] -= sign * parameters[KT] * laws.state.internal[i, ANCHOR]
         if p[0] > OVERDUE * scale:
             return LocatedEvent(i, e, 0.0)

@@ -27,7 +27,7 @@ class Laguerre(Taylor):
     words = f"LAGUERRE, implicit series of {LAST_TERM} terms"
     asking = "TOL"
 
-    def cure(self) -> str:
+    def remedy(self) -> str:
         """Text on what requires fewer steps."""
         return ", a larger one for fewer"
 
@@ -57,8 +57,8 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     """
     refuse_rigid(problem, "LAGUERRE")
     if why := not_linear(problem.system):
-        told = f"LAGUERRE needs linear pieces, and {why}: AUTO takes another method"
-        raise Stop("A505", problem.begin, told)
+        why_not = f"LAGUERRE needs linear pieces, and {why}: AUTO takes another method"
+        raise Stop("A505", problem.begin, why_not)
     contacts, most = RigidContacts(problem.system), min(options.get("STEPS", MAX_STEPS), MAX_STEPS)
     return Laguerre(problem, contacts, most, options["TOL"]).run()
 

@@ -27,7 +27,7 @@ from pound_solve.integrate.kernels.state import (
     piece_of,
 )
 from pound_solve.integrate.kernels.work import load_on_nodes
-from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
+from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW
 from pound_solve.integrate.series.branches import (
     change_branches,
     count_instant,
@@ -60,7 +60,7 @@ from pound_solve.laws.functions import Tables
 MIN_SHORTENING = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
 MAX_SHORTENING = 0.9  #: this factor, at most
 MIN_PART = 0.5  #: smallest part of a step, as it was tried, that is taken
-#: share of the time to the goal: longest implicit step in which a contact leaves its rest
+#: fraction of the time to the goal: longest implicit step in which a contact leaves its rest
 MAX_FIRST_STEP = 1e-4
 
 
@@ -235,7 +235,7 @@ def step_to_goal(
             continue
         run.time = t + at * h
         count_instant(run, h)
-        if run.same_instant > CHANGES + CHANGES_PER_LAW * len(laws.definition.rule):
+        if run.same_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule):
             run.fault = event.law
             return CHATTER
         why = answer_event(sim, rules, series, piece, searched, event)

@@ -22,8 +22,8 @@ import numpy as np
 
 from pound_solve.integrate.kernels.allocation import (
     coupled_pairs,
+    inverse_index,
     laid_out,
-    places,
     places_in_pattern,
     sparse_rows,
 )
@@ -48,9 +48,11 @@ from pound_solve.numerics.matrices import (
 from pound_solve.numerics.modes import scaling, softest
 from pound_solve.numerics.types import Array, Index
 
-DEFORMATION_JUMP = 1e-9  #: share of the largest deformation above which a change at one instant is a jump
+DEFORMATION_JUMP = (
+    1e-9  #: fraction of the largest deformation above which a change at one instant is a jump
+)
 DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
-PARTICIPATION = 1e-6  #: share of the largest component of a motion above which an unknown takes part
+PARTICIPATION = 1e-6  #: fraction of the largest component of a motion above which an unknown takes part
 
 
 def allocate(
@@ -85,7 +87,7 @@ def allocate(
         damping=sparse_rows(damping[unknown]),
         heavy_damping=sparse_rows(damping[linear.has_mass]),
         laws=laws,
-        index_of_law=places(laws, law_rows.shape[0]),
+        index_of_law=inverse_index(laws, law_rows.shape[0]),
         rows=rows,
         pattern=pattern,
         column=column,

@@ -33,7 +33,7 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 
-SERIES_ROUNDING = 1e-16  #: share of the terms of a series that is rounding
+SERIES_ROUNDING = 1e-16  #: fraction of the terms of a series that is rounding
 UNKNOWNS, MODES, FOLLOWED, SHOWN = range(4)  #: columns of `Modal.counts`
 DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_modes`
 

@@ -7,7 +7,7 @@ import numpy as np
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.present import KernelPresent
-from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
+from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW
 from pound_solve.integrate.series.forces import take_over
 from pound_solve.integrate.series.massless import first_violated
 from pound_solve.integrate.series.state import Series
@@ -54,7 +54,7 @@ class Present(KernelPresent):
     def turn_back(self, which: Index) -> None:
         """Let those of some laws leave their branches whose rates an impact has reversed."""
         now, laws = self.engine.laws.now, self.engine.laws
-        for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.definition.rule)):
+        for _ in range(MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule)):
             law, event = first_violated(laws, which)
             if law < 0:
                 return

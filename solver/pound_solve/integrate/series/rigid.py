@@ -8,7 +8,7 @@ and :math:`G = B M^{-1} B^T` of `rigid.contacts`,
           r_{k-2} = \frac{k(k-1)}{h^2}\, x_k
 
 :math:`B_s s_k` being the part of the inputs and g the gaps.  The first two coefficients, which are the
-present state, are corrected for rounding in this way in every step.  A contact parts where its force falls
+present state, are corrected for rounding in this way in every step.  A contact parts where its force drops
 to zero.
 """
 
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.series.springs import deformation_term
@@ -29,7 +29,7 @@ def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> 
     n, laws = len(contacts.laws), np.array(contacts.laws, np.int64)
     return Rigid(
         laws=laws,
-        index_of=places(laws, n_laws),
+        index_of=inverse_index(laws, n_laws),
         gap=contacts.gap,
         velocity_change=np.ascontiguousarray(contacts.velocity_change[order].T),
         closed=np.zeros(n, np.int64),

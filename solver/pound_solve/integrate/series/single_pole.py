@@ -49,8 +49,8 @@ from pound_solve.numerics.types import Array
 LAST_TERM = 6  #: number of the last term of a series
 #: index (ascending) of the root of Laguerre's polynomial used for 1/gamma; it makes the method A-stable
 ROOT = 2
-ERROR_SHARE = 0.5  #: share of the error that a step is made for
-TERM_ROUNDING = 1e-24  #: share of the energy of a state that the rounding of a term may have
+ERROR_SHARE = 0.5  #: fraction of the error that a step is made for
+TERM_ROUNDING = 1e-24  #: fraction of the energy of a state that the rounding of a term may have
 TERMS_OF_WORK = 8  #: terms for which works are integrated right
 
 
@@ -140,10 +140,10 @@ def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array
     if n >= top:
         return
     for j in range(laguerre.inputs.shape[1]):
-        push = scale * (laguerre.inputs[n, j] - laguerre.inputs[n + 1, j])
-        if push != 0.0:
+        load = scale * (laguerre.inputs[n, j] - laguerre.inputs[n + 1, j])
+        if load != 0.0:
             for i in range(len(out)):
-                out[i] += springs.inputs[j, i] * push
+                out[i] += springs.inputs[j, i] * load
     for q in range(springs.n_dashpots[0]):  # rates of moved supports: the coefficients k + 1 of a power k
         law, rate = springs.dashpots[q], 0.0
         for k in range(min(top - 1, len(laguerre.monomials))):

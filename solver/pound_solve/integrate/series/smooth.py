@@ -25,7 +25,7 @@ import numpy as np
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier
-from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.laws import curved_force, internal, parameters, proportional_damping
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import LawDefinition, LawExtremes, LawMotion, Laws
@@ -37,8 +37,8 @@ from pound_solve.laws.automaton import PAST
 from pound_solve.laws.functions import Tables, smooth_of
 from pound_solve.numerics.types import Array, Flags
 
-POWER_LEFT_OUT = 1e-14  #: share of the force at w = y that a power left out may make
-ZERO = 0.1 * PAST  #: share of y below which w counts as zero
+POWER_LEFT_OUT = 1e-14  #: fraction of the force at w = y that a power left out may make
+ZERO = 0.1 * PAST  #: fraction of y below which w counts as zero
 POWER_TRUNCATION = 1e-13  #: error of w by truncating the series of the power, as a share of w, at most
 CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
 #: bits of the largest whole power computed by multiplication; larger ones matter near w = y only
@@ -52,7 +52,7 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
     n = len(laws)
     return Smooth(
         laws=laws,
-        index_of=places(laws, len(smooth)),
+        index_of=inverse_index(laws, len(smooth)),
         constants=np.zeros((n, 7)),
         bent=np.zeros(n, bool),
         low=np.zeros(n),
@@ -203,7 +203,7 @@ def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
 
 
-def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
+def smooth_valid_up_to(smooth: Smooth, terms: int, end: float) -> float:
     """Fraction or multiple of a step up to which the forces are accurate, at most `end`.
 
     Where the series of a power begins with a high term, the last terms do not show its error: this is

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pound_solve.integrate.kernels.allocation import coupled_pairs, places
+from pound_solve.integrate.kernels.allocation import coupled_pairs, inverse_index
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import LawDefinition, Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
@@ -44,7 +44,7 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
     squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in slices]
     return Springs(
         row=row.astype(np.uint32),
-        index_of=places(row, n),
+        index_of=inverse_index(row, n),
         rows=Rows(
             np.append(first, len(keys)).astype(np.uint32), (keys % n).astype(np.uint32), np.zeros(len(keys))
         ),
@@ -75,7 +75,11 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
             moved[j, i] = linear.inputs[j, i]
     for i in range(len(definition.rule)):
         k, offset, rubs = tangent.stiffness[i], tangent.offset[i], friction.index_of[i]
-        if rigid.index_of[i] >= 0 or curved.index_of[i] >= 0 or (rubs >= 0 and friction.side[rubs] != 0.0):
+        if (
+            rigid.index_of[i] >= 0
+            or curved.index_of[i] >= 0
+            or (rubs >= 0 and friction.sliding_direction[rubs] != 0.0)
+        ):
             offset = 0.0
         for q in range(springs.pair_pointers[i], springs.pair_pointers[i + 1]):
             values[springs.pair_places[q]] += k * springs.pair_values[q]

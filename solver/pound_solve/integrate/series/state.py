@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from pound_solve.integrate.kernels.state import Product, Rows
-from pound_solve.numerics.ldl import Pattern, Place
+from pound_solve.numerics.ldl import Pattern, Positions
 from pound_solve.numerics.types import Array, Flags, Index
 
 
@@ -46,12 +46,12 @@ class Springs(NamedTuple):
     n_dashpots : ndarray, shape (1,)
     """
 
-    row: Place
+    row: Positions
     index_of: Index
     rows: Rows
     stiffness: Array
-    pair_pointers: Place
-    pair_places: Place
+    pair_pointers: Positions
+    pair_places: Positions
     pair_values: Array
     constant: Array
     inputs: Array
@@ -110,8 +110,8 @@ class Massless(NamedTuple):
     pattern: Pattern
     column: Index
     on_pattern: Array
-    pair_pointers: Place
-    pair_places: Place
+    pair_pointers: Positions
+    pair_places: Positions
     pair_values: Array
     damped: Flags
     members: Index
@@ -201,11 +201,11 @@ class Friction(NamedTuple):
         Place of a law in `laws`, -1 for others.
     normal : ndarray, shape (n_friction,)
         The laws of the contacts.
-    side : ndarray, shape (n_friction,)
+    sliding_direction : ndarray, shape (n_friction,)
         Direction of sliding, 1 or -1; 0 if it does not slide.
     pressing : ndarray, shape (n_friction,)
         Whether the contact presses; a sticky one may pull.
-    push : ndarray, shape (n_friction, TERMS + 1)
+    normal_force : ndarray, shape (n_friction, TERMS + 1)
         Coefficients of the normal forces.
     force : ndarray, shape (n_friction, TERMS + 1)
         Coefficients of the forces of friction that slides.
@@ -216,9 +216,9 @@ class Friction(NamedTuple):
     laws: Index
     index_of: Index
     normal: Index
-    side: Array
+    sliding_direction: Array
     pressing: Flags
-    push: Array
+    normal_force: Array
     force: Array
     largest: Array
 

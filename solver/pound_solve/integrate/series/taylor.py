@@ -36,7 +36,16 @@ from pound_solve.integrate.kernels import allocation
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
-from pound_solve.integrate.kernels.state import CHATTER, FALL, LOOSE, RUNAWAY, SHORT, STRIKE, Goals, Scheme
+from pound_solve.integrate.kernels.state import (
+    CHATTER,
+    LOOSE,
+    LOST_FORCE,
+    RUNAWAY,
+    SHORT,
+    STRIKE,
+    Goals,
+    Scheme,
+)
 from pound_solve.integrate.protocol import (
     CHATTER_TEXT,
     RUNAWAY_TEXT,
@@ -134,7 +143,7 @@ class Taylor(KernelEngine):
             system.stiffness[np.ix_(o, o)],
             system.damping[np.ix_(o, o)],
             system.law_rows[:, o],
-            np.array([0.0 if s.role.collides else s.steepest for s in self.springs], float),
+            np.array([0.0 if s.role.collides else s.steepest for s in self.law_springs], float),
         )
 
     def _allocate(self, monitored: MonitoredOutputs, tolerance: float | None) -> state.Series:
@@ -143,14 +152,14 @@ class Taylor(KernelEngine):
         n, n_inputs, n_laws, terms = (
             system.size,
             system.inputs.shape[1],
-            len(self.springs),
+            len(self.law_springs),
             expansion.MAX_TERMS + 1,
         )
         mass, whole = self.linear.mass.diagonals[0], system.stiffness[np.ix_(o, o)]
-        is_curved = np.array([s.law.curved for s in self.springs], bool)
-        collides = np.array([s.role.collides for s in self.springs], bool)
-        is_damper = is_curved & np.array([s.role is Role.DAMPER for s in self.springs], bool)
-        is_smooth = np.array([s.law.rule.smooth is not None for s in self.springs], bool)
+        is_curved = np.array([s.law.curved for s in self.law_springs], bool)
+        collides = np.array([s.role.collides for s in self.law_springs], bool)
+        is_damper = is_curved & np.array([s.role is Role.DAMPER for s in self.law_springs], bool)
+        is_smooth = np.array([s.law.rule.smooth is not None for s in self.law_springs], bool)
         which, acting = self.inverse_order[np.flatnonzero(self.recorder.shown)], self.recorder.acting
         modal = modal_tables.allocate(
             system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), which
@@ -216,7 +225,7 @@ class Taylor(KernelEngine):
         self.begin(march.march)
         self._at_instant(RigidInstants.begin)
         for i in self.series.friction.laws.tolist():
-            friction.side_of(self.laws.state, self.series.friction, i)
+            friction.set_sliding_direction(self.laws.state, self.series.friction, i)
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
@@ -224,16 +233,16 @@ class Taylor(KernelEngine):
         self.advance(march.march, self.series, ahead)
 
     def resume(self, why: int) -> None:
-        """Let rigid contacts strike, close or part, or joints without mass move where a force falls; stop
+        """Let rigid contacts strike, close or part, or joints without mass move where a force is lost; stop
         where the run cannot go on.
         """
-        if why not in (STRIKE, FALL):
+        if why not in (STRIKE, LOST_FORCE):
             raise self.trouble(why)
-        if why == FALL:
+        if why == LOST_FORCE:
             present = Present(self, self.series)
             release(present, int(self.state.fault))
             present.hand_back()
-            self.state.fault = -1  # it has fallen: what is left of a jump is rounding
+            self.state.fault = -1  # the force is lost: what is left of a jump is rounding
             return
         self._at_instant(self._strike)
         self.state.events += 1
@@ -268,7 +277,7 @@ class Taylor(KernelEngine):
     def _hold(self, rounding: Array | float = 0.0) -> None:
         """Set which rigid contacts are closed, and the `rounding` of their forces."""
         x = self.series.rigid
-        kinds = [self.springs[i].law.rule.branches[self.laws.state.branch[i]].kind for i in x.laws]
+        kinds = [self.law_springs[i].law.rule.branches[self.laws.state.branch[i]].kind for i in x.laws]
         rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
         x.largest[:] = np.maximum(x.largest, rounding)
 
@@ -288,9 +297,9 @@ class Taylor(KernelEngine):
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"{self.asking} asks for {count} steps (now {self.lengths.next:.3g} long)"
-            raise self.stop("A502", why + self.cure())
+            raise self.stop("A502", why + self.remedy())
 
-    def cure(self) -> str:
+    def remedy(self) -> str:
         """Which methods need not follow the fastest mode."""
         linear = not not_linear(self.system)
         if self.contacts.laws:
@@ -307,7 +316,7 @@ class Taylor(KernelEngine):
             return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy))
         if why == CHATTER:
             fault = int(self.state.fault)
-            s, at = self.springs[fault], self.laws.state.branch[fault]
+            s, at = self.law_springs[fault], self.laws.state.branch[fault]
             what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
@@ -351,7 +360,7 @@ class Taylor(KernelEngine):
 
     def checks(self, peaks: Peaks) -> list[Check]:
         """Self-checks of the run."""
-        return rounding_check(self.springs, peaks)
+        return rounding_check(self.law_springs, peaks)
 
 
 def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:

@@ -5,7 +5,7 @@ polynomials, whose first rise and extremes are isolated with proof (`events.poly
 from __future__ import annotations
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, rate_size, size
-from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
+from pound_solve.integrate.events.protocol import LocatedEvent, earlier, no_event
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Laws, Simulation, Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
@@ -36,7 +36,7 @@ def parting_event(series: Series, terms: int, end: float, i: int) -> LocatedEven
     if p[0] > still:  # the force has jumped
         return LocatedEvent(i, 0, 0.0)
     at = first_rise(series.polynomial, terms, end, still)
-    return earlier(none(end), i, 0, at)
+    return earlier(no_event(end), i, 0, at)
 
 
 def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
@@ -69,7 +69,7 @@ def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent
     terms, h, end = extent.terms, extent.h, extent.end
     if series.friction.index_of[i] >= 0:
         return friction_event(laws, series, extent, i)
-    first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
+    first, d, p = no_event(end), series.deformation, series.polynomial[POLYNOMIAL]
     far, faster = size(d, i, terms), rate_size(d, i, terms) / h
     for e in range(laws.events.n_events[i]):
         on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
@@ -102,7 +102,7 @@ def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
     An event of a contact counts if it is there before that of another law: bodies that move alike meet only
     where a hinge of one has yielded, and that of the other has not yet.
     """
-    first = none(extent.end)
+    first = no_event(extent.end)
     for late in range(2):
         for i in range(len(laws.definition.rule)):
             if laws.definition.contact[i] == (late == 1):

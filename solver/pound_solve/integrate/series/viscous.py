@@ -21,7 +21,7 @@ import numpy as np
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier
-from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.kernels.state import LawDefinition, Laws
@@ -32,11 +32,13 @@ from pound_solve.integrate.series.state import Series, Viscous
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
-SLOW_RATE = 1e-10  #: share of the largest rate, or of the force there, below which it is linear
+SLOW_RATE = 1e-10  #: fraction of the largest rate, or of the force there, below which it is linear
 SLOW_RATE_OF_UNIT = 1e-12  #: the same, of the rate one
-DEAD_BAND = 1e-3  #: share of this rate between the two events, lest they follow one another
-RATE_CONVERGED = 1e-6  #: share of a rate that Newton's iteration changes last: it leaves the square of that
-RATE_ROUNDING = 1e-15  #: share of the velocities whose difference a rate is
+DEAD_BAND = 1e-3  #: fraction of this rate between the two events, lest they follow one another
+RATE_CONVERGED = (
+    1e-6  #: fraction of a rate that Newton's iteration changes last: it leaves the square of that
+)
+RATE_ROUNDING = 1e-15  #: fraction of the velocities whose difference a rate is
 LIMIT, RATE = 2, 3  #: columns of `Viscous.constants`, beside K and N
 
 
@@ -48,7 +50,7 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
     n = len(laws)
     return Viscous(
         laws=laws,
-        index_of=places(laws, len(viscous)),
+        index_of=inverse_index(laws, len(viscous)),
         constants=np.zeros((n, 4)),
         light=np.flatnonzero(light[laws]),
         fast=np.zeros(n, bool),
@@ -136,7 +138,7 @@ def add_drags(definition: LawDefinition, viscous: Viscous, k: int, h: float, new
             add_row(definition.rows, viscous.laws[r], -h * h * viscous.remainder[r, k], new)
 
 
-def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
+def drags_valid_up_to(viscous: Viscous, terms: int, end: float) -> float:
     """Fraction or multiple of a step up to which the dampers' forces, and the rates of those that hold
     unknowns without mass, are accurate, at most `end`.
     """

@@ -93,7 +93,7 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
 
 def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, factor: int) -> None:
     """Make the end of the trial step the start of the next; count it, if it is longer than the time in
-    which a falling branch gives way.
+    which a softening branch gives way.
 
     A then has a negative eigenvalue, as the pivots of its `factor` show (Sylvester's law of inertia): along
     that mode the method moves against the force, the true motion with it.
@@ -103,7 +103,7 @@ def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, facto
     n = len(now.velocity)
     for i in range(n):
         if step.pivots[factor, i] < 0.0:
-            sim.run.falling += 1
+            sim.run.softening += 1
             break
     multiply(linear.damping, trial.acceleration, trial.damping_rate)
     if linear.all_mass:

@@ -5,7 +5,7 @@ consistent.
 from __future__ import annotations
 
 from pound_solve.integrate.events.protocol import LocatedEvent
-from pound_solve.integrate.kernels.consistency import lets_go, make_consistent, touches_massless
+from pound_solve.integrate.kernels.consistency import loses_force, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import (
     couple_friction,
     hold_friction_limits,
@@ -33,8 +33,8 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     d, v, f0 = laws.now.deformation[i], laws.now.rate[i], tangent.offset[i]
     note_rests(sim, rules, i, event)
     leave_branch(laws, rules, i, event, d, v)
-    if friction.normal_law[i] < 0 and lets_go(linear, laws, i, k, f0, d):
-        run.fell = i
+    if friction.normal_law[i] < 0 and loses_force(linear, laws, i, k, f0, d):
+        run.lost_force = i
     if definition.curved[i]:
         linearise_law(laws, rules, i, d, v)
     change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (tangent.stiffness[i] - k)
@@ -77,7 +77,7 @@ def leaves_independently(sim: Simulation, i: int) -> bool:
 
 def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent) -> None:
     """Let a law leave its branch, and those that are marked, and make the state consistent, unless a force
-    has fallen: joints must move first.
+    is lost: joints must move first.
     """
     laws, step, run = sim.laws, sim.step, sim.run
     definition, rows, events = laws.definition, laws.definition.rows, laws.events
@@ -97,7 +97,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
         for q in range(rows.pointers[i], rows.pointers[i + 1]):
             step.marked[rows.columns[q]] = True
         events.pending[i] = -1
-    if run.fell < 0:
+    if run.lost_force < 0:
         resume_after_jump(sim, rules)
 
 

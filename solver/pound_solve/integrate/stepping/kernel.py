@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pound_solve.integrate.energy import runs_away
 from pound_solve.integrate.events.within_step import first_event
-from pound_solve.integrate.kernels.consistency import lets_go, make_consistent
+from pound_solve.integrate.kernels.consistency import loses_force, make_consistent
 from pound_solve.integrate.kernels.laws import (
     event_on_path,
     leave_branch,
@@ -29,7 +29,6 @@ from pound_solve.integrate.kernels.recording import (
 from pound_solve.integrate.kernels.state import (
     DONE,
     FULL,
-    NEWTON,
     PIVOT,
     RUNAWAY,
     WHOLE,
@@ -50,6 +49,12 @@ from pound_solve.integrate.stepping.step import try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
 
+#: what comes of a step through events: it must be solved again with the new tangents, or be cut at its
+#: events, or its matrix is singular
+SOLVED, SOLVE_AGAIN, CUT, SINGULAR = range(4)
+MAX_BRANCHES = 100  #: branches that a law may pass in a step that is not cut
+MAX_SOLUTIONS = 50  #: of such a step, before it is cut
+
 
 def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
     """Drive law `i` along a straight path from its start in the step to its end, through the branches on
@@ -57,13 +62,13 @@ def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
     """
     laws = sim.laws
     d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
-    for _ in range(100):
+    for _ in range(MAX_BRANCHES):
         event, where = event_on_path(laws, i, d, d1, v1)
         if event < 0:
             break
         k, f0 = laws.tangent.stiffness[i], laws.tangent.offset[i]
         leave_branch(laws, rules, i, event, where, v1)
-        if lets_go(sim.linear, laws, i, k, f0, where):
+        if loses_force(sim.linear, laws, i, k, f0, where):
             return False
         sim.run.driven += 1
         d = where
@@ -78,12 +83,12 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
     Returns
     -------
     int
-        DONE where no law has changed, FULL where one has and the step must be solved again, NEWTON where
-        the step must be cut at its events, or PIVOT.
+        SOLVED where no law has changed, SOLVE_AGAIN where one has, CUT where a law loses a force on the
+        way that holds a joint without mass, or SINGULAR.
     """
     laws, run = sim.laws, sim.run
     tangent = laws.tangent
-    why = DONE
+    outcome = SOLVED
     for i in range(len(laws.definition.rule)):
         d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
         if not laws.saved.in_step[i] and event_on_path(laws, i, d, d1, v1)[0] < 0:
@@ -96,11 +101,11 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
             laws.saved.in_step[i] = True
         run.stale = 1
         if not drive_law(sim, rules, i):
-            return NEWTON
+            return CUT
         changed = tangent.stiffness[i] != k or tangent.damping[i] != c
         if not changed and abs(tangent.offset[i] - f0) <= EVENT_TOLERANCE * abs(f0):
             continue
-        why = FULL
+        outcome = SOLVE_AGAIN
         change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (
             tangent.stiffness[i] - k
         )
@@ -110,8 +115,8 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
                 bad = factorise_step(sim, scheme, h, WHOLE)
                 if bad >= 0:
                     run.fault = bad
-                    return PIVOT
-    return why
+                    return SINGULAR
+    return outcome
 
 
 def step_through(
@@ -120,22 +125,27 @@ def step_through(
     """Advance by `length` without cutting the step at events: iterate until the step agrees with the laws
     at its end, each driven along a straight path from its start; `tried`: the first trial step is made
     already.
+
+    Returns
+    -------
+    int
+        SOLVED, CUT where the step must be cut at its events, or SINGULAR.
     """
     laws, run = sim.laws, sim.run
     definition = laws.definition
     for i in range(len(definition.rule)):
         laws.saved.in_step[i] = False
     end = run.time + length - piece.begin
-    for _ in range(50):
+    for _ in range(MAX_SOLUTIONS):
         if not tried and not try_step(sim, rules, scheme, piece.coefs, end, length, WHOLE):
             break
         tried, run.driven = False, 0
-        why = drive_laws(sim, rules, scheme, length)
-        if why == FULL:
+        outcome = drive_laws(sim, rules, scheme, length)
+        if outcome == SOLVE_AGAIN:
             continue
-        if why == PIVOT:
-            return PIVOT
-        if why == NEWTON:
+        if outcome == SINGULAR:
+            return SINGULAR
+        if outcome == CUT:
             break
         accept_trial(sim, rules, scheme, length, WHOLE)
         run.time += length
@@ -145,12 +155,12 @@ def step_through(
                 force = linear_force(laws.tangent, i, laws.now.deformation[i], laws.now.rate[i])
                 log_transition(sim, i, int(laws.saved.values[i, 0]), run.time, force)
         track_peaks(sim, run.time, length)
-        return DONE
+        return SOLVED
     for i in range(len(definition.rule)):
         if laws.saved.in_step[i]:
             restore_state(laws, rules, i)
     run.updates, run.stale = MAX_UPDATES + 1, 1
-    return NEWTON
+    return CUT
 
 
 def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
@@ -259,7 +269,7 @@ def take_steps(
     plain step: the rest of a step after joints have moved, or one that events cut.
     """
     run = sim.run
-    why, tried = NEWTON, False
+    outcome, tried = CUT, False
     if run.remaining_step >= 0.0:
         resume_after_jump(sim, rules)
         length, run.remaining_step = run.remaining_step, -1.0
@@ -274,9 +284,12 @@ def take_steps(
         length = h if run.step < count - 1 else goal - run.time
         run.same_instant = 0
         if not scheme.locate:
-            why = step_through(sim, rules, scheme, piece, length, tried)
+            outcome = step_through(sim, rules, scheme, piece, length, tried)
             tried = False
-    if why == NEWTON:  # cut at its events a step always has a solution
+    if outcome == SINGULAR:
+        return PIVOT
+    why = DONE
+    if outcome == CUT:  # cut at its events a step always has a solution
         why = step_in_parts(sim, rules, scheme, piece, length, h, tried)
     if why == DONE:
         run.step += 1

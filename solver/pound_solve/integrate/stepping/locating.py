@@ -16,7 +16,7 @@ from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import next_trial
 
-SAME_INSTANT_OF_STEP = 1e-9  #: share of a step within which two events are at one instant
+SAME_INSTANT_OF_STEP = 1e-9  #: fraction of a step within which two events are at one instant
 GO_ON, MET, NONE = range(3)
 MAX_INTERPOLATIONS = 12  #: trials by interpolation; bisection follows
 

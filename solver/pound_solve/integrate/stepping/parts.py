@@ -11,7 +11,7 @@ from pound_solve.integrate.kernels.state import (
     CHATTER,
     CROWD,
     DONE,
-    FALL,
+    LOST_FORCE,
     NEWTON,
     PART,
     PIVOT,
@@ -23,11 +23,12 @@ from pound_solve.integrate.kernels.state import (
 from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import change_branches
 from pound_solve.integrate.stepping.factor import MAX_UPDATES, factorise_step
-from pound_solve.integrate.stepping.locating import locate_event
+from pound_solve.integrate.stepping.locating import SAME_INSTANT_OF_STEP, locate_event
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
 from pound_solve.laws.functions import Tables
 
 MAX_HALVINGS = 25
+MAX_CHANGES, MAX_CHANGES_PER_LAW = 100, 8  #: of branch at one instant, and more for each law
 SHORTEST_PART = 3e-8  #: shortest part of a step, used where laws change to and fro
 
 
@@ -82,7 +83,7 @@ def end_part_at_event(
     if curved:  # shorter trials change the tangents, which the present factor does not know
         run.updates = MAX_UPDATES + 1
     why, event = locate_event(sim, rules, scheme, piece, part, h, event)
-    if why == DONE and event.time > 1e-9 * h:
+    if why == DONE and event.time > SAME_INSTANT_OF_STEP * h:
         run.same_instant = 0
     elif why == DONE and event.time == 0.0 and curved:
         restore_start_tangents(sim, rules)  # else what follows takes forces and tangents of the last trial
@@ -98,7 +99,7 @@ def accept_part(sim: Simulation, rules: Tables, scheme: Scheme, part: float, fac
         store_motion(sim, rules, sim.run.time)
 
 
-def pass_event(
+def answer_event(
     sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent, left: float
 ) -> int:
     """Change branches at an event, after which `left` of the step is left; DONE, or why the step stops."""
@@ -107,13 +108,13 @@ def pass_event(
     run.fault = event.law
     run.same_instant += 1
     n_laws = len(laws.definition.rule)
-    if run.same_instant > 100 + 8 * n_laws:
+    if run.same_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * n_laws:
         return CHATTER
     if run.same_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
         run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
-    if run.fell >= 0:
+    if run.lost_force >= 0:
         run.remaining_step = left
-        return FALL
+        return LOST_FORCE
     return DONE
 
 
@@ -124,12 +125,12 @@ def step_in_parts(
     and `tried` says that the first trial is made.
 
     A part is halved until Newton converges.  After the touch of a curved contact the parts grow from a
-    short one: forces like the fourth root of time begin there.  Where a force falls that holds a joint
-    without mass, the step stops, for Python to move the joint (see `integrate.release`).
+    short one: forces like the fourth root of time begin there.  Where a law that holds a joint without
+    mass loses its force, the step stops, for Python to move the joint (see `integrate.release`).
     """
     laws, run = sim.laws, sim.run
     left = length
-    factor = WHOLE if abs(length - h) <= 1e-9 * h else PART
+    factor = WHOLE if abs(length - h) <= SAME_INSTANT_OF_STEP * h else PART
     while left > 0.0:
         if len(sim.buffers.log) - run.logged <= len(laws.friction.coupled):
             return CROWD
@@ -153,7 +154,7 @@ def step_in_parts(
             left -= part
         factor = PART
         if event.law >= 0:
-            why = pass_event(sim, rules, scheme, h, event, left)
+            why = answer_event(sim, rules, scheme, h, event, left)
             if why != DONE:
                 return why
     return DONE

@@ -25,7 +25,7 @@ from pound_deck.schema import Field, Kind
 from pound_solve.check import Check, Subject, at_least, beyond, looked
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.present import KernelPresent
-from pound_solve.integrate.kernels.state import FALL, Goals, Scheme
+from pound_solve.integrate.kernels.state import LOST_FORCE, Goals, Scheme
 from pound_solve.integrate.protocol import (
     Problem,
     Recorder,
@@ -53,7 +53,8 @@ COMMON = (
 
 #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
 STEPS_OF_PERIOD = 10
-MOTION_ROUNDING = 1e-9  #: share of the energy below which a motion is rounding
+STEP_ROUNDING = 1e-9  #: fraction of a step by which lengths differ by rounding
+MOTION_ROUNDING = 1e-9  #: fraction of the energy below which a motion is rounding
 
 
 def _resolved(about: str, count: float) -> Check:
@@ -84,14 +85,14 @@ class Stepper(KernelEngine):
 
     def integrate(self) -> None:
         """Integrate in equal steps from one goal to the next."""
-        turns = next((s for s in self.springs if s.role in (Role.FRICTION, Role.DAMPER)), None)
+        turns = next((s for s in self.law_springs if s.role in (Role.FRICTION, Role.DAMPER)), None)
         if turns is not None and not self.scheme.locate:
             what = "friction" if turns.role is Role.FRICTION else f"the damper {turns.rule}"
             raise self.stop("A505", f"{what} (element {turns.element}) needs steps with EVENTS=LOCATED")
         self.begin(kernel.advance)
         ends, is_output = goals(self.system, self.times)
         lengths = np.diff(ends, prepend=float(self.times[0]))
-        steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
+        steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - STEP_ROUNDING))).astype(np.int64)
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
         ex = self.system.excitation
@@ -100,13 +101,13 @@ class Stepper(KernelEngine):
         self.advance(kernel.advance, self.scheme, ahead, steps, h)
 
     def resume(self, why: int) -> None:
-        """Let joints without mass move where a force falls that held them; for any other reason, stop."""
-        if why != FALL:
+        """Let joints without mass move where a force that held them is lost; for any other reason, stop."""
+        if why != LOST_FORCE:
             raise self.trouble(why)
         present = KernelPresent(self)
-        release(present, int(self.state.fell))
+        release(present, int(self.state.lost_force))
         present.hand_back()
-        self.state.fell, self.state.updates = -1, MAX_UPDATES + 1
+        self.state.lost_force, self.state.updates = -1, MAX_UPDATES + 1
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
@@ -123,16 +124,19 @@ class Stepper(KernelEngine):
         Newmark's energy balances in free vibration however long the step; so the period is taken from the
         ratio of velocities to accelerations.
         """
-        speed, rush = self.speed.tolist()
-        moves = speed > MOTION_ROUNDING * (self.accumulator.initial + self.accumulator.works.gross_input)
+        squared_velocity, squared_acceleration = self.motion_norms.tolist()
+        energy = self.accumulator.initial + self.accumulator.works.gross_input
+        moves = squared_velocity > MOTION_ROUNDING * energy
         checks = list[Check]()
-        if moves and rush > 0.0:
-            count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
+        if moves and squared_acceleration > 0.0:
+            count = 2.0 * np.pi * (squared_velocity / squared_acceleration) ** 0.5 / self.dt
             checks.append(_resolved("steps in a period of the motion, about", count))
-        if falls := int(self.state.falling):
-            told = "a DT that follows how it gives way, or EXACT"
-            checks.append(beyond(Subject.STEPS, "steps too long for a branch that falls", falls, 0, told))
-        checks += [between_check(peaks), *self._springs(peaks), *rounding_check(self.springs, peaks)]
+        if softening := int(self.state.softening):
+            remedy = "a DT that follows how it gives way, or EXACT"
+            checks.append(
+                beyond(Subject.STEPS, "steps too long for a softening branch", softening, 0, remedy)
+            )
+        checks += [between_check(peaks), *self._springs(peaks), *rounding_check(self.law_springs, peaks)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
@@ -144,10 +148,11 @@ class Stepper(KernelEngine):
 
     def _springs(self, peaks: Peaks) -> list[Check]:
         """Whether the steps follow the springs' forces."""
-        steepest = self.tracker.extremes.steepest[self.tracker.n_monitored + len(self.springs) :].tolist()
+        tracker = self.tracker
+        steepest = tracker.extremes.steepest[tracker.n_monitored + len(self.law_springs) :].tolist()
         rises = [
             max(abs(f.high), abs(f.low)) / (slope * self.dt)
-            for s, f, slope in zip(self.springs, peaks.force, steepest)
+            for s, f, slope in zip(self.law_springs, peaks.force, steepest)
             if not s.role.viscous and slope > 0.0
         ]
         about = "steps in which a spring's force rises to its largest"

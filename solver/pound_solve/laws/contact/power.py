@@ -8,7 +8,7 @@ from __future__ import annotations
 from pound_deck.schema import Field, Kind
 
 EXPONENT = 1  #: place of n among the parameters of a law on such a spring, after K
-#: share of a law's kinetic scale below which its spring counts as just touched
+#: fraction of a law's kinetic scale below which its spring counts as just touched
 TOUCH = 1e-20
 
 

@@ -50,7 +50,7 @@ from pound_solve.laws.refusal import ItemError
 ELASTIC, YIELDING, WEAKENING = 0, 1, 3
 
 BEFORE = -1e300  #: less than any ductility: on the other side of zero
-LEAST = 0.01  #: share of the yield force that is left in the end
+LEAST = 0.01  #: fraction of the yield force that is left in the end
 # parameters of a law after K, FY, FY_MINUS: r, alpha; of the loss D1, D2, phi_R, its form, D3 (0: none) and
 # the loss by a cycle
 R, ALPHA, D1, D2, PHI_R, FORM, D3, BY_CYCLE = range(3, 11)

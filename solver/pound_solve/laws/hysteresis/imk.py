@@ -76,7 +76,7 @@ def replace_side(m: Numbers, s: float, of_side: Numbers) -> Numbers:
 
 
 def virgin(p: Numbers, s: float) -> tuple[float, float, float, float]:
-    """Yield force, capping force and F_ref of a side at first, and the slope of the falling branch."""
+    """Yield force, capping force and F_ref of a side at first, and the slope of the softening branch."""
     k, r = p[K], p[R]
     if s > 0.0:
         fy, theta_p, theta_pc = p[FY], p[THETA_P], p[THETA_PC]

@@ -1,4 +1,4 @@
-r"""Wayne Stewart: nailed timber, pinched and softening, with slackness and a falling branch.
+r"""Wayne Stewart: nailed timber, pinched and softening, with slackness and a softening branch.
 
 The *backbone* of the positive side starts at the slackness :math:`g`:
 
@@ -18,7 +18,7 @@ The *backbone* of the positive side starts at the slackness :math:`g`:
 * a motion that reverses anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
   two sides.
 
-Where the falling branch reaches zero force, or the pinched line of the other side, the connection has
+Where the softening branch reaches zero force, or the pinched line of the other side, the connection has
 failed: its force is zero from then on.
 
 Internal variables: the largest deformations :math:`d_{un} - g` of both sides (mirrored); the foot

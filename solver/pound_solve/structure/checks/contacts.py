@@ -23,7 +23,7 @@ SAME: Final = 1e-9  #: distance that counts as zero, as a share of that of the n
 #: one, but a parameter study may vary the gap and keep the coordinates
 WIDEST: Final = 3.0
 LEAST_ANGLE: Final = 1e-6  #: tolerance of the slope of a contact [degrees]
-LEVEL: Final = 0.1  #: share of a difference in height that counts as none
+LEVEL: Final = 0.1  #: fraction of a difference in height that counts as none
 ALONG: Final = 0.99  #: cosine of the angle between a member and a contact that lies along it
 
 

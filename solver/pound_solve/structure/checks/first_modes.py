@@ -15,11 +15,11 @@ from pound_solve.structure.checks.mechanisms import Part
 from pound_solve.structure.checks.members import kinds, length, lies
 from pound_solve.structure.structure import Structure
 
-#: shares of critical damping of a first mode: by DAMPING, where materials and walls give 0.01 to 0.1, and
-#: by dashpots, which may include a snubber that ties equipment to a building
+#: fractions of critical damping of a first mode: by DAMPING, where materials and walls give 0.01 to 0.1,
+#: and by dashpots, which may include a snubber that ties equipment to a building
 MOST_OWN, MOST_ADDED = 0.2, 10.0
 LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode
-LEAST_ADDED: Final = 1e-3  #: least share of critical damping by dashpots, if there are any
+LEAST_ADDED: Final = 1e-3  #: least fraction of critical damping by dashpots, if there are any
 #: stiffness of a contact over the axial one of the beams behind it; slabs may stiffen them tenfold
 STIFFEST: Final = 300.0
 #: duration of a collision in which sound at 3500 m/s does not cross a column [s]

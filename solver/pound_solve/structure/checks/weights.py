@@ -21,8 +21,8 @@ NEWTON: Final[Mapping[str, float]] = MappingProxyType(
 #: modulus of elasticity from and to [Pa], and weight by volume [N/m^3], of concrete and of steel
 MATERIALS: Final = ((15e9, 60e9, 24e3), (180e9, 220e9, 77e3))
 EARTH: Final = 9.81  #: [m/s^2]
-SPUN: Final = 0.1  #: share of gravity by which that of a model in a centrifuge differs at least
-#: share of beams and columns in the whole weight: 0.1 to 0.45 with slabs and walls, ten times that where
+SPUN: Final = 0.1  #: fraction of gravity by which that of a model in a centrifuge differs at least
+#: fraction of beams and columns in the whole weight: 0.1 to 0.45 with slabs and walls, ten times that where
 #: masses are written in place of weights
 BARE: Final = 0.6
 #: strain of columns under the whole weight: 0.0003 to 0.0008 at design stresses of concrete, steel, timber

@@ -43,7 +43,7 @@ from pound_solve.structure.elements.base import ElementContext, ElementError, Pa
 from pound_solve.structure.elements.beam import pair
 
 OUTMOST = 2.0  #: largest distance of a spring from the axis, in levers (largest moment over axial force)
-KNEE = 0.15  #: share of the axial strength of a steel section up to which the moment is not reduced
+KNEE = 0.15  #: fraction of the axial strength of a steel section up to which the moment is not reduced
 
 
 class Springs(NamedTuple):
