@@ -12,7 +12,7 @@ from kernels import as_with_numba, steps_alone
 from pound_solve.check import Subject
 from pound_solve.integrate import auto, costs, trial
 from pound_solve.integrate.convergence import compared, estimate, step_refinement, tolerance_refinement
-from pound_solve.integrate.convergence.compared import RESPONSES, Peak
+from pound_solve.integrate.convergence.compared import RESPONSES, ComparedPeaks
 from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.tracker import Collision, Peaks
 from pounding_frames import HINGED, POUNDING, figures, run, tabled
@@ -105,7 +105,7 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     )  # each takes twice the steps of the one before
     rings = itertools.cycle((1.0, 1.1))
     monkeypatch.setattr(
-        step_refinement, "figures", lambda *given: Peak(np.array([next(rings)]), np.ones(1), ONE)
+        step_refinement, "figures", lambda *given: ComparedPeaks(np.array([next(rings)]), np.ones(1), ONE)
     )
     found = run(tmp_path, "AUTO TOL=1e-2")
     (check,) = [c for c in found.checks if c.subject is Subject.ERROR]
@@ -329,7 +329,9 @@ def test_auto_wants_runs_that_show_their_order_and_steps_in_the_hardest_collisio
         monkeypatch.setattr(
             step_refinement,
             "figures",
-            lambda *given, gap=gap: Peak(np.array([1.0 + gap * (h[-1] / h[0]) ** 2]), np.ones(1), ONE),
+            lambda *given, gap=gap: ComparedPeaks(
+                np.array([1.0 + gap * (h[-1] / h[0]) ** 2]), np.ones(1), ONE
+            ),
         )
         monkeypatch.setattr(step_refinement, "hardest", lambda peaks, lasts=lasts: lasts)
         found = run(tmp_path, "AUTO TOL=1e-2", every=0.1)

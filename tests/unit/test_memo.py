@@ -144,5 +144,5 @@ def test_runs_share_their_order_and_modes_and_change_neither(
         seen.append([numbers_of(x) for x in found])
     n = len(found) // 2
     assert n and all(x is y for x, y in zip(found[:n], found[n:]))
-    assert any(isinstance(x, modal_tables.Part) for x in found) == ("NEWMARK" not in method)
+    assert any(isinstance(x, modal_tables.ModalPart) for x in found) == ("NEWMARK" not in method)
     assert seen[0] == seen[2] and seen[1] == seen[3][:n] == seen[3][n:]

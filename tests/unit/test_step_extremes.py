@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pound_solve.integrate.protocol import RowPeaks, Rows
+from pound_solve.integrate.protocol import MotionRows, RowPeaks
 from pound_solve.integrate.series.course import ShownSteps
-from pound_solve.integrate.series.state import Shown
+from pound_solve.integrate.series.state import EnvelopeBuffers
 from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics.types import Array
 
@@ -20,7 +20,7 @@ def steps(terms: int, rng: np.random.Generator) -> ShownSteps:
     used = rng.integers(3, terms + 1, STEPS)
     coefs[np.arange(terms + 1) > used[:, None, None] + np.zeros((1, SIZE + LAWS, 1), int)] = 0.0
     nothing = np.zeros((1, 0, 0))
-    shown = Shown(
+    shown = EnvelopeBuffers(
         is_needed=np.array([True]),
         which=np.arange(SIZE),
         acting=np.arange(LAWS),
@@ -55,7 +55,7 @@ def test_extremes_are_those_of_dense_samples(terms: int, seed: int) -> None:
     number, column = np.nonzero(on_motion)
     on_inputs = rng.normal(size=(5, 3 * INPUTS + 1))
     on_inputs[:2] = 0.0
-    peaks = RowPeaks(Rows(number, column, on_motion[number, column]), on_inputs, *_nothing_known(5))
+    peaks = RowPeaks(MotionRows(number, column, on_motion[number, column]), on_inputs, *_nothing_known(5))
     course.extremes(peaks)
 
     motion = course.within(np.arange(len(course.motion.t)), SHARES)
@@ -83,7 +83,7 @@ def test_a_force_between_supports_has_extremes() -> None:
     course = ShownSteps(held, np.zeros(0, int), own.excitation).course()
     assert course.within is not None
     assert course.extremes is not None
-    rows = Rows(np.zeros(1, int), np.ones(1, int), np.ones(1))
+    rows = MotionRows(np.zeros(1, int), np.ones(1, int), np.ones(1))
     peaks = RowPeaks(rows, np.zeros((1, 3 * INPUTS + 1)), *_nothing_known(1))
     course.extremes(peaks)
     force = course.within(np.arange(len(course.motion.t)), SHARES).law_forces[1]
@@ -95,7 +95,7 @@ def test_what_is_known_stays_where_no_step_exceeds_it() -> None:
     own = steps(6, np.random.default_rng(0))
     course = own.course()
     assert course.extremes is not None
-    rows = Rows(np.zeros(1, int), np.zeros(1, int), np.ones(1))
+    rows = MotionRows(np.zeros(1, int), np.zeros(1, int), np.ones(1))
     peaks = RowPeaks(rows, np.zeros((1, 3 * INPUTS + 1)), *(np.array([x]) for x in (1e3, 7.0, -1e3, 8.0)))
     course.extremes(peaks)
     assert [x.item() for x in peaks[2:]] == [1e3, 7.0, -1e3, 8.0]

@@ -12,7 +12,7 @@ from kernels import FAST
 from pound_solve.check import Subject
 from pound_solve.integrate import auto
 from pound_solve.integrate.convergence import tolerance_refinement
-from pound_solve.integrate.convergence.compared import RESPONSES, Peak
+from pound_solve.integrate.convergence.compared import RESPONSES, ComparedPeaks
 from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.series import laguerre
 from pound_solve.results import Results
@@ -85,7 +85,7 @@ def made_up(monkeypatch: pytest.MonkeyPatch, values: list[float]) -> None:
     monkeypatch.setattr(
         tolerance_refinement,
         "figures",
-        lambda *given: Peak(np.array([next(left)]), np.ones(1), np.array([RESPONSES])),
+        lambda *given: ComparedPeaks(np.array([next(left)]), np.ones(1), np.array([RESPONSES])),
     )
 
 

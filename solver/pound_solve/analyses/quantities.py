@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pound_solve.integrate.protocol import Course, Motion, RowPeaks, Rows
+from pound_solve.integrate.protocol import Course, Motion, MotionRows, RowPeaks
 from pound_solve.numerics.matrices import Matrix, entries, gathered, used_rows
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.elements.base import Output
@@ -56,7 +56,7 @@ class Quantities:
         self.parts: dict[str, slice] = {}
         self.count, self.place = 0, np.zeros(0, np.int64)
         self._inputs = np.zeros((0, 3 * system.inputs.shape[1] + 1))  # the last column is of ones
-        self._rows = Rows(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
+        self._rows = MotionRows(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
         self._add_nodes(nodes)
         self._add_outputs(outputs)
         for name, x in sums.items():
@@ -95,7 +95,7 @@ class Quantities:
         for k, matrix in motion.items():
             row, column, factor = entries(matrix)
             number, columns, factors = self._rows
-            self._rows = Rows(
+            self._rows = MotionRows(
                 np.concatenate([number, first + row]),
                 np.concatenate([columns, k * n + column]),
                 np.concatenate([factors, factor]),
@@ -206,7 +206,7 @@ class Quantities:
         """The values of a motion that the rows depend on, shape (n_used, n_times)."""
         return np.concatenate([part[used] for part, used in zip(motion[1:], self._used)])
 
-    def _some(self, row: Index) -> Rows:
+    def _some(self, row: Index) -> MotionRows:
         """The entries of some of the rows."""
         counts = self.entries[row]
         number = np.repeat(np.arange(len(row)), counts)

@@ -84,7 +84,7 @@ class Motion(NamedTuple):
     law_forces: Array
 
 
-class Rows(NamedTuple):
+class MotionRows(NamedTuple):
     """Sparse rows of a matrix whose columns are u, v, a and the forces of the laws: entries, row by row,
     shape (n_entries,) each.
 
@@ -100,9 +100,9 @@ class Rows(NamedTuple):
     columns: Index
     factors: Array
 
-    def some(self, entries: Index | Flags) -> Rows:
+    def some(self, entries: Index | Flags) -> MotionRows:
         """Some of the entries."""
-        return Rows(self.row[entries], self.columns[entries], self.factors[entries])
+        return MotionRows(self.row[entries], self.columns[entries], self.factors[entries])
 
     def summed(self, values: Array) -> tuple[Index, Array]:
         """Numbers of the rows that have entries, and for each of them the sum of its factors times the
@@ -119,7 +119,7 @@ class RowPeaks(NamedTuple):
 
     Attributes
     ----------
-    rows : Rows
+    rows : MotionRows
         On the motion, by rising numbers.
     on_inputs : ndarray, shape (n_rows, 3 n_inputs + 1)
         Factors of the inputs and of their first two derivatives, and a constant.
@@ -127,7 +127,7 @@ class RowPeaks(NamedTuple):
         Largest and smallest values so far, and their times [T].
     """
 
-    rows: Rows
+    rows: MotionRows
     on_inputs: Array
     high: Array
     t_high: Array
@@ -156,7 +156,7 @@ class Course(NamedTuple):
     extremes: Callable[[RowPeaks], None] | None = None
 
 
-class Envelopes(Protocol):
+class RunEnvelopes(Protocol):
     """Envelopes of a run."""
 
     def between(self, course: Course) -> None:
@@ -207,7 +207,7 @@ class EnvelopeRecorder(Recorder, Protocol):
         """Take some samples, as `sample` does, whose progress has been reported before."""
 
     @property
-    def envelopes(self) -> Envelopes:
+    def envelopes(self) -> RunEnvelopes:
         """Envelopes of the motion between the samples, and possibly at them."""
 
 

@@ -99,7 +99,7 @@ class Peak(Protocol):
         """Count a value in."""
 
 
-class Extremes(NamedTuple):
+class TrackedExtremes(NamedTuple):
     """Extremes of the tracked quantities: monitored outputs, deformations of the laws, their forces, in
     this order; shape (n_monitored + 2 n_laws,) each.
 
@@ -128,7 +128,7 @@ class Extremes(NamedTuple):
 class TrackedPeak:
     """Extremes of one tracked quantity."""
 
-    def __init__(self, extremes: Extremes, i: int) -> None:
+    def __init__(self, extremes: TrackedExtremes, i: int) -> None:
         self.extremes, self.i = extremes, i
 
     @property
@@ -179,7 +179,7 @@ class ResponseTracker:
 
     Attributes
     ----------
-    extremes : Extremes
+    extremes : TrackedExtremes
         Kernels count into its arrays, other methods through `monitored`, `deformation` and `force`.
     open : dict of Collision
         Collisions that are under way, by law.
@@ -187,7 +187,7 @@ class ResponseTracker:
 
     def __init__(self, laws: Sequence[LawSpring], n_monitored: int) -> None:
         self.laws, self.n_monitored = laws, n_monitored
-        self.extremes = Extremes(*np.zeros((8, n_monitored + 2 * len(laws))))
+        self.extremes = TrackedExtremes(*np.zeros((8, n_monitored + 2 * len(laws))))
         self.extremes.high[:], self.extremes.low[:] = -np.inf, np.inf
         self.open: dict[int, Collision] = {}
         self._ended: list[Collision] = []

@@ -68,7 +68,7 @@ def from_address(kind: Any, number: Any, c: Any) -> Any:
 
 
 @infer_getattr
-class Parts(AttributeTemplate):
+class PartTypes(AttributeTemplate):
     """Types of the parts."""
 
     key = Addressed

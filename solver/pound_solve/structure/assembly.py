@@ -14,7 +14,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMembers
 from pound_solve.structure.damping.assembly import add_damping
 from pound_solve.structure.dofs import Dof, DofMap, number
-from pound_solve.structure.elements.base import ElementContext, ElementError, Parts
+from pound_solve.structure.elements.base import ElementContext, ElementError, ElementParts
 from pound_solve.structure.mass import MassBlock, ground_inertia, mass_along, nodal_mass, weights
 from pound_solve.structure.structure import Structure
 
@@ -98,12 +98,12 @@ def _joined(model: Model, dofs: DofMap, elements: _Elements) -> Structure:
     )
 
 
-def _corotational(dofs: DofMap, parts: Sequence[Parts]) -> CorotationalMembers:
+def _corotational(dofs: DofMap, parts: Sequence[ElementParts]) -> CorotationalMembers:
     members = [c for p in parts for c in p.corotational]
     return CorotationalMembers(members, dofs.rows([(c.dofs, row) for c in members for row in c.rows]))
 
 
-def _loads(model: Model, dofs: DofMap, parts: Sequence[Parts]) -> tuple[Array, Array]:
+def _loads(model: Model, dofs: DofMap, parts: Sequence[ElementParts]) -> tuple[Array, Array]:
     """Static loads of elements and LOADS, and the part that a history releases at its start, shape (n,)
     each.
     """
@@ -137,7 +137,7 @@ class _Elements:
 
     def __init__(self, model: Model, self_weight: bool) -> None:
         self.model, self.self_weight = model, self_weight
-        self.parts: dict[int, Parts] = {}
+        self.parts: dict[int, ElementParts] = {}
         self.mass = weights(model)
         self.nodal_mass: dict[Dof, float] = {}
         self.problems: list[Diagnostic] = []
@@ -160,7 +160,7 @@ class _Elements:
             self._build(element)
         self.problems += [_refusal(self.model, *why, elements) for why, elements in self._refused.items()]
 
-    def ordered(self) -> list[Parts]:
+    def ordered(self) -> list[ElementParts]:
         """Parts of all elements in the order of the model; they are built in another order."""
         return [self.parts[e] for e in self.model.elements]
 
@@ -199,12 +199,12 @@ class _Elements:
         self.mass += [MassBlock(nodes, b.dofs, b.matrix) for b in parts.mass]
 
 
-def _built(context: ElementContext) -> Parts:
+def _built(context: ElementContext) -> ElementParts:
     """Return the parts of an element; raise ElementError also if a number overflows."""
     beyond = "its values and its nodes are too far apart in magnitude to be computed with"
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
-            parts: Parts = context.prop.spec.impl(context)
+            parts: ElementParts = context.prop.spec.impl(context)
     except ArithmeticError as err:
         raise ElementError(beyond) from err
     blocks = [b.matrix for b in (*parts.stiffness, *parts.mass, *parts.damping)]
@@ -214,7 +214,7 @@ def _built(context: ElementContext) -> Parts:
 
 
 def stiffness_along(
-    model: Model, parts: Mapping[int, Parts], node: int, normal: tuple[float, float]
+    model: Model, parts: Mapping[int, ElementParts], node: int, normal: tuple[float, float]
 ) -> dict[int, float]:
     """Axial stiffness [F/L] of the elements at a node along a direction, keyed by element number.
 

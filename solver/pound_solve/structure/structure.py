@@ -14,7 +14,7 @@ from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squar
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMembers
 from pound_solve.structure.dofs import Dof, DofMap
-from pound_solve.structure.elements.base import ElementMatrix, Geometric, LawSpring, Output, Parts
+from pound_solve.structure.elements.base import ElementMatrix, ElementParts, Geometric, LawSpring, Output
 from pound_solve.structure.mass import MassBlock
 from pound_solve.structure.proportional import Proportional
 
@@ -91,7 +91,7 @@ class Structure:
     corotational: CorotationalMembers
     nodal_mass: dict[Dof, float]
     self_weight: bool
-    parts: dict[int, Parts]
+    parts: dict[int, ElementParts]
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
     proportional: tuple[Proportional, ...] = ()
     axial_forces: Array = field(default_factory=lambda: np.zeros(0))

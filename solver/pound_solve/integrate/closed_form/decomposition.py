@@ -97,7 +97,7 @@ class Reactions:
         return loads
 
 
-class Part(NamedTuple):
+class JoinedPart(NamedTuple):
     """A decomposition within a joined one: its place in the state, its unknowns and its work integrals."""
 
     q: slice
@@ -146,7 +146,7 @@ class Decomposition:
     motion_q: Array
     enveloped: Index
     enveloped_motion_q: Array
-    parts: tuple[Part, ...]
+    parts: tuple[JoinedPart, ...]
     reactions: Reactions | None
 
 
@@ -201,7 +201,7 @@ class Decomposer:
             (int(i), branches[i].damping, system.law_rows[i, unknowns]) for i in laws if branches[i].damping
         ]
         work = WorkIntegrals(propagator, system.damping[block], inputs, dashpots)
-        parts = (Part(slice(None), unknowns, work),)
+        parts = (JoinedPart(slice(None), unknowns, work),)
         reactions = self._reactions(constrained, unknowns, propagator, c, k) if len(constrained) else None
         return self._with_rows(unknowns, laws, propagator, parts, reactions)
 
@@ -225,7 +225,7 @@ class Decomposer:
         unknowns: Index,
         laws: Index,
         propagator: Propagator,
-        parts: tuple[Part, ...],
+        parts: tuple[JoinedPart, ...],
         reactions: Reactions | None,
     ) -> Decomposition:
         """A decomposition with what gives rows and unknowns from its state."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pound_solve.integrate.closed_form.decomposition import Part
+from pound_solve.integrate.closed_form.decomposition import JoinedPart
 from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.numerics.types import Array, Flags
@@ -36,7 +36,7 @@ class DeferredWork:
         self.accumulator, self.constant, self.contact = accumulator, constant, contact
         self.entries = 0
         self._known: list[tuple[int, Array]] = []
-        self._deferred: dict[int, tuple[Part, list[tuple[Any, ...]]]] = {}
+        self._deferred: dict[int, tuple[JoinedPart, list[tuple[Any, ...]]]] = {}
 
     def add(self, work: Array) -> None:
         """Enter work that is known already, shape (3,)."""

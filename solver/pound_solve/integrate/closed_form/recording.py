@@ -79,7 +79,7 @@ class DeferredSamples:
         self._waiting.clear()
 
 
-class Window(NamedTuple):
+class KeptWindow(NamedTuple):
     """A window whose motion is kept: where its instants begin, their local times, and its start and end."""
 
     dense: DenseOutput
@@ -93,7 +93,7 @@ class EnvelopeSamples:
 
     def __init__(self, subsystems: Subsystems, recorder: Recorder) -> None:
         self.recorder, self.is_needed = recorder, bool(subsystems.enveloped.any())
-        self._windows: list[Window] = []
+        self._windows: list[KeptWindow] = []
         self._motions: list[Motion] = []
 
     def add(self, dense: DenseOutput, t0: float, h: float, end: float) -> None:
@@ -101,7 +101,7 @@ class EnvelopeSamples:
         if not self.is_needed:
             return
         tau, motion = dense.enveloped_grid(FINE_STEPS * h, end)
-        self._windows.append(Window(dense.kept(), tau, t0, end))
+        self._windows.append(KeptWindow(dense.kept(), tau, t0, end))
         self._motions.append(self._motion(dense, t0 + tau, motion))
         if sum(x.u.size for x in self._motions) > MAX_WAITING:
             self.release()

@@ -40,7 +40,7 @@ def tolerances(options: Mapping[str, Any]) -> dict[int, float]:
     return {RESPONSES: tol, **asked}
 
 
-class Peak(NamedTuple):
+class ComparedPeaks(NamedTuple):
     """Values that are compared between runs, the scales of their differences, and the kind of each: which
     tolerance it has.
     """
@@ -50,14 +50,14 @@ class Peak(NamedTuple):
     kinds: Index
 
 
-def measured(extremes: Sequence[Extreme], kinds: Sequence[str]) -> Peak:
+def measured(extremes: Sequence[Extreme], kinds: Sequence[str]) -> ComparedPeaks:
     """Extremes as values to be compared, the scale of each being its size, but at least `MIN_SCALE` times
     the largest of its kind.
     """
     values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
     size = np.abs(values).max(axis=1, initial=0.0)
     scales = np.repeat(_floored(size, np.array(kinds)), 2)
-    return Peak(values.ravel(), scales, _all(RESPONSES, len(scales)))
+    return ComparedPeaks(values.ravel(), scales, _all(RESPONSES, len(scales)))
 
 
 def _all(kind: int, count: int) -> Index:
@@ -73,7 +73,7 @@ def _floored(size: Array, kinds: Array, share: float = MIN_SCALE) -> Array:
     return floored
 
 
-def hinges(laws: Sequence[LawSpring], peaks: Peaks, losses: Sequence[float]) -> Peak:
+def hinges(laws: Sequence[LawSpring], peaks: Peaks, losses: Sequence[float]) -> ComparedPeaks:
     """Deformations and plastic work of the springs and hinges that can yield.
 
     Parameters
@@ -94,10 +94,12 @@ def hinges(laws: Sequence[LawSpring], peaks: Peaks, losses: Sequence[float]) -> 
         size = max(at_yield, *map(abs, largest))
         values += [*largest, loss]
         scales += [size, size, max(loss, strength * at_yield)]
-    return Peak(np.array(values), np.array(scales), _all(RESPONSES, len(values)))
+    return ComparedPeaks(np.array(values), np.array(scales), _all(RESPONSES, len(values)))
 
 
-def figures(system: ReducedSystem, peaks: Peaks, witness: Witness, asked: Collection[int] = ()) -> Peak:
+def figures(
+    system: ReducedSystem, peaks: Peaks, witness: Witness, asked: Collection[int] = ()
+) -> ComparedPeaks:
     """Return the peaks that are compared between runs: the responses, and others `asked` for."""
     laws = system.structure.laws
     lasting = [c for c in peaks.collisions if not math.isnan(c.peak)]  # others are impacts, without a force
@@ -111,16 +113,18 @@ def figures(system: ReducedSystem, peaks: Peaks, witness: Witness, asked: Collec
         displacement = np.column_stack([np.ravel(witness.high), np.ravel(witness.low)])
         # hinges and uplift have directions of their own
         largest = _floored(np.abs(displacement).max(axis=1), direction, 1.0)
-        parts.append(Peak(displacement.ravel(), np.repeat(largest, 2), _all(RESPONSES, displacement.size)))
+        parts.append(
+            ComparedPeaks(displacement.ravel(), np.repeat(largest, 2), _all(RESPONSES, displacement.size))
+        )
     if ACCELERATIONS in asked or FORCES in asked:
         assert isinstance(witness, Replay)  # a run that is kept
         values, units = witness.seen(system)
         kinds = np.array([ACCELERATIONS if unit == "acceleration" else FORCES for unit in units], int)
         wanted = np.isin(kinds, list(asked))
         scales = _floored(np.abs(values), np.array(units), 1.0)
-        parts.append(Peak(values[wanted], scales[wanted], kinds[wanted]))
-    parts.append(Peak(force, _floored(force, np.zeros(len(force))), _all(RESPONSES, len(force))))
-    return Peak(*(np.concatenate(x) for x in zip(*parts)))
+        parts.append(ComparedPeaks(values[wanted], scales[wanted], kinds[wanted]))
+    parts.append(ComparedPeaks(force, _floored(force, np.zeros(len(force))), _all(RESPONSES, len(force))))
+    return ComparedPeaks(*(np.concatenate(x) for x in zip(*parts)))
 
 
 def hardest(peaks: Peaks) -> float:

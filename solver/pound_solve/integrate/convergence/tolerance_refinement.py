@@ -20,7 +20,7 @@ import numpy as np
 
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.integrate import costs
-from pound_solve.integrate.convergence.compared import NAMES, RESPONSES, Peak, figures, tolerances
+from pound_solve.integrate.convergence.compared import NAMES, RESPONSES, ComparedPeaks, figures, tolerances
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import INTERRUPTED, EnvelopeRecorder, Outcome, Problem, Stop, goals
 
@@ -87,7 +87,7 @@ class ToleranceRefinement:
         self.steps = EXPECTED_STEPS * len(goals(self.system, problem.start.times)[0])
         self.most = max(self.steps, others / self.step_cost)
         self.runs, self.events, self.spent = 0, 0, 0.0
-        self.peaks = list[tuple[float, Peak]]()
+        self.peaks = list[tuple[float, ComparedPeaks]]()
         self.complete: tuple[Outcome, Replay] | None = None  # the last run that was completed
 
     def cost_ahead(self) -> float:
@@ -143,7 +143,7 @@ class ToleranceRefinement:
         self.floor, self.tol = self.tol, max(share * self.tol, MIN_TOLERANCE)
         return None
 
-    def _compare(self, peak: Peak) -> None:
+    def _compare(self, peak: ComparedPeaks) -> None:
         """Estimate the error of a run from its differences to those before."""
         scales = np.where(peak.scales > 0.0, peak.scales, 1.0)
         apart = np.zeros(len(scales))

@@ -10,7 +10,7 @@ import numpy as np
 from pound_solve.integrate.kernels import state
 from pound_solve.integrate.kernels.state import Product, Rows, Scheme
 from pound_solve.integrate.protocol import EVENT_TOLERANCE, MonitoredOutputs, Start
-from pound_solve.integrate.tracker import Extremes
+from pound_solve.integrate.tracker import TrackedExtremes
 from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES
 from pound_solve.numerics import ldl
@@ -338,7 +338,11 @@ def member_arrays(system: ReducedSystem, layout: Layout, scheme: Scheme) -> stat
 
 
 def step_arrays(
-    system: ReducedSystem, start: Start, layout: Layout, linear: state.LinearSystem, extremes: Extremes
+    system: ReducedSystem,
+    start: Start,
+    layout: Layout,
+    linear: state.LinearSystem,
+    extremes: TrackedExtremes,
 ) -> state.Step:
     """The motion of a start, the factor of the mass, and the extremes of a tracker."""
     n, o, t = system.size, layout.order, float(start.times[0])

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from pound_solve.integrate.energy import Works
-from pound_solve.integrate.tracker import Extremes
+from pound_solve.integrate.tracker import TrackedExtremes
 from pound_solve.numerics.ldl import Pattern, Positions
 from pound_solve.numerics.types import Array, Flags, Index
 
@@ -478,7 +478,7 @@ class Step(NamedTuple):
     factors : ndarray, shape (4, n_entries of L)
         Rows `WHOLE`, `PART`, `MASS` (ones for massless unknowns), `MASSLESS` (ones for the others).
     pivots : ndarray, shape (4, n)
-    extremes : Extremes
+    extremes : TrackedExtremes
     """
 
     now: MotionState
@@ -491,7 +491,7 @@ class Step(NamedTuple):
     matrix: Array
     factors: Array
     pivots: Array
-    extremes: Extremes
+    extremes: TrackedExtremes
 
 
 class Buffers(NamedTuple):

@@ -23,7 +23,7 @@ from pound_solve.integrate.events.polynomial_roots import room
 from pound_solve.integrate.protocol import Course, Motion, RowPeaks
 from pound_solve.integrate.series.extremes import RowExtremes, find_extremes
 from pound_solve.integrate.series.shown import INTERVALS, STEPS
-from pound_solve.integrate.series.state import Modal, Shown
+from pound_solve.integrate.series.state import EnvelopeBuffers, Modal
 from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Complex, Index
@@ -34,7 +34,7 @@ TERMS_OF_CELL = 16  #: of the series of a step for each of its cells, which have
 class ShownSteps:
     """Steps kept for the envelopes; `order` holds the unknowns in the order of elimination."""
 
-    def __init__(self, shown: Shown, order: Index, excitation: Excitation) -> None:
+    def __init__(self, shown: EnvelopeBuffers, order: Index, excitation: Excitation) -> None:
         self.shown, self.size, self.excitation = shown, len(order), excitation
         self.cells = max(shown.coefs.shape[2] // TERMS_OF_CELL, 1)  # of a step
         self.unknowns = order[shown.which]
@@ -129,7 +129,7 @@ def _of_cells(x: Array, chosen: Index, count: int) -> Array:
 class ShownIntervals:
     """Intervals in modes kept for the envelopes, part by part of the structure."""
 
-    def __init__(self, shown: Shown, modal: Modal, order: Index) -> None:
+    def __init__(self, shown: EnvelopeBuffers, modal: Modal, order: Index) -> None:
         self.shown, self.modal, self.size = shown, modal, len(order)
         self.unknowns = order[shown.which]
         self.cells = modal.growth.shape[1] - 1

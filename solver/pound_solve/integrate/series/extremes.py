@@ -12,7 +12,7 @@ from typing import NamedTuple
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, highest, size
 from pound_solve.integrate.series.expansion import derivative_factor
 from pound_solve.integrate.series.shown import STEPS
-from pound_solve.integrate.series.state import Shown
+from pound_solve.integrate.series.state import EnvelopeBuffers
 from pound_solve.numerics.ldl import Positions
 from pound_solve.numerics.types import Array, Index
 
@@ -25,8 +25,8 @@ class RowExtremes(NamedTuple):
     pointers : ndarray, shape (n_rows + 1,)
         Where the entries of each row begin.
     source, derivative, factors : ndarray, shape (n_entries,)
-        Number of the series: of an unknown or a force (see `Shown`), then of the inputs; order of its
-        derivative; factor of that.
+        Number of the series: of an unknown or a force (see `EnvelopeBuffers`), then of the inputs; order of
+        its derivative; factor of that.
     constant : ndarray, shape (n_rows,)
     high, t_high, low, t_low : ndarray, shape (n_rows,)
         Largest and smallest values so far, and their times.
@@ -80,7 +80,7 @@ def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) ->
         p[k] += factor * derivative_factor(k + order, order, 1.0) * c[k + order]
 
 
-def form_row(shown: Shown, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
+def form_row(shown: EnvelopeBuffers, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
     """Write row `r` in step `s` as a polynomial into the work space."""
     p, terms, n = extremes.polynomial[POLYNOMIAL], shown.terms[s], shown.coefs.shape[1]
     for k in range(terms + 1):
@@ -96,7 +96,7 @@ def form_row(shown: Shown, inputs: Array, extremes: RowExtremes, s: int, r: int)
             add_derivative(inputs[s, i - n], terms, order, factor, p)
 
 
-def count_row(shown: Shown, extremes: RowExtremes, s: int, r: int) -> None:
+def count_row(shown: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> None:
     """Update the extremes of row `r` with the polynomial in the work space."""
     p, terms, begin, h = extremes.polynomial, shown.terms[s], shown.begin[s], shown.length[s]
     first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, terms)
@@ -112,12 +112,12 @@ def count_row(shown: Shown, extremes: RowExtremes, s: int, r: int) -> None:
             extremes.low[r], extremes.t_low[r] = -value, begin + h * place
 
 
-def find_extremes(shown: Shown, inputs: Array, extremes: RowExtremes) -> int:
+def find_extremes(shown: EnvelopeBuffers, inputs: Array, extremes: RowExtremes) -> int:
     """Update the extremes of all rows with the steps that were kept.
 
     Parameters
     ----------
-    shown : Shown
+    shown : EnvelopeBuffers
     inputs : ndarray, shape (n_steps, n_inputs, TERMS + 1)
         Series of the inputs over each step.
     extremes : RowExtremes

@@ -29,7 +29,7 @@ from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, d
 from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Extent, Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
-from pound_solve.integrate.tracker import Extremes
+from pound_solve.integrate.tracker import TrackedExtremes
 from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 
@@ -233,7 +233,7 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
     return True
 
 
-def exceeds_peaks(extremes: Extremes, i: int, low: float, high: float) -> bool:
+def exceeds_peaks(extremes: TrackedExtremes, i: int, low: float, high: float) -> bool:
     """Whether bounds let a tracked quantity exceed its peaks."""
     return not (high <= extremes.high[i] and low >= extremes.low[i])
 

@@ -37,7 +37,7 @@ START = np.zeros(1)  #: of an interval
 PANEL, POINTS = 8.0, 16  #: radians that Gauss's rule with so many points integrates to rounding
 
 
-class Part:
+class ModalPart:
     """A part of the structure over intervals of one length.
 
     Parameters
@@ -116,12 +116,12 @@ class Part:
 
 
 #: runs of one structure under several motions have the same
-shared_part = by_content(most=16)(Part)
+shared_part = by_content(most=16)(ModalPart)
 
 
 def parts_of(
     system: ReducedSystem, stiffness: Array, monitored: Array, length: float
-) -> list[tuple[Index, Part]]:
+) -> list[tuple[Index, ModalPart]]:
     """The parts that only contacts join, with their unknowns; none where modes do not serve or pay."""
     straight = system.excitation.coefs.shape[1] <= 2
     if not straight or length == 0.0 or costs.fastest_rate(system) * length < MIN_RADIANS:
@@ -133,7 +133,7 @@ def parts_of(
     if max(map(len, members)) > MAX_UNKNOWNS:
         return []
 
-    def part(unknowns: Index) -> Part:
+    def part(unknowns: Index) -> ModalPart:
         block = np.ix_(unknowns, unknowns)
         mass, damping, k = (dense(a[block]) for a in (system.mass, system.damping, system.stiffness))
         law_rows, outputs = (dense(rows[:, unknowns]) for rows in (laws, monitored))
@@ -223,7 +223,7 @@ def allocate(
     return modal
 
 
-def fill_tables(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: Index) -> None:
+def fill_tables(out: Modal, b: int, part: ModalPart, seen: Index, unknowns: Index, shown: Index) -> None:
     """Fill in the tables of part `b`; `seen` are the numbers of the `shown` of its `unknowns`."""
     modes, rate = part.modes, part.rate
     h, steady = part.length, part.steady

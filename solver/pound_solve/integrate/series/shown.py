@@ -8,15 +8,15 @@ import numpy as np
 
 from pound_solve.integrate.kernels.state import Laws, LawTangent
 from pound_solve.integrate.series.forces import whole_force
-from pound_solve.integrate.series.state import Extent, Modal, Series, Shown
+from pound_solve.integrate.series.state import EnvelopeBuffers, Extent, Modal, Series
 from pound_solve.numerics.types import Index
 
 MAX_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
 MAX_KEPT, MIN_KEPT = 4096, 8  #: of these
-STEPS, INTERVALS = range(2)  #: places in `Shown.kept`
+STEPS, INTERVALS = range(2)  #: places in `EnvelopeBuffers.kept`
 
 
-def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
+def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> EnvelopeBuffers:
     """Allocate room for steps, whose series have so many `terms`, and for intervals in modes; the unknowns
     `which` and the forces of the laws `acting` are kept.
     """
@@ -24,7 +24,7 @@ def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
     steps = MAX_HELD // max(terms * (len(which) + len(acting)), 1)
     intervals = MAX_HELD // max(3 * modal.x.shape[1] * len(which), 2 * b * size, 1)
     s, i = (int(np.clip(x, MIN_KEPT, MAX_KEPT)) for x in (steps, intervals))
-    return Shown(
+    return EnvelopeBuffers(
         is_needed=np.array([len(which) + len(acting) > 0]),
         which=which,
         acting=acting,
@@ -40,7 +40,7 @@ def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
     )
 
 
-def is_full(shown: Shown) -> bool:
+def is_full(shown: EnvelopeBuffers) -> bool:
     """Whether there is no room for another step."""
     return bool(shown.kept[STEPS] == len(shown.begin))
 
@@ -71,7 +71,7 @@ def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
     shown.kept[STEPS] += 1
 
 
-def has_room(shown: Shown) -> bool:
+def has_room(shown: EnvelopeBuffers) -> bool:
     """Whether another interval in modes can be kept."""
     return bool(shown.kept[INTERVALS] < len(shown.start))
 

@@ -13,13 +13,13 @@ import numpy as np
 from pound_solve.integrate.kernels.allocation import coupled_pairs, inverse_index
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import LawDefinition, Laws, LinearSystem, Rows
-from pound_solve.integrate.series.state import Series, Springs
+from pound_solve.integrate.series.state import AssembledSprings, Series
 from pound_solve.numerics.ldl import pointers
 from pound_solve.numerics.matrices import Matrix, entries
 from pound_solve.numerics.types import Array
 
 
-def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Springs:
+def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> AssembledSprings:
     """Lay out the products ``b b^T`` of the laws.
 
     Parameters
@@ -42,7 +42,7 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
     fixed[np.searchsorted(keys, i * n + j)] = values
     row, first = np.unique(keys // n, return_index=True)
     squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in slices]
-    return Springs(
+    return AssembledSprings(
         row=row.astype(np.uint32),
         index_of=inverse_index(row, n),
         rows=Rows(
@@ -94,13 +94,13 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
     springs.n_dashpots[0] = n
 
 
-def add_product(springs: Springs, x: Array, out: Array) -> None:
+def add_product(springs: AssembledSprings, x: Array, out: Array) -> None:
     """Add the forces of the springs at displacements `x`."""
     for r in range(len(springs.row)):
         out[springs.row[r]] += row_product(springs.rows, r, x)
 
 
-def load_term(springs: Springs, series: Series, k: int, top: int, i: int) -> float:
+def load_term(springs: AssembledSprings, series: Series, k: int, top: int, i: int) -> float:
     """Coefficient `k` of the load on an unknown less the constant forces of laws; the inputs have `top`."""
     load: float = springs.constant[i] if k == 0 else 0.0
     if k < top:

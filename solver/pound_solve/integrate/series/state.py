@@ -22,7 +22,7 @@ class Lengths(Protocol):
     rejected: int  #: steps that were taken again, shorter
 
 
-class Springs(NamedTuple):
+class AssembledSprings(NamedTuple):
     """The laws on their present branches, added up over the unknowns (see `springs`).
 
     Attributes
@@ -406,7 +406,7 @@ class Modal(NamedTuple):
     apart: Array
 
 
-class Shown(NamedTuple):
+class EnvelopeBuffers(NamedTuple):
     """Motion of steps and of intervals in modes that is kept for the envelopes (see `shown`).
 
     Attributes
@@ -520,7 +520,7 @@ class Series(NamedTuple):
         Inverse of a diagonal mass.
     gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
         Weights and points on (0, 1), two more than half of the terms that carry energy.
-    springs : Springs
+    springs : AssembledSprings
     massless : Massless
     rigid : Rigid
     curved : Curved
@@ -530,7 +530,7 @@ class Series(NamedTuple):
     strings : Strings
     damped : Damped
     modal : Modal
-    shown : Shown
+    shown : EnvelopeBuffers
     single_pole : SinglePole
     lengths : Lengths
     """
@@ -544,7 +544,7 @@ class Series(NamedTuple):
     polynomial: Array
     inverse: Array
     gauss: Array
-    springs: Springs
+    springs: AssembledSprings
     massless: Massless
     rigid: Rigid
     curved: Curved
@@ -554,6 +554,6 @@ class Series(NamedTuple):
     strings: Strings
     damped: Damped
     modal: Modal
-    shown: Shown
+    shown: EnvelopeBuffers
     single_pole: SinglePole
     lengths: Lengths

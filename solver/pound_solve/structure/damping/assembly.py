@@ -14,7 +14,7 @@ from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, entries, gathered, weighted
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import building
-from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group
+from pound_solve.structure.damping.base import CardDamping, DampingContext, DampingError, Dashpots
 from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import Role
@@ -67,7 +67,7 @@ def add_damping(structure: Structure, loaded: Structure | None = None) -> list[D
     return problems
 
 
-def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group | None:
+def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> CardDamping | None:
     """Damping of one card; None if the card is in error."""
 
     def warn(message: str, item: str) -> None:
@@ -77,7 +77,7 @@ def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group |
 
     context = DampingContext(sources.mass, sources.modes, sources.building, warn)
     try:
-        group: Group = card.spec.impl(card, context)
+        group: CardDamping = card.spec.impl(card, context)
     except DampingError as err:
         problems.append(Diagnostic("P332", str(err), card.place(err.item)))
     except np.linalg.LinAlgError:
@@ -87,7 +87,7 @@ def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group |
     return None
 
 
-def _matrices(structure: Structure, group: Group) -> list[Matrix]:
+def _matrices(structure: Structure, group: CardDamping) -> list[Matrix]:
     """Damping matrices of a group over all columns, excluding dashpots parallel to laws."""
     matrices = []
     if group.relative is not None:

@@ -105,7 +105,7 @@ class Dashpots(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Group:
+class CardDamping:
     """Damping of one card and words for the report.
 
     `relative` acts on the motion relative to the quasi-static one of moved supports (mass-proportional and

@@ -29,9 +29,9 @@ from pound_solve.structure.damping.base import (
     AFTER,
     BUILDING,
     NODES,
+    CardDamping,
     DampingContext,
     DampingError,
-    Group,
     apart,
     frequencies,
     ratios,
@@ -53,7 +53,7 @@ def rates(omega: Array, at: Array, xi: Array) -> Array:
     return total
 
 
-def build(card: Card, context: DampingContext) -> Group:
+def build(card: Card, context: DampingContext) -> CardDamping:
     """Damping of the whole structure, or of one building of several."""
     modes = context.modes(context.nodes(card), None)
     at = frequencies(card, lambda: modes.omega, context)
@@ -78,7 +78,7 @@ def build(card: Card, context: DampingContext) -> Group:
             "XI",
         )
     of_modes = np.maximum(of_modes, 0.0)
-    return Group(
+    return CardDamping(
         context.from_modes(modes, of_modes),
         None,
         f"{len(at)} terms, XI {values(xi)} at omega {values(at)}; {span(modes.omega, of_modes)}",

@@ -26,9 +26,9 @@ from pound_solve.structure.damping.base import (
     AFTER,
     BUILDING,
     NODES,
+    CardDamping,
     DampingContext,
     DampingError,
-    Group,
     apart,
     frequencies,
     ratios,
@@ -92,12 +92,12 @@ def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Arr
     return xi, f"{text}; {span(omega, 2.0 * xi * omega)}"
 
 
-def build(card: Card, context: DampingContext) -> Group:
+def build(card: Card, context: DampingContext) -> CardDamping:
     """Damping of the whole structure, or of one building of several."""
     modes = context.modes(context.nodes(card), None)
     points = card["OMEGA"] is not None or card["MODES"] is not None
     xi, text = interpolated(card, modes.omega, context) if points else listed(card, modes.omega)
-    return Group(context.from_modes(modes, 2.0 * xi * modes.omega), None, text)
+    return CardDamping(context.from_modes(modes, 2.0 * xi * modes.omega), None, text)
 
 
 SPEC = Spec(

@@ -25,10 +25,10 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.damping.base import (
     AFTER,
     BUILDING,
+    CardDamping,
     DampingContext,
     DampingError,
     Dashpots,
-    Group,
     frequencies,
     ratios,
     values,
@@ -59,7 +59,7 @@ def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float
     return max(alpha, 0.0), max(2 * (x2 * w2 - x1 * w1) / spread, 0.0)
 
 
-def build(card: Card, context: DampingContext) -> Group:
+def build(card: Card, context: DampingContext) -> CardDamping:
     """Damping of one group."""
     alpha, beta, nodes = card["ALPHA"], card["BETA"], context.nodes(card)
     building = nodes if card["BUILDING"] else None
@@ -78,7 +78,7 @@ def build(card: Card, context: DampingContext) -> Group:
     alpha, beta = alpha or 0.0, beta or 0.0
     chosen = Chosen(card["PROPS"], building)
     follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
-    return Group(
+    return CardDamping(
         alpha * context.mass(nodes),
         Proportional(chosen, beta, card["STIFFNESS"] == "INITIAL"),
         f"alpha {alpha:.9g}, beta {beta:.9g} of the {card['STIFFNESS'].lower()} stiffness ({how})",

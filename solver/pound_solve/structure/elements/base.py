@@ -175,7 +175,7 @@ class Geometric:
 
 
 @dataclass
-class Parts:
+class ElementParts:
     """Everything one element adds to the structure."""
 
     stiffness: list[ElementMatrix] = field(default_factory=list)

@@ -32,9 +32,9 @@ from pound_solve.structure.elements.base import (
     ElementContext,
     ElementError,
     ElementMatrix,
+    ElementParts,
     Geometric,
     Output,
-    Parts,
     direction,
 )
 from pound_solve.structure.elements.beam_matrices import (
@@ -56,12 +56,12 @@ INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the internal DOF behind a hinge,
 
 
 @dataclass(frozen=True)
-class Member:
+class HingedBeam:
     """A beam, and the relation between its DOFs and the deformation of its hinges.
 
     Attributes
     ----------
-    parts : Parts
+    parts : ElementParts
     dofs : tuple of Dof
         Nodal DOFs, then internal ones.
     opening : ndarray, shape (6, n_freedoms)
@@ -71,7 +71,7 @@ class Member:
         Share of the hinges' flexibility that stays in them; the beam has the rest.
     """
 
-    parts: Parts
+    parts: ElementParts
     dofs: tuple[Dof, ...]
     opening: Array
     share: float
@@ -87,7 +87,7 @@ def pinned(p: Card) -> list[int]:
     return {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"] if p["I"] > 0.0 else "BOTH"]
 
 
-def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | None = None) -> Member:
+def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | None = None) -> HingedBeam:
     """Build a beam's matrices, loads and end forces.
 
     Parameters
@@ -108,7 +108,7 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     beam = _flexible_part(context.prop, line.length, taken)
     dofs, outer, inner = _kinematics(context, line, hinged)
     opening = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])[:, None] * (inner - outer)
-    parts = Parts(stiffness=[ElementMatrix(dofs, inner.T @ beam.forces @ inner)])
+    parts = ElementParts(stiffness=[ElementMatrix(dofs, inner.T @ beam.forces @ inner)])
     m = context.prop["WGT"] / context.gravity
     if m > 0.0:
         # with closed hinges: the internal DOFs of a member have no mass
@@ -122,7 +122,7 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     rows, constant = beam.forces @ inner, beam.end_forces(equivalent)
     parts.outputs += _outputs(context, dofs, rows, constant)
     _add_geometry(parts, context, line, beam, dofs, inner, rows, constant)
-    return Member(parts, dofs, opening, beam.share)
+    return HingedBeam(parts, dofs, opening, beam.share)
 
 
 @dataclass(frozen=True)
@@ -261,7 +261,7 @@ def _outputs(context: ElementContext, dofs: tuple[Dof, ...], rows: Array, consta
 
 
 def _add_geometry(
-    parts: Parts,
+    parts: ElementParts,
     context: ElementContext,
     line: _Line,
     beam: _FlexiblePart,

@@ -39,14 +39,20 @@ from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements import beam
-from pound_solve.structure.elements.base import ElementContext, ElementError, Parts, hysteretic, signed
+from pound_solve.structure.elements.base import (
+    ElementContext,
+    ElementError,
+    ElementParts,
+    hysteretic,
+    signed,
+)
 from pound_solve.structure.elements.beam import pair
 
 OUTMOST = 2.0  #: largest distance of a spring from the axis, in levers (largest moment over axial force)
 KNEE = 0.15  #: fraction of the axial strength of a steel section up to which the moment is not reduced
 
 
-class Springs(NamedTuple):
+class HingeSprings(NamedTuple):
     """Springs of a hinge.
 
     Attributes
@@ -107,7 +113,7 @@ def diagram(p: Card) -> Array:
     return corners
 
 
-def springs(corners: Array) -> Springs:
+def springs(corners: Array) -> HingeSprings:
     """Springs whose diagram is the given one, made symmetric about its centre.
 
     Parameters
@@ -142,10 +148,10 @@ def springs(corners: Array) -> Springs:
     normals = np.array([np.cos(angle), np.sin(angle)])
     wanted = ((corners - centre) / half @ normals).max(axis=0)
     made = np.abs(strength[:, None] * direction / half @ normals).sum(axis=0)
-    return Springs(direction, strength, shift, float(np.abs(wanted - made).max()))
+    return HingeSprings(direction, strength, shift, float(np.abs(wanted - made).max()))
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the beam and the springs of its hinges."""
     p = context.prop
     (rule,) = p.laws["RULE"]

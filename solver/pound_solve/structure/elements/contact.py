@@ -19,7 +19,14 @@ import math
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements import base
-from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, Role, axes
+from pound_solve.structure.elements.base import (
+    ElementContext,
+    ElementError,
+    ElementParts,
+    LawSpring,
+    Role,
+    axes,
+)
 
 
 def direction(context: ElementContext) -> tuple[float, float]:
@@ -99,7 +106,7 @@ def across(
     return tuple(f for f, _ in pairs), tuple(x for _, x in pairs)
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the contact's component and its friction component."""
     card, (nx, ny) = context.prop, direction(context)
     ends = [(context.i.id, 1.0)] + ([(context.j.id, -1.0)] if context.j is not None else [])
@@ -146,7 +153,7 @@ def build(context: ElementContext) -> Parts:
         facts=facts,
         role=Role.CONTACT,
     )
-    return Parts(laws=[spring, *rubbed])
+    return ElementParts(laws=[spring, *rubbed])
 
 
 SPEC = Spec(

@@ -13,9 +13,9 @@ from pound_solve.structure.elements.base import (
     ElementContext,
     ElementError,
     ElementMatrix,
+    ElementParts,
     LawSpring,
     Output,
-    Parts,
     Role,
     signed,
 )
@@ -24,9 +24,9 @@ from pound_solve.structure.elements.spring import PLACEMENT, components
 LIMITS, PLAYS = {"X": "FX", "Y": "FY", "R": "MR"}, {"X": "GAPX", "Y": "GAPY", "R": "GAPR"}
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the components that have a dashpot."""
-    card, parts = context.prop, Parts()
+    card, parts = context.prop, ElementParts()
     for name, dofs, row in components(context):
         c, unit = card["C" + name], "F*L" if name == "R" else "F"
         limit, play = card[LIMITS[name]], card[PLAYS[name]]

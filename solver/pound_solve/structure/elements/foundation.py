@@ -36,7 +36,13 @@ import numpy as np
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.dofs import Dof
-from pound_solve.structure.elements.base import ElementContext, ElementError, ElementMatrix, Output, Parts
+from pound_solve.structure.elements.base import (
+    ElementContext,
+    ElementError,
+    ElementMatrix,
+    ElementParts,
+    Output,
+)
 from pound_solve.structure.elements.multispring import lobatto, no_tension
 
 TAIL, ROW = 3, 5  #: internal DOFs: rotation of the rocking cone's mass, settlement of the row of springs
@@ -81,14 +87,14 @@ def radiation(p: Card, gravity: float, rocking: float) -> tuple[float, float, fl
     return rho * shear * area, rho * press * area, rho * press * inertia, rho * inertia * reach
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build springs, dashpots and the mass of the rocking cone."""
     p, number = context.prop, context.element.id
     kx, ky, kr = stiffness(p["G"], p["NU"], p["B"], p["L"])
     cx, cy, cr, mass = radiation(p, context.gravity, kr)
     ends = [(context.i.id, 1.0)] if context.j is None else [(context.j.id, 1.0), (context.i.id, -1.0)]
     x, y, rotation = ({(node, d): sign for node, sign in ends} for d in range(3))
-    parts, settlement, k_settlement, k_rotation = Parts(), y, ky, kr
+    parts, settlement, k_settlement, k_rotation = ElementParts(), y, ky, kr
     if p["UPLIFT"] == "YES":  # the row of springs has the stiffness in rocking, and a share of the vertical
         settlement, k_rotation = {**y, (number, ROW): -1.0}, 0.0
         k_settlement = _uplift(context, parts, ky, kr, rotation)
@@ -104,7 +110,7 @@ def build(context: ElementContext) -> Parts:
 
 
 def _uplift(
-    context: ElementContext, parts: Parts, ky: float, kr: float, rotation: Mapping[Dof, float]
+    context: ElementContext, parts: ElementParts, ky: float, kr: float, rotation: Mapping[Dof, float]
 ) -> float:
     """Add the row of springs without tension below the footing.
 
@@ -125,7 +131,7 @@ def _uplift(
 
 
 def _join(
-    parts: Parts,
+    parts: ElementParts,
     number: int,
     quantity: tuple[str, str],
     spring: tuple[float, Mapping[Dof, float]],

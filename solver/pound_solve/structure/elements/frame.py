@@ -28,7 +28,7 @@ from pound_solve.structure.elements.base import (
     DAMAGE,
     ElementContext,
     ElementError,
-    Parts,
+    ElementParts,
     hysteretic,
     signed,
 )
@@ -37,7 +37,7 @@ from pound_solve.structure.elements.beam import pair
 ENDS = ((2, "I", "MI"), (5, "J", "MJ"))  #: local DOF, name and strength of the hinges
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the beam and the hinges that have a strength."""
     p = context.prop
     (rule,) = p.laws["RULE"]

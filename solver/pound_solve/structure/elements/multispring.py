@@ -34,9 +34,9 @@ from pound_solve.structure.elements.base import (
     ElementContext,
     ElementError,
     ElementMatrix,
+    ElementParts,
     LawSpring,
     Output,
-    Parts,
     axes,
     hysteretic,
     signed,
@@ -89,13 +89,13 @@ def _places(context: ElementContext) -> tuple[Array, Array, float]:
     return y, shares / shares.sum(), float(np.abs(y).max()) or 1.0
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the springs."""
     p = context.prop
     (rule,) = p.laws["RULE"]
     y, shares, width = _places(context)
     k, force = p["KX"], p["FX"]
-    parts = Parts()
+    parts = ElementParts()
     if rule.impl is not None and p["TENSION"] == "NO":
         raise ElementError("TENSION=NO is a rule of its own: leave RULE out", "RULE")
     if rule.impl is not None and force is None:

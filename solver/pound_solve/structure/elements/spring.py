@@ -19,8 +19,8 @@ from pound_solve.structure.elements.base import (
     ElementContext,
     ElementError,
     ElementMatrix,
+    ElementParts,
     Output,
-    Parts,
     axes,
     hysteretic,
     signed,
@@ -86,9 +86,9 @@ def _at(way: tuple[float, float], context: ElementContext, first: bool) -> list[
     return terms
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the components that have stiffness."""
-    card, parts = context.prop, Parts()
+    card, parts = context.prop, ElementParts()
     names = card["RULE"]
     if len(names) == 2:
         raise ElementError("RULE takes one rule for all components, or three for x, y, rotation", "RULE")

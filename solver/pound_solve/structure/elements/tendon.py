@@ -17,12 +17,18 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
 from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.hysteresis.bilinear_slack import RULE
-from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, direction
+from pound_solve.structure.elements.base import (
+    ElementContext,
+    ElementError,
+    ElementParts,
+    LawSpring,
+    direction,
+)
 
 FAR = 1e3  #: strain that is never reached
 
 
-def build(context: ElementContext) -> Parts:
+def build(context: ElementContext) -> ElementParts:
     """Build the tendon's one component."""
     p = context.prop
     if context.j is None:
@@ -52,7 +58,7 @@ def build(context: ElementContext) -> Parts:
         k if p["N0"] else 0.0,
         *((None, None) if p["PY"] is None else ((slack + strength / k, math.nan), (strength, math.nan))),
     )
-    return Parts(laws=[spring])
+    return ElementParts(laws=[spring])
 
 
 SPEC = Spec(
