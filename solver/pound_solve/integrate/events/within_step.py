@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.events.protocol import CONTACT_SAMPLES, LocatedEvent, no_event
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import Laws, Step
+from pound_solve.integrate.kernels.state import Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 

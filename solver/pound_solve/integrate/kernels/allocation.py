@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_solve.integrate.kernels import state
-from pound_solve.integrate.kernels.state import Product, Rows, Scheme
+from pound_solve.integrate.kernels import law_state, state
+from pound_solve.integrate.kernels.sparse import Product, Rows
+from pound_solve.integrate.kernels.state import Scheme
 from pound_solve.integrate.protocol import EVENT_TOLERANCE, MonitoredOutputs, Start
 from pound_solve.integrate.tracker import TrackedExtremes
 from pound_solve.laws.automaton import EVENTS, Rule
@@ -218,7 +219,7 @@ def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
 def law_arrays(
     system: ReducedSystem, start: Start, layout: Layout, rules: Sequence[Rule], dashpot_losses: Array,
     dt: float,
-) -> state.Laws:  # fmt: skip
+) -> law_state.Laws:  # fmt: skip
     """The laws in the state of a start, for steps up to `dt`, with the losses of an accumulator; their
     branches are not entered yet.
     """
@@ -232,7 +233,7 @@ def law_arrays(
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
     parameters, internal = _law_numbers(laws, start)
     branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
-    definition = state.LawDefinition(
+    definition = law_state.LawDefinition(
         rows=rows,
         inputs=np.ascontiguousarray(system.law_inputs),
         pair_pointers=pointers,
@@ -247,7 +248,7 @@ def law_arrays(
         secant_damping=np.array([s.secant for s in laws], float),
         parameters=parameters,
     )
-    friction = state.FrictionCoupling(
+    friction = law_state.FrictionCoupling(
         coupled=_integers(np.flatnonzero([s.role is Role.FRICTION for s in laws])),
         normal_law=np.ascontiguousarray(normal[0]),
         pressed_branches=np.ascontiguousarray(normal[1]),
@@ -257,25 +258,25 @@ def law_arrays(
         limit_rates=np.zeros((count, EVENTS)),
         limit_rates_at_start=np.zeros((count, EVENTS)),
     )
-    return state.Laws(
+    return law_state.Laws(
         definition=definition,
-        state=state.LawState(
+        state=law_state.LawState(
             branch.astype(np.int64), entry.astype(float), work.astype(float), internal, dashpot_losses
         ),
-        saved=state.SavedState(np.zeros(count, bool), np.zeros((count, 3 + internal.shape[1]))),
-        tangent=state.LawTangent(np.zeros(count), np.zeros(count), np.zeros(count)),
-        events=state.BranchEvents(
+        saved=law_state.SavedState(np.zeros(count, bool), np.zeros((count, 3 + internal.shape[1]))),
+        tangent=law_state.LawTangent(np.zeros(count), np.zeros(count), np.zeros(count)),
+        events=law_state.BranchEvents(
             np.zeros(count, np.int64), np.zeros((count, EVENTS, 3)), np.full(count, -1, np.int64)
         ),
         friction=friction,
-        now=state.LawMotion(d, v),
-        trial=state.LawMotion(np.zeros(count), np.zeros(count)),
-        largest=state.LawExtremes(
+        now=law_state.LawMotion(d, v),
+        trial=law_state.LawMotion(np.zeros(count), np.zeros(count)),
+        largest=law_state.LawExtremes(
             deformation=np.maximum(np.abs(d), rounding / EVENT_TOLERANCE),
             rate=np.abs(v),
             terms=np.maximum(np.abs(v), rounding / dt / EVENT_TOLERANCE),
         ),
-        collision=state.CollisionForces(np.zeros(count), np.zeros(count), np.zeros(count)),
+        collision=law_state.CollisionForces(np.zeros(count), np.zeros(count), np.zeros(count)),
     )
 
 

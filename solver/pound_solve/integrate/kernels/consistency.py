@@ -20,9 +20,11 @@ from pound_solve.integrate.kernels.corotational import (
     form_quantities,
     subtract_force,
 )
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import multiply, row_product
-from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Rows, Simulation
+from pound_solve.integrate.kernels.sparse import Rows
+from pound_solve.integrate.kernels.state import MASS, MASSLESS, LinearSystem, Simulation
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness

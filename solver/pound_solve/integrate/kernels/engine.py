@@ -14,12 +14,12 @@ from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.kernels import allocation, corotational
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.state import (
+    BUFFERS_FULL,
     CHATTER,
-    CROWD,
     DONE,
-    FULL,
-    PIVOT,
     RUNAWAY,
+    SINGULAR,
+    TOO_MANY_EVENTS,
     Scheme,
     Simulation,
 )
@@ -150,7 +150,7 @@ class KernelEngine(ABC):
             self.fetch()
             if why == DONE:
                 return
-            if why != FULL:
+            if why != BUFFERS_FULL:
                 self.resume(why)
 
     def resume(self, why: int) -> None:
@@ -217,7 +217,7 @@ class KernelEngine(ABC):
             name = self.system.name(fastest)
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
             return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy) + cause)
-        if why == PIVOT:
+        if why == SINGULAR:
             return self.stop("A501", self.system.explain_massless(int(self.order[fault])))
         if why == CHATTER and (snaps := self._without_branch(fault)) is not None:
             return self.stop("A501", self.system.explain_massless(snaps, softens=True))
@@ -228,7 +228,7 @@ class KernelEngine(ABC):
             last = f"the last in {place} to {s.law.rule.branches[self.laws.state.branch[fault]].name!r}"
         if why == CHATTER:
             text = f"laws change branch again and again at one instant, {last}"
-        elif why == CROWD:
+        elif why == TOO_MANY_EVENTS:
             most = len(self.buffers.log) // 2
             text = f"laws change branch more than {most} times within one step, {last}"
         else:

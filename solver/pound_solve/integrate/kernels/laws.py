@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.integrate.kernels.law_state import STIFFNESS, TURN, Laws, LawState, LawTangent
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws, LawState, LawTangent
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
 from pound_solve.laws.functions import (

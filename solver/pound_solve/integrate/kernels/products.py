@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.state import LinearSystem, Product, Rows
+from pound_solve.integrate.kernels.sparse import Product, Rows
+from pound_solve.integrate.kernels.state import LinearSystem
 from pound_solve.numerics.types import Array
 
 

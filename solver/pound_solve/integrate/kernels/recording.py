@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.consistency import make_consistent, touches_massless
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import Laws, Run, Simulation, Step
+from pound_solve.integrate.kernels.state import Run, Simulation, Step
 from pound_solve.laws.functions import Tables, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
 

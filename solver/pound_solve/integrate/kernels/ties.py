@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.consistency import loses_force, touches_massless
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import leave_branch, restore_state, save_state
-from pound_solve.integrate.kernels.state import Laws, LinearSystem, Simulation
+from pound_solve.integrate.kernels.state import LinearSystem, Simulation
 from pound_solve.laws.functions import Tables
 
 #: fraction of its largest terms that an event function may lack of an event at the same instant

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
+from pound_solve.integrate.kernels.law_state import LawMotion, Laws
 from pound_solve.integrate.kernels.laws import linear_force
-from pound_solve.integrate.kernels.state import (
-    Corotational,
-    LawMotion,
-    Laws,
-    LinearSystem,
-    MemberState,
-    MotionState,
-)
+from pound_solve.integrate.kernels.state import Corotational, LinearSystem, MemberState, MotionState
 from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
 

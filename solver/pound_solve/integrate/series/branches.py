@@ -5,7 +5,15 @@ from __future__ import annotations
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.laws import law_force, leave_branch
 from pound_solve.integrate.kernels.recording import log_transition
-from pound_solve.integrate.kernels.state import CHATTER, DONE, LOOSE, LOST_FORCE, Piece, Run, Simulation
+from pound_solve.integrate.kernels.state import (
+    CHATTER,
+    DONE,
+    LOST_FORCE,
+    UNRESTRAINED,
+    Piece,
+    Run,
+    Simulation,
+)
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
 from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW, SAME_INSTANT
 from pound_solve.integrate.series.expansion import begin_series, next_term
@@ -124,7 +132,7 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     for _ in range(MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule)):
         change_friction(sim, rules, series)
         if not renew_branches(sim, rules, series):
-            return LOOSE
+            return UNRESTRAINED
         begin_series(sim, series, piece, 1.0)
         if in_series:  # forces that are series need the accelerations
             next_term(sim, series, 0, 1.0, top)

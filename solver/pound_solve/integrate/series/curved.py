@@ -24,9 +24,9 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.allocation import inverse_index
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.force_events import PARTS, RELEASES, TOUCHES
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Curved, Lengths, Series

@@ -15,8 +15,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
-from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Piece, Simulation
+from pound_solve.integrate.kernels.state import MASS, LinearSystem, Piece, Simulation
 from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_valid_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless

@@ -3,7 +3,7 @@ dampers."""
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.state import Laws, LawTangent
+from pound_solve.integrate.kernels.law_state import Laws, LawTangent
 from pound_solve.integrate.series.curved import PRESSED, enter_curved, has_force
 from pound_solve.integrate.series.friction import is_sliding, set_sliding_direction, update_friction
 from pound_solve.integrate.series.rigid import is_closed

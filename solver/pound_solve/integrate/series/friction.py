@@ -12,9 +12,9 @@ import numpy as np
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, no_event
 from pound_solve.integrate.kernels.allocation import inverse_index
+from pound_solve.integrate.kernels.law_state import Laws, LawState
 from pound_solve.integrate.kernels.laws import curved_force, linear_force
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import Laws, LawState
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.force_events import LIFT

@@ -7,19 +7,19 @@ import numpy as np
 from pound_solve.integrate.energy import runs_away
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.consistency import make_consistent
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
 from pound_solve.integrate.kernels.recording import next_pause, store_sample, track_peaks
 from pound_solve.integrate.kernels.state import (
+    BUFFERS_FULL,
     CHATTER,
     DONE,
-    FULL,
-    LOOSE,
+    RIGID_EVENT,
     RUNAWAY,
-    SHORT,
-    STRIKE,
+    STEP_TOO_SHORT,
+    UNRESTRAINED,
     Buffers,
     Goals,
-    Laws,
     MotionState,
     Piece,
     Run,
@@ -173,7 +173,7 @@ def answer_event(
         return DONE
     if series.rigid.index_of[event.law] >= 0:
         sim.run.fault = event.law
-        return STRIKE
+        return RIGID_EVENT
     change_branches(sim, rules, series, extent, event)
     return settle_state(sim, rules, series, piece)
 
@@ -192,13 +192,13 @@ def step_to_goal(
     laws, run = sim.laws, sim.run
     while run.time < goal:
         if must_pause(sim.buffers, series, run, pause):
-            return FULL
+            return BUFFERS_FULL
         t = run.time
         h = step_length(lengths, t, goal)
         if h == 0.0:
-            return SHORT
+            return STEP_TOO_SHORT
         if not renew_branches(sim, rules, series):
-            return LOOSE
+            return UNRESTRAINED
         if len(series.viscous.light):
             why = settle_state(sim, rules, series, piece)
             if why != DONE:
@@ -216,7 +216,7 @@ def step_to_goal(
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
-            return SHORT
+            return STEP_TOO_SHORT
         whole = end == 1.0 and h == goal - t
         lengths.next = max(h * min(fit * room, MAX_GROWTH), lengths.next if end == 1.0 else 0.0)
         searched = Extent(t, h, terms, end)
@@ -250,7 +250,7 @@ def reach_goal(
     """Advance the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
     step, run = sim.step, sim.run
     if not has_room(series.shown):
-        return FULL
+        return BUFFERS_FULL
     if run.steps < pause and take_in_modes(sim, series, piece, goal):
         return DONE
     from_modes(sim.laws, series.modal, step)
@@ -334,5 +334,5 @@ def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
             from_modes(sim.laws, series.modal, sim.step)
             take_sample(sim, rules, series, piece)
             if run.kept == len(sim.buffers.time):
-                return FULL
+                return BUFFERS_FULL
     return DONE

@@ -22,9 +22,10 @@ import numpy as np
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME_LENGTH
+from pound_solve.integrate.kernels.law_state import BranchEvents, Laws
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
-from pound_solve.integrate.kernels.state import BranchEvents, Laws, LinearSystem, Piece, Simulation, Step
+from pound_solve.integrate.kernels.state import LinearSystem, Piece, Simulation, Step
 from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, expand_inputs
 from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Extent, Modal, Series

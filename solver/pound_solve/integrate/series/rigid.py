@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.allocation import inverse_index
-from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Rigid, Series

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.state import Laws, LawTangent
+from pound_solve.integrate.kernels.law_state import Laws, LawTangent
 from pound_solve.integrate.series.forces import whole_force
 from pound_solve.integrate.series.state import EnvelopeBuffers, Extent, Modal, Series
 from pound_solve.numerics.types import Index

@@ -38,8 +38,9 @@ import math
 import numpy as np
 
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
-from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Piece, Simulation
+from pound_solve.integrate.kernels.state import WHOLE, LinearSystem, Piece, Simulation
 from pound_solve.integrate.series.expansion import MAX_GROWTH, dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
 from pound_solve.integrate.series.state import Series, SinglePole

@@ -26,9 +26,9 @@ import numpy as np
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier
 from pound_solve.integrate.kernels.allocation import inverse_index
+from pound_solve.integrate.kernels.law_state import LawDefinition, LawExtremes, LawMotion, Laws
 from pound_solve.integrate.kernels.laws import curved_force, internal, parameters, proportional_damping
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import LawDefinition, LawExtremes, LawMotion, Laws
 from pound_solve.integrate.series.curved import FIRST_STEP, power_term, right_part
 from pound_solve.integrate.series.force_events import BENDS
 from pound_solve.integrate.series.springs import deformation_term

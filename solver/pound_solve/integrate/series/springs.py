@@ -11,8 +11,10 @@ from itertools import pairwise
 import numpy as np
 
 from pound_solve.integrate.kernels.allocation import coupled_pairs, inverse_index
+from pound_solve.integrate.kernels.law_state import LawDefinition, Laws
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import LawDefinition, Laws, LinearSystem, Rows
+from pound_solve.integrate.kernels.sparse import Rows
+from pound_solve.integrate.kernels.state import LinearSystem
 from pound_solve.integrate.series.state import AssembledSprings, Series
 from pound_solve.numerics.ldl import pointers
 from pound_solve.numerics.matrices import Matrix, entries

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from pound_solve.integrate.kernels.state import Product, Rows
+from pound_solve.integrate.kernels.sparse import Product, Rows
 from pound_solve.numerics.ldl import Pattern, Positions
 from pound_solve.numerics.types import Array, Flags, Index
 

@@ -38,11 +38,11 @@ from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
 from pound_solve.integrate.kernels.state import (
     CHATTER,
-    LOOSE,
     LOST_FORCE,
+    RIGID_EVENT,
     RUNAWAY,
-    SHORT,
-    STRIKE,
+    STEP_TOO_SHORT,
+    UNRESTRAINED,
     Goals,
     Scheme,
 )
@@ -236,7 +236,7 @@ class Taylor(KernelEngine):
         """Let rigid contacts strike, close or part, or joints without mass move where a force is lost; stop
         where the run cannot go on.
         """
-        if why not in (STRIKE, LOST_FORCE):
+        if why not in (RIGID_EVENT, LOST_FORCE):
             raise self.trouble(why)
         if why == LOST_FORCE:
             present = Present(self, self.series)
@@ -308,9 +308,9 @@ class Taylor(KernelEngine):
 
     def trouble(self, why: int) -> Stop:
         """The `Stop` that says in words why the kernel has returned early."""
-        if why == SHORT:
+        if why == STEP_TOO_SHORT:
             return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
-        if why == LOOSE:
+        if why == UNRESTRAINED:
             return self.stop("A501", self._explain_massless())
         if why == RUNAWAY:
             return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy))

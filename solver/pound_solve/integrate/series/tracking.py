@@ -6,8 +6,9 @@ from __future__ import annotations
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, rate_size, size
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, no_event
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import Laws, Simulation, Step
+from pound_solve.integrate.kernels.state import Simulation, Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.curved import (
     APART,

@@ -22,9 +22,9 @@ import numpy as np
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier
 from pound_solve.integrate.kernels.allocation import inverse_index
+from pound_solve.integrate.kernels.law_state import LawDefinition, Laws
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.kernels.state import LawDefinition, Laws
 from pound_solve.integrate.series.curved import K, N, right_part
 from pound_solve.integrate.series.force_events import TURNS
 from pound_solve.integrate.series.springs import deformation_term

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.corotational import force_size
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import add_slip_work, drag_force, hold_friction_limits, law_force
 from pound_solve.integrate.kernels.products import copy, multiply
-from pound_solve.integrate.kernels.state import Corotational, Laws, LinearSystem, Scheme, Simulation, Step
+from pound_solve.integrate.kernels.state import Corotational, LinearSystem, Scheme, Simulation, Step
 from pound_solve.integrate.kernels.work import (
     load_on_nodes,
     mean_damping_power,

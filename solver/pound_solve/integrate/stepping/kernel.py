@@ -9,6 +9,7 @@ from __future__ import annotations
 from pound_solve.integrate.energy import runs_away
 from pound_solve.integrate.events.within_step import first_event
 from pound_solve.integrate.kernels.consistency import loses_force, make_consistent
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import (
     event_on_path,
     leave_branch,
@@ -27,13 +28,12 @@ from pound_solve.integrate.kernels.recording import (
     track_peaks,
 )
 from pound_solve.integrate.kernels.state import (
+    BUFFERS_FULL,
     DONE,
-    FULL,
-    PIVOT,
     RUNAWAY,
+    SINGULAR,
     WHOLE,
     Goals,
-    Laws,
     Piece,
     Scheme,
     Simulation,
@@ -49,9 +49,9 @@ from pound_solve.integrate.stepping.step import try_step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array, Index
 
-#: what comes of a step through events: it must be solved again with the new tangents, or be cut at its
-#: events, or its matrix is singular
-SOLVED, SOLVE_AGAIN, CUT, SINGULAR = range(4)
+#: outcomes of a step through events; it must be solved again with new tangents, or be cut at its events;
+#: FAILED: its matrix is singular
+SOLVED, SOLVE_AGAIN, CUT, FAILED = range(4)
 MAX_BRANCHES = 100  #: branches that a law may pass in a step that is not cut
 MAX_SOLUTIONS = 50  #: of such a step, before it is cut
 
@@ -84,7 +84,7 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
     -------
     int
         SOLVED where no law has changed, SOLVE_AGAIN where one has, CUT where a law loses a force on the
-        way that holds a joint without mass, or SINGULAR.
+        way that holds a joint without mass, or FAILED.
     """
     laws, run = sim.laws, sim.run
     tangent = laws.tangent
@@ -115,7 +115,7 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
                 bad = factorise_step(sim, scheme, h, WHOLE)
                 if bad >= 0:
                     run.fault = bad
-                    return SINGULAR
+                    return FAILED
     return outcome
 
 
@@ -129,7 +129,7 @@ def step_through(
     Returns
     -------
     int
-        SOLVED, CUT where the step must be cut at its events, or SINGULAR.
+        SOLVED, CUT where the step must be cut at its events, or FAILED.
     """
     laws, run = sim.laws, sim.run
     definition = laws.definition
@@ -143,8 +143,8 @@ def step_through(
         outcome = drive_laws(sim, rules, scheme, length)
         if outcome == SOLVE_AGAIN:
             continue
-        if outcome == SINGULAR:
-            return SINGULAR
+        if outcome == FAILED:
+            return FAILED
         if outcome == CUT:
             break
         accept_trial(sim, rules, scheme, length, WHOLE)
@@ -231,7 +231,7 @@ def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
     bad = factorise_step(sim, scheme, h, WHOLE)
     if bad >= 0:
         run.fault = bad
-        return PIVOT
+        return SINGULAR
     run.factor_length, run.updates = h, 0
     return DONE
 
@@ -251,7 +251,7 @@ def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
     if sampled:
         store_sample(sim, rules, run.time)
         if run.kept == len(sim.buffers.time):
-            return FULL
+            return BUFFERS_FULL
     return DONE
 
 
@@ -286,8 +286,8 @@ def take_steps(
         if not scheme.locate:
             outcome = step_through(sim, rules, scheme, piece, length, tried)
             tried = False
-    if outcome == SINGULAR:
-        return PIVOT
+    if outcome == FAILED:
+        return SINGULAR
     why = DONE
     if outcome == CUT:  # cut at its events a step always has a solution
         why = step_in_parts(sim, rules, scheme, piece, length, h, tried)
@@ -312,7 +312,7 @@ def advance(
     Returns
     -------
     int
-        DONE, FULL, or what is wrong (see `kernels.state`).
+        DONE, BUFFERS_FULL, or what is wrong (see `kernels.state`).
     """
     buffers, run = sim.buffers, sim.run
     room, pause = len(buffers.log) // 2, next_pause(sim.step, run)
@@ -327,7 +327,7 @@ def advance(
             # steps that have room
             more = len(buffers.shown_time) // 2 - run.shown
             if crowded or more <= 0 or run.steps >= pause:
-                return FULL
+                return BUFFERS_FULL
             why = renew_factor(sim, scheme, h)
             if why != DONE:
                 return why

@@ -9,7 +9,15 @@ import numpy as np
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEARLY_MET
-from pound_solve.integrate.kernels.state import DONE, NEWTON, PART, PIVOT, Piece, Scheme, Simulation
+from pound_solve.integrate.kernels.state import (
+    DONE,
+    NOT_CONVERGED,
+    PART,
+    SINGULAR,
+    Piece,
+    Scheme,
+    Simulation,
+)
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.factor import factorise_step
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
@@ -131,10 +139,10 @@ def locate_event(
         bad = factorise_step(sim, scheme, tau, PART)
         if bad >= 0:
             sim.run.fault = bad
-            return PIVOT, event
+            return SINGULAR, event
         if not try_step(sim, rules, scheme, piece.coefs, begin + tau, tau, PART):
             if last:
-                return NEWTON, event
+                return NOT_CONVERGED, event
             # at `high` there was a solution: look for the event nearer to it
             restore_start_tangents(sim, rules)
             b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
@@ -154,4 +162,4 @@ def locate_event(
             return DONE, met
         b = narrowed_bracket(b, tau, g, passed)
         tau = next_time(b, passed, first.time, h)
-    return NEWTON, event
+    return NOT_CONVERGED, event

@@ -9,12 +9,12 @@ from pound_solve.integrate.events.within_step import first_event
 from pound_solve.integrate.kernels.recording import store_motion, track_peaks
 from pound_solve.integrate.kernels.state import (
     CHATTER,
-    CROWD,
     DONE,
     LOST_FORCE,
-    NEWTON,
+    NOT_CONVERGED,
     PART,
-    PIVOT,
+    SINGULAR,
+    TOO_MANY_EVENTS,
     WHOLE,
     Piece,
     Scheme,
@@ -38,9 +38,9 @@ def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int
     if bad < 0:
         return DONE
     if halvings > 0:
-        return NEWTON
+        return NOT_CONVERGED
     sim.run.fault = bad
-    return PIVOT
+    return SINGULAR
 
 
 def solve_part(
@@ -71,7 +71,7 @@ def solve_part(
         run.updates = MAX_UPDATES + 1
         restore_start_tangents(sim, rules)
         part, factor = 0.5 * part, PART
-    return NEWTON, part, factor
+    return NOT_CONVERGED, part, factor
 
 
 def end_part_at_event(
@@ -133,7 +133,7 @@ def step_in_parts(
     factor = WHOLE if abs(length - h) <= SAME_INSTANT_OF_STEP * h else PART
     while left > 0.0:
         if len(sim.buffers.log) - run.logged <= len(laws.friction.coupled):
-            return CROWD
+            return TOO_MANY_EVENTS
         part = min(left, run.longest_part)
         factor = factor if part == left else PART
         why, part, factor = solve_part(sim, rules, scheme, piece, part, factor, tried)
