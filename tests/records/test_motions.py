@@ -15,7 +15,7 @@ from pound_solve.loading.forces import record as force_record
 from pound_solve.loading.forces import sine as force_sine
 from pound_solve.loading.forces import table as force_table
 from pound_solve.loading.motions import matched, record, sine, synthetic, table
-from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
+from pound_solve.loading.motions.base import METRE, GroundMotion, LoadingContext
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.spectrum import response_spectrum
@@ -30,7 +30,7 @@ def context(tmp_path: Path = Path(), length: str = "m", duration: float = 0.0) -
 class TestRecord:
     TEXT = "0 0\n1 0.2\n2 -0.4\n4 0.1\n"  # uneven, peak 0.4
 
-    def build(self, tmp_path: Path, text: str = TEXT, length: str = "m", **card: Any) -> Motion:
+    def build(self, tmp_path: Path, text: str = TEXT, length: str = "m", **card: Any) -> GroundMotion:
         (tmp_path / "made_up.txt").write_text(text)
         return record.build({"FILE": "made_up.txt", "FORMAT": "AUTO", **card}, context(tmp_path, length))
 
@@ -365,7 +365,7 @@ class TestTurn:
 
 
 class TestWave:
-    def motion(self, **card: Any) -> Motion:
+    def motion(self, **card: Any) -> GroundMotion:
         values = {"POINTS": (0.0, 1.0, 0.5, -1.0, 0.5, 2.0, 1.0, 0.0), "SUPPORTS": (1, 2, 3, 4), **card}
         return table.build(values, context())
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from pound_solve.loading.motions.base import LoadingContext, Motion, common_breaks, finish
+from pound_solve.loading.motions.base import GroundMotion, LoadingContext, common_breaks, finish
 from pound_solve.loading.piecewise import Piecewise, merged
 
 
@@ -108,8 +108,8 @@ def test_merged_keeps_both_ends_and_no_slivers() -> None:
 
 
 def test_common_breaks() -> None:
-    a = Motion("X", None, Piecewise.from_samples(0.01 * np.arange(301), np.sin(np.arange(301.0))))
-    b = Motion("Y", None, Piecewise.from_samples(0.005 * np.arange(1001), np.cos(np.arange(1001.0))))
+    a = GroundMotion("X", None, Piecewise.from_samples(0.01 * np.arange(301), np.sin(np.arange(301.0))))
+    b = GroundMotion("Y", None, Piecewise.from_samples(0.005 * np.arange(1001), np.cos(np.arange(1001.0))))
     breaks = common_breaks([a.acceleration, b.acceleration], 4.0)
     assert len(breaks) == 801 and (breaks[0], breaks[-1]) == (0.0, 4.0)
     t = 0.5 * (breaks[1:] + breaks[:-1])

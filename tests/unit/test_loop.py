@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from pound_solve.assess.law_test import (
     AXES,
     LawTestError,
-    Point,
+    LoopPoint,
     has_loop,
     law_of,
     protocol,
@@ -36,7 +36,7 @@ def law(name: str, *items: str) -> Law:
     return specimen(law_of(name), items)[0].law
 
 
-def corners(points: tuple[Point, ...]) -> list[tuple[float, float, str]]:
+def corners(points: tuple[LoopPoint, ...]) -> list[tuple[float, float, str]]:
     return [(p.d, p.f, p.branch) for p in points]
 
 
@@ -285,6 +285,6 @@ def test_ticks_are_round() -> None:
 
 def test_rounding_is_printed_as_nought() -> None:
     text = table(
-        [Point(1.0, 5e-17, "a", 1.0, 2e-33, 1.0, True), Point(2.0, 1.0, "b", 2.0, 1.0, 1.0, False)]
+        [LoopPoint(1.0, 5e-17, "a", 1.0, 2e-33, 1.0, True), LoopPoint(2.0, 1.0, "b", 2.0, 1.0, 1.0, False)]
     )
     assert text.splitlines()[1].split() == ["1", "0", "1", "0", "1", "a", "turn"]

@@ -26,7 +26,7 @@ from pound_solve.check import Bound, Check, Subject, at_least, at_most, beyond
 from pound_solve.integrate.protocol import INTERRUPTED, MonitoredOutputs, Outcome, Problem, Start, Stop
 from pound_solve.interruption import undisturbed
 from pound_solve.loading.forces.base import Force
-from pound_solve.loading.motions.base import Motion
+from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
 from pound_solve.structure.reduction import ReducedSystem
@@ -86,7 +86,7 @@ class Loading(NamedTuple):
     empty).
     """
 
-    motions: Sequence[Motion]
+    motions: Sequence[GroundMotion]
     forces: Sequence[Force]
     saved: Mapping[str, Array]
 

@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 import numpy as np
 
 from pound_solve.analyses.closeups import MEGABYTE
-from pound_solve.analyses.envelopes import Envelopes
+from pound_solve.analyses.envelopes import ResponseEnvelopes
 from pound_solve.integrate.energy import ENERGIES, energies
 from pound_solve.integrate.protocol import Course, LawValues, MonitoredOutputs, Motion, Stop
 from pound_solve.numerics.matrices import used_columns
@@ -277,7 +277,7 @@ class HistoryRecorder:
         first_energy: Array | None = None,
     ) -> None:
         self.items, self._append, self._progress = items, append, progress
-        self.envelopes = Envelopes(
+        self.envelopes = ResponseEnvelopes(
             items.system,
             items.nodes,
             items.outputs,

@@ -11,7 +11,7 @@ import numpy as np
 
 from pound_solve.driver.prepare import ground
 from pound_solve.driver.request import Request
-from pound_solve.loading.motions.base import Motion
+from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.loading.records import peer
 from pound_solve.user_error import UserError
 
@@ -67,7 +67,7 @@ def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
         yield _file(number, motion, deck.model.gravity, dt)
 
 
-def _file(number: int, motion: Motion, gravity: float, dt: float | None) -> MotionFile:
+def _file(number: int, motion: GroundMotion, gravity: float, dt: float | None) -> MotionFile:
     """Make the record file of one motion."""
     name, a = str(motion.info["name"]), motion.acceleration
     steps = np.diff(a.breaks)

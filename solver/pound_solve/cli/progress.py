@@ -45,7 +45,7 @@ class StatusLine:
             print("\r" + " " * (WIDTH + 1) + "\r", end="", file=sys.stderr, flush=True)
 
 
-class Progress:
+class AnalysisProgress:
     """Progress of an analysis, at most ten lines a second.
 
     A method may run the history several times: when the time decreases, a new run begins, and the estimate

@@ -6,19 +6,21 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from pound_deck.model import Card, Model
 from pound_solve.loading.forces.base import Force
-from pound_solve.loading.motions.base import Motion
+from pound_solve.loading.motions.base import GroundMotion
 
 MOTION = "motion"  #: first word of the parts that another earthquake changes
 
 
-def identity(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> dict[str, str]:
+def identity(model: Model, motions: Sequence[GroundMotion], forces: Sequence[Force]) -> dict[str, str]:
     """Return the structure and loading of a deck as text: the name of each part and its values with all
     digits.
     """
     return dict(_parts(model, motions, forces))
 
 
-def _parts(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
+def _parts(
+    model: Model, motions: Sequence[GroundMotion], forces: Sequence[Force]
+) -> Iterator[tuple[str, str]]:
     units = model.units
     yield "UNITS", f"{units.force} {units.length} {units.time}"
     yield "GRAVITY", repr(model.gravity)

@@ -15,7 +15,7 @@ from pound_solve.driver.identity import MOTION, differences, identity
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.intensity import share
-from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
+from pound_solve.loading.motions.base import METRE, GroundMotion, LoadingContext
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
@@ -38,9 +38,11 @@ def context(model: Model, request: Request) -> LoadingContext:
     )
 
 
-def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]) -> list[Motion]:
+def motions(
+    model: Model, surroundings: LoadingContext, diagnostics: list[Diagnostic]
+) -> list[GroundMotion]:
     """Return the ground motions of all EQUAKE cards; a wave gives one for each place."""
-    motions: list[Motion] = []
+    motions: list[GroundMotion] = []
     place = {node.id: node.x for node in model.nodes.values()}
     apart = [card for card in model.equake if card["SUPPORTS"] is not None]
     whole = [card for card in model.equake if card["SUPPORTS"] is None]
@@ -48,7 +50,7 @@ def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagno
         message = "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none"
         diagnostics.append(Diagnostic("R405", message, whole[0].span))
     for card in model.equake:
-        motion: Motion | None = _built(card, surroundings, diagnostics)
+        motion: GroundMotion | None = _built(card, surroundings, diagnostics)
         if motion is None:
             continue
         diagnostics += [
@@ -65,7 +67,7 @@ def motions(model: Model, surroundings: LoadingContext, diagnostics: list[Diagno
     return motions
 
 
-def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]:
+def _cut_short(model: Model, card: Card, motion: GroundMotion) -> Iterator[Diagnostic]:
     """Yield a warning if a history ends before the share `LEAST_ACTED` of the Arias intensity has acted."""
     histories = [c for c in model.analyses if c.spec.name == "HISTORY" and not c["RESTART"]]
     for history in histories if card.spec.name in EARTHQUAKES else ():
@@ -115,7 +117,7 @@ def _built(card: Card, surroundings: LoadingContext, diagnostics: list[Diagnosti
 def saved_state(
     model: Model,
     request: Request,
-    motions: Sequence[Motion],
+    motions: Sequence[GroundMotion],
     forces: Sequence[Force],
     diagnostics: list[Diagnostic],
 ) -> dict[str, Array]:

@@ -15,10 +15,10 @@ from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden, with_motion
 from pound_solve.driver.preflight import causes, preflight
-from pound_solve.driver.reading import Deck, read
+from pound_solve.driver.reading import ReadDeck, read
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
-from pound_solve.loading.motions.base import Motion
+from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.damping.assembly import add_damping
@@ -51,7 +51,7 @@ class Prepared:
     """
 
     model: Model
-    motions: tuple[Motion, ...]
+    motions: tuple[GroundMotion, ...]
     forces: tuple[Force, ...]
     structure: Structure
     warnings: tuple[Diagnostic, ...]
@@ -64,18 +64,18 @@ class Ground:
     """Ground motions of a deck, without its structure, and the diagnostics."""
 
     model: Model
-    motions: tuple[Motion, ...]
+    motions: tuple[GroundMotion, ...]
     diagnostics: tuple[Diagnostic, ...]
     files: Mapping[str, str]
 
 
-def ground(request: Request, deck: Deck | None = None) -> Ground:
+def ground(request: Request, deck: ReadDeck | None = None) -> Ground:
     """Return the motions of the EQUAKE cards of a deck; a wave gives one for each place.
 
     Parameters
     ----------
     request : Request
-    deck : Deck, optional
+    deck : ReadDeck, optional
         Replaces the one that the request names.
 
     Raises
@@ -163,7 +163,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
     )
 
 
-def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
+def _assembled(model: Model, motions: Sequence[GroundMotion]) -> Structure:
     """Assemble the structure with the loads that STATIC requests, and its damping."""
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
     statics = [c for c in model.analyses if c.spec.name == "STATIC"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.source import Source
+from pound_deck.source import DeckSource
 from pound_solve.catalog import catalog
 from pound_solve.editor.diagnose import diagnose
 from pound_solve.editor.reading import Reading, read
@@ -74,7 +74,7 @@ class Project:
         return self._decks[path]
 
     def _including(self, path: str) -> Iterator[str]:
-        lines = Source().logical(path, self.texts.get(path, ""))
+        lines = DeckSource().logical(path, self.texts.get(path, ""))
         if any(line.text.split()[0].upper() == "ANALYSIS" for line in lines):
             return
         folder = Path(path).parent
@@ -114,7 +114,7 @@ class Project:
 
 def _files(deck: str, texts: dict[str, str]) -> set[str]:
     """Real paths of a deck and of the files that it includes."""
-    source = Source(unsaved=texts)
+    source = DeckSource(unsaved=texts)
     try:
         source.read(deck)
     except OSError:

@@ -136,7 +136,7 @@ def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     return _with_notes(lines[1:], table, results.note(table.name))
 
 
-class Shown(NamedTuple):
+class ReportTable(NamedTuple):
     """A part of a table as a report shows it.
 
     Attributes
@@ -156,13 +156,13 @@ class Shown(NamedTuple):
     more: str = ""
 
 
-def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]:
+def shown(results: Results, table: Table[Any], limit: int | None) -> list[ReportTable]:
     """Parts in which a report shows a table: those of its view, or the whole; `limit` as in `render`."""
     view = view_of(table.name, whole=limit == 0)
     if view is None:
-        return [Shown("", table, *_excerpt(results, table, limit))]
+        return [ReportTable("", table, *_excerpt(results, table, limit))]
     return [
-        Shown(part.title, replace(table, columns=part.columns, group=""), part.rows)
+        ReportTable(part.title, replace(table, columns=part.columns, group=""), part.rows)
         for part in view(results)
     ]
 

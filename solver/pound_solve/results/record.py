@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pound_solve.analyses.recorder import RecordedItems
     from pound_solve.analyses.static_response import StaticResponse
     from pound_solve.loading.forces.base import Force
-    from pound_solve.loading.motions.base import Motion
+    from pound_solve.loading.motions.base import GroundMotion
     from pound_solve.numerics.types import Array
     from pound_solve.structure.diaphragms import DiaphragmCollision
     from pound_solve.structure.structure import Structure
@@ -31,7 +31,7 @@ class RunRecord:
     Attributes
     ----------
     model : Model
-    motions : sequence of Motion
+    motions : sequence of GroundMotion
     forces : sequence of Force
     structure : Structure
         After the static analysis, with the geometric stiffness of its axial forces.
@@ -57,7 +57,7 @@ class RunRecord:
     """
 
     model: Model
-    motions: Sequence[Motion]
+    motions: Sequence[GroundMotion]
     forces: Sequence[Force]
     structure: Structure
     overridden: frozenset[str]

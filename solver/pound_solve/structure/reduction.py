@@ -23,7 +23,7 @@ import numpy as np
 
 from pound_solve.loading.excitation import Excitation
 from pound_solve.loading.forces.base import Force
-from pound_solve.loading.motions.base import Motion, Piecewise, common_breaks
+from pound_solve.loading.motions.base import GroundMotion, Piecewise, common_breaks
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, by_rows, entries, gathered, selection, used_rows
 from pound_solve.numerics.types import Array, Flags
@@ -93,7 +93,7 @@ class ReducedSystem:
     total: bool
     acceleration_inputs: Array
     force_inputs: Array
-    motions: Sequence[Motion]
+    motions: Sequence[GroundMotion]
     forces: Sequence[Force]
     decisions: list[Decision] = field(default_factory=list)
 
@@ -186,7 +186,7 @@ class ReducedSystem:
         return f"{self.name(index)} has no mass, and {why}; {cure}"
 
 
-def moved_supports(motions: Sequence[Motion], fixed: Sequence[Dof]) -> tuple[Dof, ...]:
+def moved_supports(motions: Sequence[GroundMotion], fixed: Sequence[Dof]) -> tuple[Dof, ...]:
     """Fixed DOFs that the motions with SUPPORTS prescribe."""
     moved: set[Dof] = set()
     for m in motions:
@@ -197,7 +197,7 @@ def moved_supports(motions: Sequence[Motion], fixed: Sequence[Dof]) -> tuple[Dof
 
 def build(
     structure: Structure,
-    motions: Sequence[Motion],
+    motions: Sequence[GroundMotion],
     t_end: float,
     start: Array,
     start_rate: Array,
@@ -208,7 +208,7 @@ def build(
     Parameters
     ----------
     structure : Structure
-    motions : sequence of Motion
+    motions : sequence of GroundMotion
     t_end : float
         Length of the history [T].
     start, start_rate : ndarray, shape (n_free,)
@@ -286,7 +286,7 @@ class Inputs(NamedTuple):
 
 
 def _inputs(
-    structure: Structure, motions: Sequence[Motion], forces: Sequence[Force], t_end: float
+    structure: Structure, motions: Sequence[GroundMotion], forces: Sequence[Force], t_end: float
 ) -> Inputs:
     """Inputs of the motions (three each where supports move: displacement, velocity, acceleration; else the
     acceleration alone), then of FORCES.
@@ -318,7 +318,7 @@ def _inputs(
     return Inputs(Excitation.of(histories, breaks), inertial + applied, supports, ground, applied)
 
 
-def _support_shares(structure: Structure, motion: Motion) -> list[float]:
+def _support_shares(structure: Structure, motion: GroundMotion) -> list[float]:
     """Displacement of every prescribed DOF for a unit motion, shape (n_moved,)."""
     nodes, supports = structure.model.nodes, motion.supports or ()
     return [

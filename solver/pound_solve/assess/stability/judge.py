@@ -37,7 +37,7 @@ import numpy as np
 
 from pound_solve.assess.stability.isolated import LIMIT, Findings, Runner
 from pound_solve.assess.stability.scenes import cases
-from pound_solve.assess.stability.scenes.case import STEP, STOREY, Case, every
+from pound_solve.assess.stability.scenes.case import STEP, STOREY, StabilityCase, every
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject
 from pound_solve.integrate.events.within_step import MOVING_ALIKE, REVERSE_RATE
@@ -66,7 +66,7 @@ class JudgedRun:
 
     Attributes
     ----------
-    case : Case
+    case : StabilityCase
     method : str
     end : str
         `RIGHT`, `FLAGGED`, `STOPPED` or `FAULT`.
@@ -77,7 +77,7 @@ class JudgedRun:
     seconds : float
     """
 
-    case: Case
+    case: StabilityCase
     method: str
     end: str
     error: float
@@ -95,7 +95,7 @@ def written(method: str, step: float) -> str:
     return f"{method} DT={step!r}" if catalog().family("method")[method].field("DT") else method
 
 
-def reference(run: Runner, case: Case) -> tuple[Findings, str, float] | None:
+def reference(run: Runner, case: StabilityCase) -> tuple[Findings, str, float] | None:
     """Reference motion of a case, its method, and its possible error as a share; None where there is none.
 
     EXACT; where that stops or loses energy, NEWMARK with steps that are quartered until the motion changes
@@ -140,7 +140,7 @@ PEAKS: Final = "largest "  #: first word of those that are no series in time
 SPRINGS: Final = "spring forces"
 
 
-def judge(run: Runner, case: Case, method: str) -> JudgedRun:
+def judge(run: Runner, case: StabilityCase, method: str) -> JudgedRun:
     """Solve a case by a method and judge the outcome."""
     outcome = run(case, case.deck, written(method, case.step))
 
@@ -169,7 +169,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
 
 
 def compared(
-    run: Runner, case: Case, method: str, result: Findings, right: tuple[Findings, str, float]
+    run: Runner, case: StabilityCase, method: str, result: Findings, right: tuple[Findings, str, float]
 ) -> tuple[Offs, str]:
     """Errors against a reference, restricted to what is `known` of it; and a remark on the restriction."""
     best, by, doubt = right
@@ -194,12 +194,12 @@ def compared(
     return known(offs, errors(other, case.like[1]), best.t, turns(best) & (doubt > 0.0))
 
 
-def whole(case: Case) -> bool:
+def whole(case: StabilityCase) -> bool:
     """Whether the reference of a case is a run of the same deck, so that all quantities are compared."""
     return case.right is None and not case.like[0] and case.compared is every
 
 
-def allowed(case: Case, method: str) -> float:
+def allowed(case: StabilityCase, method: str) -> float:
     """Allowed error of the displacements, as a share of the largest."""
     if method in STEPLESS:
         return EXACT_WITHIN + case.inexact
@@ -276,7 +276,7 @@ def beyond(offs: Offs) -> str:
 
 def matrix(
     families: tuple[str, ...] = FAMILIES,
-    chosen: Callable[[Case], bool] = lambda case: True,
+    chosen: Callable[[StabilityCase], bool] = lambda case: True,
     limit: float = LIMIT,
 ) -> Iterator[JudgedRun]:
     """Solve all cases by all methods.
@@ -296,7 +296,7 @@ def matrix(
     for _ in range(count):
         runners.put(Runner(limit))
 
-    def solved(case: Case) -> list[JudgedRun]:
+    def solved(case: StabilityCase) -> list[JudgedRun]:
         run = runners.get()
         run.kept.clear()
         try:

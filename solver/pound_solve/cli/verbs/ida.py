@@ -41,7 +41,7 @@ def _hunted(args: argparse.Namespace) -> int:
     study = read(document, (hunt.TABLE,))
     with locked(study.out):
         session = Session(study, engine(args.executor, study.workers), retry=args.retry)
-        progress = studies.Progress(args)
+        progress = studies.StudyProgress(args)
         hunt.Hunt(session, aim).carry_out(progress)
         progress.end()
         path = session.write(

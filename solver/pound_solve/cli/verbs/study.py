@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pound_solve.cli import common
-from pound_solve.cli.progress import WIDTH, Progress, StatusLine
+from pound_solve.cli.progress import WIDTH, AnalysisProgress, StatusLine
 
 if TYPE_CHECKING:
-    from pound_solve.assess.stability.scenes.case import Case
+    from pound_solve.assess.stability.scenes.case import StabilityCase
     from pound_solve.assess.study import Plan
 
 SUMMARY = "error against time of every method on this deck, and advice"
@@ -94,7 +94,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
 
 def _plan(args: argparse.Namespace) -> Plan:
     """Plan of the study; items without an option keep their defaults."""
-    from pound_solve.assess.advice import StudyError
+    from pound_solve.assess.advice import MethodStudyError
     from pound_solve.assess.study import Plan
 
     items: dict[str, Any] = {
@@ -105,11 +105,13 @@ def _plan(args: argparse.Namespace) -> Plan:
     for name in ("steps", "tols"):
         words = getattr(args, name)
         if words:
-            values = common.numbers(words.replace(",", " ").split(), f"--{name} takes numbers", StudyError)
+            values = common.numbers(
+                words.replace(",", " ").split(), f"--{name} takes numbers", MethodStudyError
+            )
             items[name] = tuple(sorted(values, reverse=True))
     plan = Plan(**items)
     if plan.repeat < 1 or not plan.longest > 0 or any(x <= 0 for x in (*plan.steps, *plan.tols)):
-        raise StudyError("--repeat, --longest, --steps and --tols must be above zero")
+        raise MethodStudyError("--repeat, --longest, --steps and --tols must be above zero")
     return plan
 
 
@@ -120,7 +122,7 @@ def _stability(args: argparse.Namespace) -> int:
     families = (args.family,) if args.family else judge.FAMILIES
     law = (args.law or "").upper()
 
-    def chosen(case: Case) -> bool:
+    def chosen(case: StabilityCase) -> bool:
         return law in ("", case.law) and not (args.quick and case.heavy)
 
     runs = sum(map(chosen, scenes.cases(families))) * len(judge.methods())
@@ -128,7 +130,7 @@ def _stability(args: argparse.Namespace) -> int:
         near = f"--family {args.family} has" if args.family else "there are"
         text = f"{near} no scenes with the law {args.law}: see pound-solve list"
         return common.complain(text, common.MISTAKES)
-    progress, rows = Progress(False, args.interruption.check), []
+    progress, rows = AnalysisProgress(False, args.interruption.check), []
     for row in judge.matrix(families, chosen):
         rows.append(row)
         doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"

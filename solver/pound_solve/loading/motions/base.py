@@ -1,4 +1,4 @@
-"""Common parts of all ground motions: items of the card, context, and the Motion made from it."""
+"""Common parts of all ground motions: items of the card, context, and the GroundMotion made from it."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from pound_solve.numerics.types import Array
 __all__ = (
     "COMMON",
     "METRE",
+    "GroundMotion",
     "LoadingContext",
-    "Motion",
     "Piecewise",
     "RecordError",
     "common_breaks",
@@ -96,7 +96,7 @@ class LoadingContext:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class GroundMotion:
     """The motion of the ground, or of some supports, in one direction.
 
     Attributes
@@ -143,7 +143,7 @@ class Motion:
             return float(d in self.directions)
         return (self.about[1] - y, x - self.about[0], 1.0)[d]
 
-    def delayed(self, by: float) -> Motion:
+    def delayed(self, by: float) -> GroundMotion:
         """The same motion, later by `by` [T]; before it the ground moves with its velocity at t = 0."""
         lead = self.displacement0 - by * self.velocity0
         closed = self.closed
@@ -187,7 +187,7 @@ def finish(
     displacement0: float = 0.0,
     closed: Closed | None = None,
     weakest: float | None = None,
-) -> Motion:
+) -> GroundMotion:
     """Motion with the common items of its card, its peaks and the warnings about them.
 
     Parameters
@@ -198,10 +198,10 @@ def finish(
         SCALE included.
     context : LoadingContext
     info : mapping
-        The kind's part of `Motion.info`.
+        The kind's part of `GroundMotion.info`.
     velocity0, displacement0 : float, [L/T], [L]
     closed : pair of callables, optional
-        See `Motion`.
+        See `GroundMotion`.
     weakest : float, optional
         Fraction of gravity below which the peak causes a warning.
 
@@ -211,7 +211,7 @@ def finish(
         R405 for a WAVE that contradicts the other items.
     """
     scale = float(card.get("SCALE", 1.0))
-    bare = Motion(
+    bare = GroundMotion(
         card.get("DIRECTION", "X"),
         card.get("SUPPORTS"),
         acceleration,
@@ -263,7 +263,7 @@ def _likely_unit(strength: float, unit: str, context: LoadingContext) -> str:
     return f"it would be {peak:.3g} g if the samples were in {other}: " if _WEAK <= peak <= _STRONG else ""
 
 
-def _check_wave(motion: Motion) -> None:
+def _check_wave(motion: GroundMotion) -> None:
     """Raise RecordError if a travelling wave lacks a speed, supports or a direction."""
     if motion.wave is None:
         return

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError
+from pound_solve.loading.motions.base import COMMON, GroundMotion, LoadingContext, Piecewise, RecordError
 from pound_solve.loading.motions.synthetic import ENVELOPE, envelope, of_samples, samples
 from pound_solve.loading.spectrum import pseudo_acceleration
 from pound_solve.numerics.types import Array
@@ -54,7 +54,7 @@ class Target(NamedTuple):
     xi: float
 
 
-def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMotion:
     """Motion of a MATCHED card; the same SEED gives the same motion.
 
     Parameters

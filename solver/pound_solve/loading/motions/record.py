@@ -15,7 +15,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, finish
+from pound_solve.loading.motions.base import COMMON, GroundMotion, LoadingContext, Piecewise, finish
 from pound_solve.loading.motions.doubts import mispaced
 from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
@@ -89,7 +89,7 @@ def _parsed(text: str, reader: str, options: tuple[tuple[str, Any], ...]) -> Raw
     return raw
 
 
-def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMotion:
     """Motion of a RECORD card; raises as `samples` does."""
     name = str(card_values["FILE"])
     record = samples(card_values, context)

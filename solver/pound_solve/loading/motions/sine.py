@@ -15,7 +15,14 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.base import (
+    COMMON,
+    GroundMotion,
+    LoadingContext,
+    Piecewise,
+    RecordError,
+    finish,
+)
 from pound_solve.numerics.types import Array
 
 _PER_PERIOD: Final = 32
@@ -25,7 +32,7 @@ _MOST_PIECES: Final = 2_000_000
 _Long = np.longdouble
 
 
-def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMotion:
     """Motion of a SINE card.
 
     Parameters

@@ -23,7 +23,14 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.base import (
+    COMMON,
+    GroundMotion,
+    LoadingContext,
+    Piecewise,
+    RecordError,
+    finish,
+)
 from pound_solve.numerics.types import Array
 
 LIKE_G: Final = (0.1, 1.2)  #: usual peaks of earthquakes in units of gravity
@@ -31,7 +38,7 @@ WEAK: Final = 0.06  #: peak in units of gravity below which an earthquake does n
 MOST_SAMPLES: Final = 10_000_000
 
 
-def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMotion:
     """Motion of a SYNTHETIC card; the same SEED gives the same motion.
 
     Parameters
@@ -75,7 +82,7 @@ def of_samples(
     t: Array,
     a: Array,
     facts: Mapping[str, Any],
-) -> Motion:
+) -> GroundMotion:
     """Motion of a card with accelerations `a` [L/T^2] at the times `t`, see `samples`."""
     info = {
         "kind": spec.name,

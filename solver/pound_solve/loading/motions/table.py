@@ -9,10 +9,17 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.base import (
+    COMMON,
+    GroundMotion,
+    LoadingContext,
+    Piecewise,
+    RecordError,
+    finish,
+)
 
 
-def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMotion:
     """Motion of a TABLE card.
 
     Raises

@@ -15,15 +15,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pound_solve.loading.motions.base import Motion
+from pound_solve.loading.motions.base import GroundMotion
 
 
-def fronts(motion: Motion, x: Mapping[int, float]) -> list[Motion]:
+def fronts(motion: GroundMotion, x: Mapping[int, float]) -> list[GroundMotion]:
     """The motions that a wave makes, one for all supports at the same x; the motion itself without a wave.
 
     Parameters
     ----------
-    motion : Motion
+    motion : GroundMotion
     x : mapping of node to float, [L]
         Coordinates of the supports at least.
     """

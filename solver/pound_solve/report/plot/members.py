@@ -116,7 +116,7 @@ def chosen_contacts(results: Results, choice: Choice, refused: bool = True) -> l
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class MemberForces:
     """Forces along one member.
 
     Attributes
@@ -139,7 +139,7 @@ class Line:
     high: dict[str, Array]
 
 
-def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[Line]:
+def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[MemberForces]:
     """Forces along the chosen members, or all: at an instant, or their extremes over the history (of the
     static state where there is none).
 
@@ -170,7 +170,7 @@ def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Itera
                     least, most = sorted(sign * v for v in extremes[number, name])
                     low[q] += share * (least - low[q][end])
                     high[q] += share * (most - high[q][end])
-        yield Line(number, i, j, x, low, high)
+        yield MemberForces(number, i, j, x, low, high)
 
 
 _SIGN: Final = {"M": (-1.0, 1.0), "V": (1.0, -1.0), "N": (1.0, 1.0)}  #: of the end forces at I and J
@@ -202,7 +202,7 @@ def along_member(
     x : ndarray, shape (n,)
         Places as shares of the length: `STATIONS`, and both sides of each point load.
     forces : dict of str to ndarray, shape (nt, n)
-        ``M``, ``V``, ``N`` as `Line` defines them.
+        ``M``, ``V``, ``N`` as `MemberForces` defines them.
     """
     jumps = [a for a, _ in points for _ in range(2)]
     x = np.sort(np.concatenate([np.linspace(0.0, 1.0, STATIONS), jumps]))

@@ -28,7 +28,9 @@ SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 FASTEST: Final = 1000.0
 
 
-def find_mechanisms(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def find_mechanisms(
+    structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]
+) -> list[Diagnostic]:
     """Report buildings of members whose nodes can move although the base is held, as with too many pins."""
     problems = list[Diagnostic]()
     for b, part in parts:
@@ -39,7 +41,7 @@ def find_mechanisms(structure: Structure, parts: Sequence[tuple[Building, Part]]
 
 
 def implausible_periods(
-    structure: Structure, parts: Sequence[tuple[Building, Part]]
+    structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]
 ) -> Iterator[tuple[str, Diagnostic]]:
     """Yield the names of buildings whose first period is implausible for their height, each with a warning.
 
@@ -77,7 +79,7 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
 
 
-def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]) -> list[Diagnostic]:
     """Report histories of fewer than `FEWEST` steps in the first period of every building, and output
     intervals longer than that period.
     """
@@ -97,11 +99,11 @@ def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, Part]]) -
     return problems
 
 
-def supported_parts(structure: Structure) -> list[tuple[Building, Part]]:
+def supported_parts(structure: Structure) -> list[tuple[Building, SupportedPart]]:
     """Return the buildings with a height that the ground shakes along x, with their stiffness, if it can be
     computed.
     """
-    model, pairs = structure.model, list[tuple[Building, Part]]()
+    model, pairs = structure.model, list[tuple[Building, SupportedPart]]()
     if "X" not in shaken(model):
         return pairs
     tall = [b for b in buildings(structure) if stands(model, b.nodes)]
@@ -111,16 +113,16 @@ def supported_parts(structure: Structure) -> list[tuple[Building, Part]]:
     return pairs
 
 
-def _part(structure: Structure, columns: Index) -> Part | None:
+def _part(structure: Structure, columns: Index) -> SupportedPart | None:
     """Stiffness of a building; None if its numbers overflow or the decomposition fails."""
     try:
         with np.errstate(all="ignore"):
-            return Part(structure, columns)
+            return SupportedPart(structure, columns)
     except (np.linalg.LinAlgError, ArithmeticError):
         return None
 
 
-class Part:
+class SupportedPart:
     """Stiffness of a building with open contacts, scaled to a unit diagonal, without unrestrained
     rotations.
     """

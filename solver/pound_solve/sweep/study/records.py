@@ -14,7 +14,7 @@ from pound_solve.catalog import catalog
 from pound_solve.driver import record_card
 from pound_solve.driver.overrides import MEETING
 from pound_solve.loading.motions import record
-from pound_solve.loading.motions.base import LoadingContext, Motion
+from pound_solve.loading.motions.base import GroundMotion, LoadingContext
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, known, load
 from pound_solve.loading.spectrum import pseudo_acceleration
@@ -214,8 +214,8 @@ def scaled(shaking: Shaking) -> Card:
     return replace(card, values={**card.values, "SCALE": shaking.scale})
 
 
-def unscaled(record_file: RecordFile, context: LoadingContext) -> Motion:
+def unscaled(record_file: RecordFile, context: LoadingContext) -> GroundMotion:
     """Motion of a record without scaling."""
     card = card_of(record_file)
-    motion: Motion = card.spec.impl(card.values, context)
+    motion: GroundMotion = card.spec.impl(card.values, context)
     return motion

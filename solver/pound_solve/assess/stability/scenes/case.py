@@ -25,12 +25,12 @@ ZEROS: Final = "EQUAKE\n TABLE POINTS=0,0,10,0\n"
 
 
 def every(t: Array, u: Array) -> Array:
-    """Return all displacements: the default of `Case.compared`."""
+    """Return all displacements: the default of `StabilityCase.compared`."""
     return u
 
 
 @dataclass(frozen=True)
-class Case:
+class StabilityCase:
     """One deck of the matrix.
 
     Attributes

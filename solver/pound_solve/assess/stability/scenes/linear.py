@@ -8,7 +8,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from pound_solve.assess.stability.scenes.case import JUMP, OMEGA, SPIKE, STOREY, ZEROS, Case, damped
+from pound_solve.assess.stability.scenes.case import (
+    JUMP,
+    OMEGA,
+    SPIKE,
+    STOREY,
+    ZEROS,
+    StabilityCase,
+    damped,
+)
 from pound_solve.numerics.types import Array
 
 ONE: Final = """UNITS kN m s
@@ -93,7 +101,7 @@ OUTPUT
 """
 
 
-def linear_scenes() -> Iterator[Case]:
+def linear_scenes() -> Iterator[StabilityCase]:
     """Yield all linear scenes."""
     yield from _one_storey()
     yield from _several_masses()
@@ -101,11 +109,11 @@ def linear_scenes() -> Iterator[Case]:
     yield from _axial_loads()
 
 
-def _case(scene: str, variant: str, deck: str, **given: Any) -> Case:
-    return Case("linear", scene, variant, "", deck, **given)
+def _case(scene: str, variant: str, deck: str, **given: Any) -> StabilityCase:
+    return StabilityCase("linear", scene, variant, "", deck, **given)
 
 
-def _one_storey() -> Iterator[Case]:
+def _one_storey() -> Iterator[StabilityCase]:
     """One storey: damping, steps, stiffness, units."""
     for share in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
         deck = one(damped(share) + KICK)
@@ -130,7 +138,7 @@ def _one_storey() -> Iterator[Case]:
         yield _case("units", length, deck, right=lambda t, x=scale: x * swing(0.0)(t))
 
 
-def _several_masses() -> Iterator[Case]:
+def _several_masses() -> Iterator[StabilityCase]:
     """Two masses: unequal, massless, free, with repeated eigenvalues."""
     for ratio in (1e-8, 1e-4, 1e4, 1e8):
         deck = TWO.format(low=STOREY, high=STOREY, middle=ratio, top=1.0, end=1.0, every=0.05)
@@ -155,7 +163,7 @@ def _several_masses() -> Iterator[Case]:
         )  # fmt: skip
 
 
-def _motions() -> Iterator[Case]:
+def _motions() -> Iterator[StabilityCase]:
     """Resonance and extreme records."""
     sine = f"EQUAKE\n SINE AMPLITUDE=1 OMEGA={OMEGA!r} DURATION=1000\n"
     yield _case(
@@ -185,7 +193,7 @@ def _motions() -> Iterator[Case]:
     )  # fmt: skip
 
 
-def _axial_loads() -> Iterator[Case]:
+def _axial_loads() -> Iterator[StabilityCase]:
     """Columns below and beyond Euler's load."""
     for form in ("PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"):
         for share in (0.999, 1.001, 50.0):

@@ -81,7 +81,7 @@ def _closed(results: Results, name: str, time: Array) -> Flags:
     return closed
 
 
-class Stage:
+class AnimationFigure:
     """A figure in which the frames of a film are shown.
 
     Parameters
@@ -133,7 +133,7 @@ def caption(scene: Film, k: int) -> str:
 
 def animation(results: Results, choice: Choice) -> Any:
     """Draw the first frame."""
-    stage = Stage(film(results, choice))
+    stage = AnimationFigure(film(results, choice))
     stage.show(0)
     return stage.figure
 
@@ -144,7 +144,7 @@ def write(results: Results, choice: Choice, path: Path) -> None:
     if path.suffix == ".html":
         write_text(path, page(animation))
         return
-    stage = Stage(animation)
+    stage = AnimationFigure(animation)
     stage.show(0)
     style.arrange(stage.figure)
     style.film(stage.figure, stage.show, len(animation.time), path, RATE)

@@ -10,7 +10,7 @@ from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
 if TYPE_CHECKING:
-    from pound_solve.loading.motions.base import Motion
+    from pound_solve.loading.motions.base import GroundMotion
 
 TAKES_PART: Final = 1.0  #: share of the mass by which a mode moves with a direction [%]
 
@@ -21,7 +21,7 @@ def rows(run: RunRecord) -> Iterator[Row] | None:
     return _rows(run, motions) if motions else None
 
 
-def _rows(run: RunRecord, motions: list[tuple[int, Motion]]) -> Iterator[Row]:
+def _rows(run: RunRecord, motions: list[tuple[int, GroundMotion]]) -> Iterator[Row]:
     """Rows as of `rows`; equal motions, as a wave brings to several supports, are measured once."""
     from pound_solve.loading import intensity
 
@@ -39,7 +39,7 @@ def _rows(run: RunRecord, motions: list[tuple[int, Motion]]) -> Iterator[Row]:
         yield (f"{n} {name}", m.direction, i.arias, i.d5_75, i.d5_95, i.cav, i.housner, t1, sa)
 
 
-def _first_mode(run: RunRecord, motion: Motion) -> tuple[float, float]:
+def _first_mode(run: RunRecord, motion: GroundMotion) -> tuple[float, float]:
     """Longest period of a mode with mass in the direction [T], pseudo-acceleration of 5 % damping there."""
     from pound_solve.loading.spectrum import pseudo_acceleration
 

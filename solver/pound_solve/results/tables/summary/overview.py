@@ -14,7 +14,7 @@ from pound_solve.results.words import contact_name, damped_part
 
 if TYPE_CHECKING:
     from pound_solve.integrate.protocol import Outcome
-    from pound_solve.loading.motions.base import Motion
+    from pound_solve.loading.motions.base import GroundMotion
 
 FEW = 2  #: most kinds of damping or of contacts listed one by one
 
@@ -72,7 +72,7 @@ def _few(texts: list[str], what: str) -> str:
     return "; ".join(texts) if len(texts) <= FEW else f"{len(texts)} {what}, see the input"
 
 
-def ground_motion(run: RunRecord, motion: Motion) -> str:
+def ground_motion(run: RunRecord, motion: GroundMotion) -> str:
     """Text on a motion: its name and peak."""
     info, units = motion.info, run.model.units
     name = " ".join(str(info[k]) for k in ("name", "component") if info.get(k)) or str(info.get("kind"))
