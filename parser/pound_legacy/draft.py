@@ -62,9 +62,9 @@ class Draft:
         self.report.append(Diagnostic("L605", f"by convention, {reading}", span, _CHECK, "warning"))
         return f"{CONVENTION}: {reading}"
 
-    def lose(self, span: Span, what: str, cure: str = "add it to the new deck by hand") -> str:
+    def lose(self, span: Span, what: str, remedy: str = "add it to the new deck by hand") -> str:
         """Warn that something is not carried over; return the comment that marks it."""
-        self.report.append(Diagnostic("L609", f"not carried over: {what}", span, cure, "warning"))
+        self.report.append(Diagnostic("L609", f"not carried over: {what}", span, remedy, "warning"))
         return f"NOT CARRIED OVER: {what}"
 
     def rest(self, reading: str) -> None:

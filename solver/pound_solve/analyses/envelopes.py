@@ -270,11 +270,11 @@ class ResponseEnvelopes:
         whole = self._whole(motion, s)
         self._all.take(whole, motion.t)
         self.extremes.take(whole, motion.t)
-        return self.told(whole)
+        return self.split_by_kind(whole)
 
     def values(self, motion: Motion) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Motion of nodes, forces of members and sums, as from `take`, at instants between samples."""
-        return self.told(self._whole(motion, self.quantities.inputs(motion.t)))
+        return self.split_by_kind(self._whole(motion, self.quantities.inputs(motion.t)))
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:
         """Values of all quantities, the constant ones included, shape (n, nt)."""
@@ -282,7 +282,7 @@ class ResponseEnvelopes:
         values[self.quantities.place] = self.quantities.values(motion, s)
         return values
 
-    def told(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+    def split_by_kind(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Split the values of all quantities into those of nodes, members and sums."""
         parts = {name: whole[part] for name, part in self.quantities.parts.items()}
         return {q: parts.pop(q) for q in MOTION}, parts.pop("output"), parts

@@ -187,8 +187,8 @@ class _Bench:
         """Reference extrapolated from the ladder of the first of some methods for which that succeeds; the
         trials of all ladders go into `out`, but for the two finest of the reference.
         """
-        told = "without EXACT and LAGUERRE a study needs a method with steps: name one in --methods"
-        why = MethodStudyError(told)
+        message = "without EXACT and LAGUERRE a study needs a method with steps: name one in --methods"
+        why = MethodStudyError(message)
         for method in methods:
             out[method] = ladder = self._ladder(method, None)
             try:

@@ -16,7 +16,7 @@ class StatusLine:
 
     def __init__(self, quiet: bool = False) -> None:
         self.quiet, self.live = quiet, sys.stderr.isatty() and not quiet
-        self._told: set[str] = set()
+        self._printed: set[str] = set()
 
     def show(self, text: str) -> None:
         """Replace the line."""
@@ -29,9 +29,9 @@ class StatusLine:
         """
         if self.live and len(text) <= WIDTH:
             self.show(text)
-        elif not self.quiet and text not in self._told:
+        elif not self.quiet and text not in self._printed:
             self.clear()
-            self._told.add(text)
+            self._printed.add(text)
             print(f"pound-solve: {text}", file=sys.stderr, flush=True)
 
     def note(self, text: str) -> None:
@@ -63,7 +63,7 @@ class AnalysisProgress:
         self.line, self._check = StatusLine(quiet), check
         self.began = self.shown = time.monotonic()
         self.pause, self.first, self.reached, self.runs = QUIET, 0.0, 0.0, 1
-        self.told = self.began
+        self.noted = self.began
 
     def __call__(self, t: float, end: float, doing: str) -> None:
         """Show the time `t` of `end` and an estimate of the remaining time, or the activity `doing`."""
@@ -80,8 +80,8 @@ class AnalysisProgress:
             return
         text = self._state(now, t, end)
         self.line.show(text)
-        if now - self.told > self.pause:
-            self.told, self.pause = now, 2.0 * self.pause
+        if now - self.noted > self.pause:
+            self.noted, self.pause = now, 2.0 * self.pause
             self.line.note(text)
 
     def _state(self, now: float, t: float, end: float) -> str:

@@ -31,7 +31,7 @@ _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
 _DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant digits by format
 _WHOLE: Final = 7  #: number of digits before the point from which on a number gets an exponent
-#: share of the largest value of a block of a column below which rounding prints as zero
+#: fraction of the largest value of a block of a column below which rounding prints as zero
 _DUST: Final = 1e-12
 
 _TINY: Final = 1e-300  #: always prints as zero
@@ -95,12 +95,14 @@ def _banner(results: Results) -> Iterator[str]:
 
 def _warning(results: Results) -> Iterator[str]:
     """Lines of the framed warning above the report of an unfinished analysis."""
-    told = incomplete(results)
-    if not told:
+    sentences = incomplete(results)
+    if not sentences:
         return
     inner = WIDTH - 8
     yield "*" * WIDTH
-    for line in "\n\n".join("\n".join(textwrap.wrap(_plain(text), inner)) for text in told).split("\n"):
+    for line in "\n\n".join("\n".join(textwrap.wrap(_plain(text), inner)) for text in sentences).split(
+        "\n"
+    ):
         yield f"**  {line.ljust(inner)}  **"
     yield "*" * WIDTH
     yield from ("", "")

@@ -48,8 +48,8 @@ STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 #: errors allowed, as shares of the largest value
 EXACT_WITHIN, LAGUERRE_WITHIN, AUTO_WITHIN = 1e-6, 1e-3, 2e-3
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
-ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
-NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
+ROUNDING: Final = 1e-9  #: fraction of the force of a storey below which that of a contact counts as none
+NUDGE: Final = 1e-6  #: fraction of the allowed error by which masses are changed
 #: least change of masses with a reference by steps
 BLIND: Final = 10.0 * MOVING_ALIKE * EVENT_TOLERANCE
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
@@ -151,7 +151,7 @@ def judge(run: Runner, case: StabilityCase, method: str) -> JudgedRun:
         return row(FAULT, outcome.wrong)
     if outcome.stop:
         return row(STOPPED, outcome.stop)
-    says, part = "; ".join(f"{check.name}: {check.told}" for check in outcome.looks), ""
+    says, part = "; ".join(f"{check.name}: {check.value_text}" for check in outcome.looks), ""
     if case.right is not None:
         error = shares(case.compared(outcome.t, outcome.u), case.right(outcome.t))
         offs = {"displacements": (error, allowed(case, method))}

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
+from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
     from pound_deck.model import Units
@@ -47,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--damping", type=_damping, default="5", metavar="X,X,...", help="in percent (default 5)"
     )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write the spectra as CSV")
-    text = f"draw the spectra into a file, ending in {', '.join(common.FORMATS)}"
+    text = f"draw the spectra into a file, ending in {', '.join(IMAGE_FORMATS)}"
     parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
@@ -151,6 +152,6 @@ def _source(name: str, args: argparse.Namespace) -> AccelerationSource:
         source = spectra.of_nodes(results, args.node, args.direction)
         if results.status != "done":
             common.complain(f"warning: {name} ended early, at {results.last_time:g} {results.units.time}")
-    if told := spectra.coarse(source, min(args.periods)):
-        common.complain(f"warning: {name}: {told}")
+    if remark := spectra.coarse(source, min(args.periods)):
+        common.complain(f"warning: {name}: {remark}")
     return source

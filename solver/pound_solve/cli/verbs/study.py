@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from pound_solve.cli import common
 from pound_solve.cli.progress import WIDTH, AnalysisProgress, StatusLine
+from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
     from pound_solve.assess.stability.scenes.case import StabilityCase
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--longest", type=common.finite, metavar="S", help="CPU seconds a run may take (default 5)"
     )
-    text = f"draw error against time into a file, ending in {', '.join(common.FORMATS)}"
+    text = f"draw error against time into a file, ending in {', '.join(IMAGE_FORMATS)}"
     parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
     parser.add_argument(
         "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"

@@ -140,8 +140,8 @@ def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, st
     start, doubts = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
     at, _ = whole.peak()
     if at < start:
-        told = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
-        doubts.append((told, "START", "give an earlier START, or a DURATION to the part that is meant"))
+        message = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
+        doubts.append((message, "START", "give an earlier START, or a DURATION to the part that is meant"))
     if card_values.get("DT") is not None and (wrong := mispaced(whole)):
         doubts.append((wrong, "DT", "DT is the time from one sample to the next in s"))
     return tuple(doubts)

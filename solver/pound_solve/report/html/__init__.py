@@ -92,9 +92,9 @@ def _body(results: Results, sections: Sequence[_PageSection]) -> Iterator[str]:
     units = ", ".join(map(escape, (results.units.force, results.units.length, results.units.time)))
     made = f"; results {results.digest}" if results.digest else ""
     yield f"<p>pound-solve {escape(results.program_version)}; units {units}{made}</p>\n"
-    told = incomplete(results)
-    if told:
-        yield f'<div class="warning">{"".join(f"<p>{escape(text)}</p>" for text in told)}</div>\n'
+    sentences = incomplete(results)
+    if sentences:
+        yield f'<div class="warning">{"".join(f"<p>{escape(text)}</p>" for text in sentences)}</div>\n'
     for s in sections:
         yield f'<section id="{s.place}">\n<h2>{s.heading}</h2>\n{s.body}</section>\n'
     yield "</main>\n"

@@ -10,7 +10,7 @@ from pound_solve.results import Results
 from pound_solve.results.contents import TABLES
 from pound_solve.results.schema import Column
 
-FEW: Final = 1e-12  #: share of a range that a coordinate which does not change may still differ by
+FEW: Final = 1e-12  #: fraction of a range that a coordinate which does not change may still differ by
 
 
 def properties(results: Results) -> list[TablePart]:

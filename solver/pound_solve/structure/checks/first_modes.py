@@ -19,7 +19,7 @@ from pound_solve.structure.structure import Structure
 #: by dashpots, which may include a snubber that ties equipment to a building
 MOST_OWN, MOST_ADDED = 0.2, 10.0
 LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode
-LEAST_ADDED: Final = 1e-3  #: least share of critical damping by dashpots, if there are any
+LEAST_ADDED: Final = 1e-3  #: least fraction of critical damping by dashpots, if there are any
 #: stiffness of a contact over the axial one of the beams behind it; slabs may stiffen them tenfold
 STIFFEST: Final = 300.0
 #: duration of a collision in which sound at 3500 m/s does not cross a column [s]

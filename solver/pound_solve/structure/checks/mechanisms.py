@@ -20,9 +20,9 @@ from pound_solve.structure.checks.supports import ROUNDING, resisted, shaken, so
 from pound_solve.structure.dofs import DIRECTIONS
 from pound_solve.structure.structure import Structure
 
-MOVES: Final = 0.1  #: share of a motion's largest displacement above which a node counts as moving
+MOVES: Final = 0.1  #: fraction of a motion's largest displacement above which a node counts as moving
 FEWEST: Final = 10  #: steps in a first period
-SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
+SAME: Final = 1e-6  #: fraction of a motion by which that of one body may differ
 #: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid
 #: block of concrete 2200
 FASTEST: Final = 1000.0

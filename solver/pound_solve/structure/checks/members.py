@@ -33,8 +33,8 @@ LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
 MOST_ROTATION: Final = 0.2  #: at yield [rad]; joints of timber have 0.05
 FAR: Final = 2.0  #: depth over the size of a building; a stick model of a whole building stays below
 WIDEST: Final = 8.0  #: width over depth of a section
-MOST_HARDENING: Final = 0.2  #: share of a section's stiffness that remains after yield
-ROUNDING: Final = 1e-9  #: share of a length
+MOST_HARDENING: Final = 0.2  #: fraction of a section's stiffness that remains after yield
+ROUNDING: Final = 1e-9  #: fraction of a length
 MOST_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
 
 

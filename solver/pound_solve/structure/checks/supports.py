@@ -23,7 +23,7 @@ from pound_solve.structure.structure import Structure
 #: DOFs inside a member: those that turn, and those at its end I
 TURNS: Final = (INSIDE[2], INSIDE[5])
 ENDS_AT_I: Final = (INSIDE[0], INSIDE[2])
-ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is zero
+ROUNDING = 1e-9  #: fraction of its terms below which a sum that should be zero is zero
 
 
 def unsupported(structure: Structure) -> list[Diagnostic]:

@@ -21,7 +21,7 @@ NEWTON: Final[Mapping[str, float]] = MappingProxyType(
 #: modulus of elasticity from and to [Pa], and weight by volume [N/m^3], of concrete and of steel
 MATERIALS: Final = ((15e9, 60e9, 24e3), (180e9, 220e9, 77e3))
 EARTH: Final = 9.81  #: [m/s^2]
-SPUN: Final = 0.1  #: share of gravity by which that of a model in a centrifuge differs at least
+SPUN: Final = 0.1  #: fraction of gravity by which that of a model in a centrifuge differs at least
 #: share of beams and columns in the whole weight: 0.1 to 0.45 with slabs and walls, ten times that where
 #: masses are written in place of weights
 BARE: Final = 0.6
@@ -60,20 +60,20 @@ def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
         bare = _bare_weight(model, b, force * metre**2, metre)
         strain = _strain(model, b, weight / force)
         if bare > BARE * weight and beams & set(b.nodes):
-            told = (
+            finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
                 f"{bare / force:.3g} {model.units.force} by A and E"
             )
-            yield b.name, _weights(model, b, told, "; leave it if the frame bears no slab")
+            yield b.name, _weights(model, b, finding, "; leave it if the frame bears no slab")
         elif strain > SQUASHED:
-            told = (
+            finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, which shortens its columns by "
                 f"{1e3 * strain:.2g} per mille: columns bear less than one"
             )
-            yield b.name, _weights(model, b, told)
+            yield b.name, _weights(model, b, finding)
 
 
-def _weights(model: Model, b: Building, told: str, unless: str = "") -> Diagnostic:
+def _weights(model: Model, b: Building, finding: str, unless: str = "") -> Diagnostic:
     heavy = {n for f in b.floors for n in f.nodes}
     card = next((c for c in model.weights if heavy & set(c["NODES"])), None)
     place = card.place("WX") if card else model.nodes[b.nodes[0]].span
@@ -81,7 +81,7 @@ def _weights(model: Model, b: Building, told: str, unless: str = "") -> Diagnost
         f"WEIGHTS are forces in {model.units.force}, mass times gravity; "
         f"gravity is {model.gravity:g} here, A is in {model.units.text('L^2')}{unless}"
     )
-    return Diagnostic("P361", f"{b.name!r} {told}", place, hint, "warning")
+    return Diagnostic("P361", f"{b.name!r} {finding}", place, hint, "warning")
 
 
 def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> float:

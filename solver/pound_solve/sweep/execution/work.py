@@ -134,7 +134,7 @@ def numbers() -> count[int]:
 def _carried_out(run: StudyRun, settings: Settings) -> JournalEntry:
     """Execute a run within its limits; any failure becomes part of the entry, see `carry_out`."""
     began = time.process_time()
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             with within(settings.seconds, settings.memory) as clock:
@@ -151,8 +151,8 @@ def _carried_out(run: StudyRun, settings: Settings) -> JournalEntry:
         except Exception as err:
             text = f"a fault of the program, not of the deck: {type(err).__name__}: {err}"
             entry = JournalEntry(run.identity, FAILED, text)
-    if told:
-        text = f"arithmetic at the limits of floating point ({told[0].message})"
+    if caught:
+        text = f"arithmetic at the limits of floating point ({caught[0].message})"
         entry = replace(entry, doubt="; ".join(filter(None, [entry.doubt, text])))
     entry = replace(entry, cpu=time.process_time() - began)
     if settings.journal is not None:

@@ -233,8 +233,8 @@ class _Reader:
         side = {n: self._values(("zip", n)) for n in self._table("zip")}
         lengths = {n: len(v) for n, v in side.items()}
         if len(set(lengths.values())) > 1:
-            told = ", ".join(f"{n} has {k}" for n, k in lengths.items())
-            document.mistake("S605", f"lists under zip are of one length: {told}", ("zip",))
+            counts = ", ".join(f"{n} has {k}" for n, k in lengths.items())
+            document.mistake("S605", f"lists under zip are of one length: {counts}", ("zip",))
         rows = self._cases()
         parts = [*grid]
         if side:
@@ -295,11 +295,11 @@ class _Reader:
             return
         for deck in decks:
             read = read_deck(Request(deck, dict(combinations[0])))
-            self._told(read.diagnostics, read.files)
+            self._take_diagnostics(read.diagnostics, read.files)
             if read.model is not None:
                 self.models[deck] = read.model
 
-    def _told(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
+    def _take_diagnostics(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         """Add the mistakes of a deck to the study's; that of a value is placed at the item that sets it."""
         for d in map(self._here, diagnostics):
             if d.severity == "error" and d not in self.document.diagnostics:
@@ -328,7 +328,7 @@ class _Reader:
         try:
             ready = prepare(request_of(replace(case, params=combinations[0]), motion))
         except DeckError as err:
-            self._told(err.diagnostics, err.files)
+            self._take_diagnostics(err.diagnostics, err.files)
             return
         self.models[case.deck] = ready.model
         self.warned += map(self._here, ready.warnings)
@@ -393,7 +393,7 @@ class _Reader:
         deck = read_deck(request_of(case))
         model = deck.model
         if model is None:
-            self._told(deck.diagnostics, deck.files)
+            self._take_diagnostics(deck.diagnostics, deck.files)
             return {}, ""
         sources = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
         context = loading.context(model, request_of(case))

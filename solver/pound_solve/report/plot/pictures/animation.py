@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from pound_solve.numerics.types import Array, Flags
+from pound_solve.report.formats import ANIMATION_FORMATS
 from pound_solve.report.plot import style
 from pound_solve.report.plot.geometry import (
     SHARE,
@@ -20,7 +21,7 @@ from pound_solve.report.plot.geometry import (
     displacements,
     draw_wall,
 )
-from pound_solve.report.plot.schema import MOVING, Choice, Picture
+from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 from pound_solve.results.whole_file import write_text
 
@@ -183,6 +184,6 @@ SPEC = Picture(
     needs=("node/u", "nodes", "elements"),
     draw=animation,
     options=("between",),
-    endings=MOVING,
+    endings=ANIMATION_FORMATS,
     write=write,
 )

@@ -13,9 +13,9 @@ from pound_solve.report.plot.members import QUANTITIES, MemberForces, lines
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
-SHARE = 0.11  #: largest value as a share of the structure's size
+SHARE = 0.11  #: largest value as a fraction of the structure's size
 MOST = 60  #: members whose values are written, those with the largest
-WIDEST = 0.35  #: and no more than this share of a middling member's length
+WIDEST = 0.35  #: and no more than this fraction of a middling member's length
 UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 
@@ -88,10 +88,10 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[MemberForces], qu
     for line in order[:MOST]:
         _values(axes, line, quantity, factor, 0.02 * top)
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
-    told = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
+    remarks = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
         not one
     )
-    axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(told)}")
+    axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(remarks)}")
 
 
 def _outline(line: MemberForces, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
@@ -104,15 +104,15 @@ def _outline(line: MemberForces, values: Array, quantity: str, factor: float) ->
 
 def _values(axes: Any, line: MemberForces, quantity: str, factor: float, least: float) -> None:
     """Label the largest and the smallest value of a member, if they differ and are not small."""
-    told: list[float] = []
+    labelled: list[float] = []
     for values, at in (
         (line.high[quantity], int(np.argmax(line.high[quantity]))),
         (line.low[quantity], int(np.argmin(line.low[quantity]))),
     ):
         value = float(values[at])
-        if abs(value) < least or any(abs(value - other) < least for other in told):
+        if abs(value) < least or any(abs(value - other) < least for other in labelled):
             continue
-        told.append(value)
+        labelled.append(value)
         _, edge = _outline(line, values, quantity, factor)
         labels.label(axes, edge[:, at], _text(value), fontsize=6)
 

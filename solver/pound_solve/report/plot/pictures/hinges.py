@@ -24,7 +24,7 @@ DUCTILITY = (
     (1.0, "1 to 2"),
     (-math.inf, "not yielded"),
 )
-INWARDS = 0.07  #: of a hinge from the end of its member, as a share of its length
+INWARDS = 0.07  #: of a hinge from the end of its member, as a fraction of its length
 
 
 def hinges(results: Results, choice: Choice) -> Any:
