@@ -21,9 +21,9 @@ _KEYWORDS: Final = (*NAMES, *(spec.name for spec in CARDS))
 class Outline:
     """Rows of a deck, sorted into sections and single cards.
 
-    `broken` names the sections with unreadable rows, and `gone` those of them whose unreadable rows define
-    unknown names, so that references cannot be checked.  `maimed` are labels of property sets whose rows
-    are unreadable.
+    `unreadable_sections` are names of sections with unreadable rows, and `incomplete_sections` those of
+    them whose unreadable rows define unknown names, so that references cannot be checked.
+    `unreadable_props` are labels of property sets whose rows are unreadable.
     """
 
     catalog: Catalog
@@ -32,9 +32,9 @@ class Outline:
     single: dict[str, ParsedLine] = field(default_factory=dict)
     definitions: dict[str, Definition] = field(default_factory=dict)
     lost: set[str] = field(default_factory=set)
-    broken: set[str] = field(default_factory=set)
-    gone: set[str] = field(default_factory=set)
-    maimed: set[str] = field(default_factory=set)
+    unreadable_sections: set[str] = field(default_factory=set)
+    incomplete_sections: set[str] = field(default_factory=set)
+    unreadable_props: set[str] = field(default_factory=set)
     _section: str | None = None
     _skipping: bool = False
 
@@ -69,11 +69,11 @@ class Outline:
 
     def lose(self, section: str, label: str = "") -> None:
         """Record that a section has lost a row to a mistake, with the row's first label, if known."""
-        self.broken.add(section)
+        self.unreadable_sections.add(section)
         if section == "PROPS" and label:
-            self.maimed.add(label)
+            self.unreadable_props.add(label)
         else:
-            self.gone.add(section)
+            self.incomplete_sections.add(section)
 
     def lose_all(self) -> None:
         """Record that rows of any section may be lost."""

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pound_deck.build import build
 from pound_deck.cards import parse, parse_items
 from pound_deck.checks import run_checks
-from pound_deck.diagnostics import Diagnostic, Mistake, doubted, has_errors, hints, suggest
+from pound_deck.diagnostics import Diagnostic, Mistake, has_errors, hints, suggest, unsuppressed
 from pound_deck.expressions import Definition, Expression, ExpressionStep, Value, resolve
 from pound_deck.model import Model, Span
 from pound_deck.outline import Outline
@@ -97,7 +97,9 @@ def _read(
         texts = {}
     params = _params(outline, texts, report)
     model, cards = build(outline, params, catalog, dict(files), report)
-    report += run_checks(model, cards, outline.broken, outline.gone, outline.maimed)
+    report += run_checks(
+        model, cards, outline.unreadable_sections, outline.incomplete_sections, outline.unreadable_props
+    )
     if unread:  # names may be defined in unread files
         report[:] = [d for d in report if d.code not in ("P222", "P234")]
     order = {name: k for k, name in enumerate(files)}
@@ -106,7 +108,7 @@ def _read(
             (order.get(d.span.file, -1), d.span.line, d.span.column) if d.span else (len(order), 0, 0)
         )
     )
-    report[:] = doubted(report, model.meant)
+    report[:] = unsuppressed(report, model.meant)
     return (None if has_errors(report) else model), report, {**files, **texts}
 
 

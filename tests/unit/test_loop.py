@@ -17,7 +17,6 @@ from pound_solve.assess.law_test import (
     AXES,
     LawTestError,
     LoopPoint,
-    has_loop,
     law_of,
     protocol,
     specimen,
@@ -28,6 +27,7 @@ from pound_solve.catalog import specs
 from pound_solve.cli.main import main
 from pound_solve.laws.automaton import Law, drive, transitions
 from pound_solve.report import text_plot
+from samples import has_loop
 
 LAWS = [s for s in specs() if s.family in AXES and has_loop(s)]
 

@@ -138,15 +138,6 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
     return spring, card
 
 
-def has_loop(spec: Spec) -> bool:
-    """Whether a rule or contact law has a loop to draw: ELASTIC and rigid contacts have none."""
-    try:
-        specimen(spec)
-    except LawTestError:
-        return False
-    return True
-
-
 def protocol(spring: LawSpring) -> list[float]:
     """Deformations of cycles to growing ductilities; closures and openings of a contact.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pound_deck.diagnostics import Diagnostic, doubted, has_errors, render
+from pound_deck.diagnostics import Diagnostic, has_errors, render, unsuppressed
 from pound_deck.model import Model
 from pound_solve.analyses import static
 from pound_solve.analyses.tangent_solution import InstabilityError
@@ -91,7 +91,7 @@ def ground(request: Request, deck: ReadDeck | None = None) -> Ground:
     remarks = deck.moved(remarks, request.deck)
     if model is None or has_errors(remarks):
         raise DeckError(remarks, deck.files)
-    return Ground(model, tuple(motions), tuple(doubted(remarks, model.meant)), deck.files)
+    return Ground(model, tuple(motions), tuple(unsuppressed(remarks, model.meant)), deck.files)
 
 
 def prepare(request: Request) -> Prepared:
@@ -131,7 +131,7 @@ def assembled(
         remarks += [*err.diagnostics, *_causes(model)]
     remarks += overwritten(model, request, context)
     saved = loading.saved_state(model, request, motions, forces, remarks)
-    remarks = doubted(remarks, model.meant)
+    remarks = unsuppressed(remarks, model.meant)
     if has_errors(remarks) or structure is None:
         raise DeckError(remarks, files)
     return Prepared(model, tuple(motions), tuple(forces), structure, tuple(remarks), files, saved)
@@ -159,7 +159,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
     if has_errors(remarks):
         raise DeckError(remarks, ready.files)
     return replace(
-        ready, model=model, motions=tuple(motions), warnings=tuple(doubted(remarks, model.meant))
+        ready, model=model, motions=tuple(motions), warnings=tuple(unsuppressed(remarks, model.meant))
     )
 
 

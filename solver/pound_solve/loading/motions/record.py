@@ -130,7 +130,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMoti
             "notes": raw.notes,
             "cuts": _cuts(raw, card_values),
         },
-        weakest=_USED if raw.unit is None and scale == 1.0 else None,
+        weakest=_LEAST_PLAUSIBLE_PEAK if raw.unit is None and scale == 1.0 else None,
     )
 
 
@@ -200,7 +200,7 @@ def step(raw: RawRecord) -> float | None:
     return float(f"{mean:.9g}") if np.abs(steps - mean).max() <= 0.01 * mean else None
 
 
-_USED: Final = 0.05  #: fraction of gravity above which an unscaled record is plausible
+_LEAST_PLAUSIBLE_PEAK: Final = 0.05  #: fraction of gravity above which an unscaled record is plausible
 
 #: items that select a part of the file and its time
 FIELDS: Final = (

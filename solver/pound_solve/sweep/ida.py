@@ -72,7 +72,7 @@ def aim(document: Document) -> Aim:
     )
 
 
-class Hunt:
+class IncrementalAnalysis:
     """Incremental dynamic analysis as rounds of runs, in each the next level of every record.
 
     Parameters
