@@ -95,9 +95,9 @@ def _between(before: LegacyNode, after: LegacyNode, draft: Draft) -> list[Legacy
     draft.doubt(after.row.span, f"{what}, with their supports")
     nodes = []
     for k in range(1, count):
-        share = k / count
-        x = before.x + share * (after.x - before.x)
-        y = before.y + share * (after.y - before.y)
+        fraction = k / count
+        x = before.x + fraction * (after.x - before.x)
+        y = before.y + fraction * (after.y - before.y)
         nodes.append(LegacyNode(before.id + k, x, y, after.codes, after.masters, after.row))
     return nodes
 

@@ -53,8 +53,8 @@ def extrapolated(method: str, ladder: Sequence[MethodTrial]) -> Reference:
         raise MethodStudyError(f"a reference needs three completed runs of {method}: {why}")
 
     def limit(coarse: MethodTrial, fine: MethodTrial) -> Peaks:
-        share = 1.0 / ((fine.steps / coarse.steps) ** ORDER - 1.0)
-        return {k: x + share * (x - coarse.peaks[k]) for k, x in fine.peaks.items()}
+        weight = 1.0 / ((fine.steps / coarse.steps) ** ORDER - 1.0)
+        return {k: x + weight * (x - coarse.peaks[k]) for k, x in fine.peaks.items()}
 
     best, before = limit(*done[-2:]), limit(*done[-3:-1])
     return Reference(best, errors(before, best), f"{method} extrapolated from {done[-2].setting} and "

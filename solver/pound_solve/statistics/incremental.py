@@ -180,8 +180,8 @@ def capacity(
         if point.demand >= demand:
             if in_steps or not (below.demand or (from_rest and not below.level)):
                 return below.level, point.level
-            share = (demand - below.demand) / (point.demand - below.demand)
-            level = below.level + share * (point.level - below.level)
+            fraction = (demand - below.demand) / (point.demand - below.demand)
+            level = below.level + fraction * (point.level - below.level)
             return level, level
     return collapse(points, rules)
 

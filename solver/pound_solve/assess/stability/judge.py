@@ -8,7 +8,7 @@ The right answer is the closed form where there is one; else that of EXACT on a 
 finer; for curved laws, which EXACT does not support, that of NEWMARK with steps so short that a quarter of
 them changes nothing.  Displacements and the forces of springs are compared at all output times, of contacts
 the largest force (one that jumps by a dashpot has no value at the instant of touch).  The allowed error of
-stepping methods is the share that the case states, that of EXACT and TAYLOR is `EXACT_WITHIN`, that of
+stepping methods is the fraction that the case states, that of EXACT and TAYLOR is `EXACT_WITHIN`, that of
 LAGUERRE `LAGUERRE_WITHIN`.  AUTO is judged by its tolerance: its peaks by `AUTO_WITHIN`, its histories like
 those of stepping methods.
 
@@ -52,7 +52,7 @@ ROUNDING: Final = 1e-9  #: fraction of the force of a storey below which that of
 NUDGE: Final = 1e-6  #: fraction of the allowed error by which masses are changed
 #: least change of masses with a reference by steps
 BLIND: Final = 10.0 * MOVING_ALIKE * EVENT_TOLERANCE
-SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
+SETTLED: Final = 1e-3  #: fraction by which a reference by steps may still change when they are quartered
 MOST_STEPS: Final = 1e6  #: most steps of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"
 PARTLY: Final = "compared as far as the answer is known"
@@ -71,7 +71,7 @@ class JudgedRun:
     end : str
         `RIGHT`, `FLAGGED`, `STOPPED` or `FAULT`.
     error : float
-        The largest of displacements, as a share of the largest; NaN where nothing was compared.
+        The largest of displacements, as a fraction of the largest; NaN where nothing was compared.
     says : str
         The message, or the fault.
     seconds : float
@@ -96,7 +96,7 @@ def written(method: str, step: float) -> str:
 
 
 def reference(run: Runner, case: StabilityCase) -> tuple[Findings, str, float] | None:
-    """Reference motion of a case, its method, and its possible error as a share; None where there is none.
+    """Reference motion of a case, its method, and its possible error as a fraction; None for none.
 
     EXACT; where that stops or loses energy, NEWMARK with steps that are quartered until the motion changes
     no more.
@@ -124,15 +124,15 @@ def reference(run: Runner, case: StabilityCase) -> tuple[Findings, str, float] |
 
 
 def shares(x: Array, right: Array) -> Array:
-    """Largest error at each time, as a share of the largest right value."""
+    """Largest error at each time, as a fraction of the largest right value."""
     size, off = np.abs(right).max(initial=0.0), np.abs(x - right)
     off = off.reshape(len(off), math.prod(off.shape[1:]))
     return np.asarray((off / size if size else off).max(axis=1, initial=0.0))
 
 
-def nudged(deck: str, share: float) -> str:
-    """Deck whose masses are greater by a share, as far as they are given as weights."""
-    return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + share)!r}", deck)
+def nudged(deck: str, fraction: float) -> str:
+    """Deck whose masses are greater by a fraction, as far as they are given as weights."""
+    return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + fraction)!r}", deck)
 
 
 Offs = dict[str, tuple[Array, float]]  #: errors of quantities, and the allowed error of each
@@ -187,8 +187,8 @@ def compared(
     offs = errors(result, 1.0)
     if not beyond(offs):
         return offs, ""
-    share = max(NUDGE * within, BLIND if doubt else 0.0)
-    other = run(case, nudged(case.like[0] or case.deck, share), by)
+    fraction = max(NUDGE * within, BLIND if doubt else 0.0)
+    other = run(case, nudged(case.like[0] or case.deck, fraction), by)
     if len(other.t) != len(best.t):
         return offs, ""
     return known(offs, errors(other, case.like[1]), best.t, turns(best) & (doubt > 0.0))
@@ -200,7 +200,7 @@ def whole(case: StabilityCase) -> bool:
 
 
 def allowed(case: StabilityCase, method: str) -> float:
-    """Allowed error of the displacements, as a share of the largest."""
+    """Allowed error of the displacements, as a fraction of the largest."""
     if method in STEPLESS:
         return EXACT_WITHIN + case.inexact
     if method == "LAGUERRE":

@@ -160,7 +160,7 @@ class DrawnStructure:
                 axes.plot(*self.place[node], "o", color="0.2", markersize=size, zorder=4)
 
     def view(self, room: float = 0.06) -> tuple[Array, Array]:
-        """Corners of what a picture shows: `room` around the structure as a share of its size; a slender
+        """Corners of what a picture shows: `room` around the structure as a fraction of its size; a slender
         structure gets more.
         """
         half = np.maximum(0.5 * (self.high - self.low) + room * self.size, SLENDER * self.size)
@@ -168,7 +168,7 @@ class DrawnStructure:
         return middle - half, middle + half
 
     def frame(self, axes: Any, room: float = 0.06) -> None:
-        """Set equal scales and limits with `room` around the structure, a share of its size."""
+        """Set equal scales and limits with `room` around the structure, a fraction of its size."""
         (x0, y0), (x1, y1) = self.view(room)
         axes.set_xlim(x0, x1)
         axes.set_ylim(y0, y1)
@@ -220,9 +220,9 @@ def contact_name(element: Any) -> str:
     return str(element["name"] or element["element"])
 
 
-def apart(share: float = APART) -> Callable[[float, float], float]:
-    """Distance of neighbours as a share of the structure's size, for pictures without displacements."""
-    return lambda gap, size: share * size
+def apart(fraction: float = APART) -> Callable[[float, float], float]:
+    """Distance of neighbours as a fraction of the structure's size, for pictures without displacements."""
+    return lambda gap, size: fraction * size
 
 
 class Displacements(NamedTuple):
@@ -281,7 +281,7 @@ def draw_wall(axes: Any, front: Array, across: Array, half: float) -> None:
     ends = front + half * np.array([along, -along])
     look = {"color": style.RED, "linestyle": "-"}
     axes.plot(*ends.T, **look, linewidth=1.4)
-    for share in np.linspace(0.0, 1.0, HATCHES):
-        foot = ends[0] + share * (ends[1] - ends[0])
+    for fraction in np.linspace(0.0, 1.0, HATCHES):
+        foot = ends[0] + fraction * (ends[1] - ends[0])
         back = foot + 0.4 * half * (across + along)
         axes.plot(*zip(foot, back), **look, linewidth=0.7)

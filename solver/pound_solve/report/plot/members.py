@@ -125,7 +125,7 @@ class MemberForces:
     i, j : ndarray, shape (2,)
         Ends of the flexible length [L].
     x : ndarray, shape (n,)
-        Places between them, as shares of that length.
+        Places between them, as fractions of that length.
     low, high : dict of str to ndarray, shape (n,)
         Smallest and largest ``M`` (positive where the member sags: tension on the right of the line from I
         to J) [F L], ``V`` (positive where it turns the member clockwise) and ``N`` (tension) [F].
@@ -165,11 +165,11 @@ def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Itera
         low = {q: v.min(axis=0) for q, v in forces.items()}
         high = {q: v.max(axis=0) for q, v in forces.items()}
         for q, (_, *ends) in ((q, QUANTITIES[q]) for q in forces):
-            for end, name, sign, share in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
+            for end, name, sign, fraction in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
                 if (number, name) in extremes:
                     least, most = sorted(sign * v for v in extremes[number, name])
-                    low[q] += share * (least - low[q][end])
-                    high[q] += share * (most - high[q][end])
+                    low[q] += fraction * (least - low[q][end])
+                    high[q] += fraction * (most - high[q][end])
         yield MemberForces(number, i, j, x, low, high)
 
 
@@ -195,7 +195,7 @@ def along_member(
     along : ndarray, shape (2,)
         Direction from I to J.
     points : sequence of (place, force)
-        Point loads: share of the length from I, and force along global x and y [F].
+        Point loads: fraction of the length from I, and force along global x and y [F].
 
     Returns
     -------

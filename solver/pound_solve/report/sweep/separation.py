@@ -55,8 +55,8 @@ def probabilities(groups: Sequence[NeededGaps], options: Options) -> Iterator[Ro
         for name, source, gap in (*((r.name, r.source, x) for r, x in zip(RULES, g.rules)), *asked):
             count, total = g.contacts(gap)
             if math.isfinite(gap):
-                interval = share(count, total, options.level)
-                yield g.case, g.level, g.contact, name, source, gap, count, total, *interval, g.by_fit(gap)
+                estimate = share(count, total, options.level)
+                yield g.case, g.level, g.contact, name, source, gap, count, total, *estimate, g.by_fit(gap)
 
 
 def _steps(g: NeededGaps) -> list[float]:

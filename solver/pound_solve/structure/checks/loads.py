@@ -112,7 +112,7 @@ def misloaded(structure: Structure) -> list[Diagnostic]:
 
 
 def _lifted(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """Report upward loads that exceed a share of the downward ones."""
+    """Report upward loads that exceed a fraction of the downward ones."""
     unit = structure.model.units.force
     up = sum(load.y for load in loads if load.y > 0.0)
     press = -sum(load.y for load in loads if load.y < 0.0)

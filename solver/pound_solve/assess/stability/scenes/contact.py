@@ -243,9 +243,9 @@ class _Contacts:
 
     def damping_and_symmetry(self) -> Iterator[StabilityCase]:
         """Damped storeys, and two contacts that close at one instant."""
-        for share in (0.0, 1.0, 10.0):
-            deck = pair(self.plain, damping=damped(share))
-            yield self.case("damping of the storeys over critical", f"{share:g}", deck)
+        for xi in (0.0, 1.0, 10.0):
+            deck = pair(self.plain, damping=damped(xi))
+            yield self.case("damping of the storeys over critical", f"{xi:g}", deck)
         deck = TWICE.format(law=self.plain)
         yield self.case("two contacts at the same instant", "symmetric", deck, step=STEP / 2)
 

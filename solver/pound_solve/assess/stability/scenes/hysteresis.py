@@ -111,10 +111,8 @@ class _Springs:
             yield self.case("falling branch to collapse", "capped", deck)
         deck = storeys(self.plain, end=20.0, every=0.5)
         yield self.case("resonance", "20 periods", deck, step=STEP / 8)  # the errors of the periods add up
-        for share in (1.0, 10.0):
-            yield self.case(
-                "damping over critical", f"{share:g}", storeys(self.plain, damping=damped(share))
-            )
+        for xi in (1.0, 10.0):
+            yield self.case("damping over critical", f"{xi:g}", storeys(self.plain, damping=damped(xi)))
         for name, motion in (("a spike", SPIKE), ("a step", JUMP), ("zeros", ZEROS)):
             yield self.case("records", name, storeys(self.plain, motion=motion.split("\n")[1]))
 

@@ -44,14 +44,14 @@ def one(
     return ONE.format(more=more, end=end, every=every, k=k, mass=mass)
 
 
-def swing(share: float, omega: float = OMEGA) -> Callable[[Array], Array]:
-    """Closed form of the free vibration after a unit velocity with a `share` of critical damping."""
+def swing(xi: float, omega: float = OMEGA) -> Callable[[Array], Array]:
+    """Closed form of the free vibration after a unit velocity with a damping ratio `xi` [-]."""
 
     def motion(t: Array) -> Array:
-        decay, w = share * omega, omega * math.sqrt(abs(1.0 - share * share))
-        if share < 1.0:
+        decay, w = xi * omega, omega * math.sqrt(abs(1.0 - xi * xi))
+        if xi < 1.0:
             return np.asarray(np.exp(-decay * t) * np.sin(w * t) / w)[:, None]
-        if share == 1.0:
+        if xi == 1.0:
             return np.asarray(np.exp(-decay * t) * t)[:, None]
         slow = -omega * omega / (decay + w)
         return np.asarray(np.exp(slow * t) * -np.expm1(-2 * w * t) / (2 * w))[:, None]
@@ -115,10 +115,10 @@ def _case(scene: str, variant: str, deck: str, **given: Any) -> StabilityCase:
 
 def _one_storey() -> Iterator[StabilityCase]:
     """One storey: damping, steps, stiffness, units."""
-    for share in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
-        deck = one(damped(share) + KICK)
-        ratio = f"{share:.9g}"
-        yield _case("damping over critical", ratio, deck, right=swing(share), heavy=share > 1e5)
+    for xi in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
+        deck = one(damped(xi) + KICK)
+        ratio = f"{xi:.9g}"
+        yield _case("damping over critical", ratio, deck, right=swing(xi), heavy=xi > 1e5)
     for step in (1e-9, 1e-6, 1e-4, 0.01, 0.2, 1.0):
         end = 500 * step if step < 1e-5 else max(3.0, 3 * step)
         within = min(2.0 * (OMEGA * step) ** 2 * OMEGA * end / 12 + 1e-9, 0.05)
@@ -152,14 +152,14 @@ def _several_masses() -> Iterator[StabilityCase]:
     yield _case("rigid-body modes", "moving on", free, right=lambda t: t[:, None])
     pushed = free.replace("ANALYSIS", "LOADS\n 2,3 FX=2\nANALYSIS").replace("METHOD=", "FROM=REST METHOD=")
     yield _case("rigid-body modes", "pushed", pushed, right=lambda t: (t + t * t)[:, None])
-    for share in (0.0, 1.0):
-        deck = one(damped(share) + "INITIAL\n 2,3 VX=1\n").replace(
+    for xi in (0.0, 1.0):
+        deck = one(damped(xi) + "INITIAL\n 2,3 VX=1\n").replace(
             "ELEMENTS", " 3 1 1 FIX=YR\nELEMENTS\n 2 SPR 1 3"
         )
         deck = deck.replace(" 2 1.0\n", " 2,3 1.0\n").replace("NODES=2\n", "NODES=2,3\n")
         yield _case(
-            "repeated eigenvalues", "defective" if share else "undamped", deck,
-            right=lambda t, s=share: np.tile(swing(s)(t), 2),
+            "repeated eigenvalues", "defective" if xi else "undamped", deck,
+            right=lambda t, s=xi: np.tile(swing(s)(t), 2),
         )  # fmt: skip
 
 
@@ -196,10 +196,10 @@ def _motions() -> Iterator[StabilityCase]:
 def _axial_loads() -> Iterator[StabilityCase]:
     """Columns below and beyond Euler's load."""
     for form in ("PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"):
-        for share in (0.999, 1.001, 50.0):
+        for load_ratio in (0.999, 1.001, 50.0):
             euler = math.pi**2 / 4 * 100
             yield _case(
                 "axial load over Euler's",
-                f"{form} {share:g}",
-                LEANING.format(form=form, push=-share * euler),
+                f"{form} {load_ratio:g}",
+                LEANING.format(form=form, push=-load_ratio * euler),
             )

@@ -83,8 +83,8 @@ def place(s: DrawnStructure, element: int, component: str) -> Array:
     if not e["j"]:
         return i
     j = s.place[int(e["j"])]
-    share = {"I": INWARDS, "J": 1.0 - INWARDS}.get(component.split()[-1], 0.5)
-    at: Array = i + share * (j - i)
+    fraction = {"I": INWARDS, "J": 1.0 - INWARDS}.get(component.split()[-1], 0.5)
+    at: Array = i + fraction * (j - i)
     return at
 
 
