@@ -13,7 +13,7 @@ from kernels import steps_alone
 from pound_deck.reader import read_text
 from pound_solve.analyses.cells import NODES as OWN_NODES
 from pound_solve.analyses.cells import among_equals, may_exceed_alone
-from pound_solve.analyses.closeups import ContactForcePeaks
+from pound_solve.analyses.closeups import ContactPeaks
 from pound_solve.catalog import catalog
 from pound_solve.check import Check, Subject, looked
 from pound_solve.driver.request import Request
@@ -358,7 +358,7 @@ def test_of_each_collision_the_largest_peak_stays() -> None:
     contact, collision = np.array([0, 0, 1, 0, 1, 1, 0]), np.array([1, 1, 0, 2, 1, 1, 2])
     height, t = np.array([5.0, 7.0, 3.0, 1.0, 6.0, 4.0, 2.0]), np.arange(7.0)
     motion = Motion(t, *(t[None] for _ in Motion._fields[1:]))
-    found = ContactForcePeaks(motion, contact, collision, height, height > 3.0).largest()
+    found = ContactPeaks(motion, contact, collision, height, height > 3.0).largest()
     assert found.motion.t.tolist() == [1.0, 2.0, 4.0, 6.0] == found.motion.u[0].tolist()
     assert found.height.tolist() == [7.0, 3.0, 6.0, 2.0]
 

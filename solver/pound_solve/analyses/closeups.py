@@ -23,7 +23,7 @@ BLOCK: Final = 1024  #: largest number of instants per block
 
 
 @dataclass(frozen=True, eq=False)
-class ContactForcePeaks:
+class ContactPeaks:
     """The motion at peaks of the contacts' forces.
 
     Attributes
@@ -43,9 +43,9 @@ class ContactForcePeaks:
     height: Array
     at_step: Flags
 
-    def at(self, chosen: Index | Flags) -> ContactForcePeaks:
+    def at(self, chosen: Index | Flags) -> ContactPeaks:
         """The chosen peaks."""
-        return ContactForcePeaks(
+        return ContactPeaks(
             _at(self.motion, chosen),
             self.contact[chosen],
             self.collision[chosen],
@@ -53,7 +53,7 @@ class ContactForcePeaks:
             self.at_step[chosen],
         )
 
-    def largest(self) -> ContactForcePeaks:
+    def largest(self) -> ContactPeaks:
         """The largest peak of each collision."""
         order = np.lexsort((self.height, self.collision, self.contact))
         last = np.append(np.diff(self.contact[order]) | np.diff(self.collision[order]) != 0, True)
@@ -82,7 +82,7 @@ class Closeups:
         self.contacts, self.room = contacts, room
         self.every, self.full = 1, np.inf
         self._instants: list[Motion] = []
-        self._peaks: list[ContactForcePeaks] = []
+        self._peaks: list[ContactPeaks] = []
         self._seen = 0
         self._pressed = np.zeros(len(contacts), bool)
         self._collisions = np.zeros(len(contacts), np.int64)
@@ -120,7 +120,7 @@ class Closeups:
         self._keep(self._peaks_of(course, forces, collisions))
         self._thin()
 
-    def _keep(self, peaks: ContactForcePeaks) -> None:
+    def _keep(self, peaks: ContactPeaks) -> None:
         """Keep peaks; if there are too many, only the largest of each collision."""
         if self.full < np.inf:
             return
@@ -139,14 +139,14 @@ class Closeups:
             self._instants = [_at(whole, np.arange(0, len(whole.t), 2))]
             self.every *= 2
 
-    def _peaks_of(self, course: Course, forces: Array, collisions: Index) -> ContactForcePeaks:
+    def _peaks_of(self, course: Course, forces: Array, collisions: Index) -> ContactPeaks:
         """The motion at the peaks of the contact forces: at an instant or, if the course knows the motion
         between instants, between two.
         """
         wide = np.pad(forces, ((0, 0), (1, 1)), constant_values=-np.inf)
         row, top = np.nonzero((forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:]))
         at_instants = np.ones(len(row), bool)
-        peaks = ContactForcePeaks(
+        peaks = ContactPeaks(
             _at(course.motion, top), row, collisions[row, top], forces[row, top], at_instants
         )
         if course.within is None or not len(row):
@@ -191,10 +191,10 @@ class Closeups:
                 yield _at(whole, np.arange(first, min(first + BLOCK, len(whole.t))))
 
 
-def joined_peaks(parts: Sequence[ContactForcePeaks]) -> ContactForcePeaks:
+def joined_peaks(parts: Sequence[ContactPeaks]) -> ContactPeaks:
     """Concatenate several sets of peaks."""
     rest = zip(*((p.contact, p.collision, p.height, p.at_step) for p in parts))
-    return ContactForcePeaks(_joined([p.motion for p in parts]), *map(np.concatenate, rest))
+    return ContactPeaks(_joined([p.motion for p in parts]), *map(np.concatenate, rest))
 
 
 def _at(motion: Motion, chosen: Index | Flags) -> Motion:

@@ -179,7 +179,7 @@ class ReducedSystem:
         if not softens:
             return f"{self.name(index)} has no mass and nothing holds it"
         if d >= len(NAMES):
-            remedy = f"give element {owner} a flatter falling branch, or a longer LP"
+            remedy = f"give element {owner} a flatter softening branch, or a longer LP"
         else:
             remedy = "give the joints WR in WEIGHTS" if NAMES[d] == "rz" else "give it weight"
         why = "its stiffness has become negative: it snaps through"

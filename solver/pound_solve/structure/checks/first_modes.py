@@ -11,7 +11,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.numerics.matrices import Matrix
 from pound_solve.structure.buildings import Building
-from pound_solve.structure.checks.mechanisms import SupportedPart
+from pound_solve.structure.checks.mechanisms import BuildingStiffness
 from pound_solve.structure.checks.members import kinds, length, lies
 from pound_solve.structure.structure import Structure
 
@@ -27,7 +27,9 @@ BRIEFEST: Final = 1e-4
 RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be textbook inputs
 
 
-def misdamped(structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]) -> list[Diagnostic]:
+def misdamped(
+    structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
+) -> list[Diagnostic]:
     """Report buildings whose first mode is implausibly damped, or undamped under an earthquake."""
     model, problems = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
@@ -62,7 +64,7 @@ def misdamped(structure: Structure, parts: Sequence[tuple[Building, SupportedPar
 
 
 def frequencies_in_hertz(
-    structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]
+    structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
 ) -> list[Diagnostic]:
     """Report circular frequencies of DAMPING below the first mode of all damped buildings, which are
     probably given in hertz.
@@ -119,7 +121,7 @@ def _axial(model: Model) -> dict[int, float]:
 
 
 def contact_stiffnesses(
-    structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]
+    structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
 ) -> list[Diagnostic]:
     """Report implausible contacts, one for each property set: so soft that the weight of the bodies would
     compress them by more than the height of their buildings, or too stiff for the beams behind them or for

@@ -29,7 +29,7 @@ FASTEST: Final = 1000.0
 
 
 def find_mechanisms(
-    structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]
+    structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
 ) -> list[Diagnostic]:
     """Report buildings of members whose nodes can move although the base is held, as with too many pins."""
     problems = list[Diagnostic]()
@@ -41,7 +41,7 @@ def find_mechanisms(
 
 
 def implausible_periods(
-    structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]
+    structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
 ) -> Iterator[tuple[str, Diagnostic]]:
     """Yield the names of buildings whose first period is implausible for their height, each with a warning.
 
@@ -79,7 +79,9 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
 
 
-def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, SupportedPart]]) -> list[Diagnostic]:
+def coarse_steps(
+    structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
+) -> list[Diagnostic]:
     """Report histories of fewer than `FEWEST` steps in the first period of every building, and output
     intervals longer than that period.
     """
@@ -99,11 +101,11 @@ def coarse_steps(structure: Structure, parts: Sequence[tuple[Building, Supported
     return problems
 
 
-def supported_parts(structure: Structure) -> list[tuple[Building, SupportedPart]]:
+def supported_parts(structure: Structure) -> list[tuple[Building, BuildingStiffness]]:
     """Return the buildings with a height that the ground shakes along x, with their stiffness, if it can be
     computed.
     """
-    model, pairs = structure.model, list[tuple[Building, SupportedPart]]()
+    model, pairs = structure.model, list[tuple[Building, BuildingStiffness]]()
     if "X" not in shaken(model):
         return pairs
     tall = [b for b in buildings(structure) if stands(model, b.nodes)]
@@ -113,16 +115,16 @@ def supported_parts(structure: Structure) -> list[tuple[Building, SupportedPart]
     return pairs
 
 
-def _part(structure: Structure, columns: Index) -> SupportedPart | None:
+def _part(structure: Structure, columns: Index) -> BuildingStiffness | None:
     """Stiffness of a building; None if its numbers overflow or the decomposition fails."""
     try:
         with np.errstate(all="ignore"):
-            return SupportedPart(structure, columns)
+            return BuildingStiffness(structure, columns)
     except (np.linalg.LinAlgError, ArithmeticError):
         return None
 
 
-class SupportedPart:
+class BuildingStiffness:
     """Stiffness of a building with open contacts, scaled to a unit diagonal, without unrestrained
     rotations.
     """

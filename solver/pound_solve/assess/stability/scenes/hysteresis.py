@@ -96,7 +96,7 @@ class _Springs:
             yield self.case("stiffness of the springs", f"{ratio:g}", deck, step=step, heavy=ratio > 1e5)
 
     def masses_and_motions(self) -> Iterator[StabilityCase]:
-        """Unequal masses, falling branches, resonance, damping, extreme records."""
+        """Unequal masses, softening branches, resonance, damping, extreme records."""
         for ratio in (0.0, 1e-8, 1e8):
             yield self.case(
                 "mass of the middle over the top's", f"{ratio:g}", storeys(self.plain, middle=ratio),
@@ -105,10 +105,10 @@ class _Springs:
         if self.spec.field("R") is not None:
             for r in (-0.05, -0.5):
                 deck = storeys(self.rule(R=r), motion="TABLE POINTS=0,6,1,6", end=3.0)
-                yield self.case("falling branch to collapse", f"R {r:g}", deck)
+                yield self.case("softening branch to collapse", f"R {r:g}", deck)
         if self.spec.field("DPC") is not None:
             deck = storeys(self.plain, motion="TABLE POINTS=0,6,1,6", end=3.0)
-            yield self.case("falling branch to collapse", "capped", deck)
+            yield self.case("softening branch to collapse", "capped", deck)
         deck = storeys(self.plain, end=20.0, every=0.5)
         yield self.case("resonance", "20 periods", deck, step=STEP / 8)  # the errors of the periods add up
         for xi in (1.0, 10.0):
