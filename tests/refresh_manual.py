@@ -8,8 +8,9 @@ from functools import partial
 import manual_pages
 from highlighters import kate, notepad, textmate
 from manual_pages import MANUAL
-from pound_solve.assess.law_test import AXES, has_loop, picture
+from pound_solve.assess.law_test import AXES, picture
 from pound_solve.catalog import specs
+from samples import has_loop
 from verification import cases
 
 

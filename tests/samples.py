@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pound_deck.schema import Spec
+from pound_solve.assess.law_test import LawTestError, specimen
 from pound_solve.catalog import catalog
 
 
@@ -42,3 +43,12 @@ def stepping_methods() -> list[str]:
     """Names of the methods that take time steps."""
     family = catalog().family("method")
     return [name for name, spec in family.items() if spec.impl.__module__.count(".stepping.")]
+
+
+def has_loop(spec: Spec) -> bool:
+    """Whether a rule or contact law has a loop to draw: ELASTIC and rigid contacts have none."""
+    try:
+        specimen(spec)
+    except LawTestError:
+        return False
+    return True

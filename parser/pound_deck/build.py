@@ -8,9 +8,9 @@ from functools import partial
 from typing import Any, Final
 
 from pound_deck.bind import Binder
-from pound_deck.cards import Item, Row
+from pound_deck.cards import Item, ParsedLine
 from pound_deck.diagnostics import Diagnostic, Mistake, hints, mistake
-from pound_deck.expressions import Expression, Step, Value
+from pound_deck.expressions import Expression, ExpressionStep, Value
 from pound_deck.model import Card, Element, Model, Node, Span, Units
 from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
@@ -90,7 +90,7 @@ def _section(name: str, outline: Outline, binder: Binder) -> tuple[Card, ...]:
     return tuple(cards)
 
 
-def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:
+def _row(name: str, row: ParsedLine, binder: Binder) -> list[Card] | None:
     """Cards of a row: an empty list where its range is empty, None where it has mistakes."""
     if name not in _SPECS:
         card = _kind(name, row, binder)
@@ -102,7 +102,7 @@ def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:
     return cards
 
 
-def _kind(name: str, row: Row, binder: Binder) -> Card | None:
+def _kind(name: str, row: ParsedLine, binder: Binder) -> Card | None:
     """Card of a line that names its kind, as first item or, under PROPS, after the label; None if wrong."""
     items, family = row.items or (), FAMILIES[name]
     specs = binder.read.catalog.family(family)
@@ -121,7 +121,7 @@ def _kind(name: str, row: Row, binder: Binder) -> Card | None:
     return binder.card(specs[kind], items[at + 1 :], row.span, label)
 
 
-def _no_kind(name: str, row: Row, kinds: Iterable[str]) -> Mistake:
+def _no_kind(name: str, row: ParsedLine, kinds: Iterable[str]) -> Mistake:
     start = "a label and a kind of element" if name == "PROPS" else "its kind"
     return mistake(
         "P213", f"a line of {name} starts with {start}", row.span, "kinds are " + ", ".join(kinds)
@@ -136,7 +136,7 @@ def _plain_labels(heads: Iterable[Item]) -> list[str]:
     return [step.text.upper() for step in _lone_steps(heads) if step]
 
 
-def _lone_steps(items: Iterable[Item]) -> list[Step | None]:
+def _lone_steps(items: Iterable[Item]) -> list[ExpressionStep | None]:
     """For each item the single step of its first part, such as a word; None for a formula or a range."""
     parts = [item.parts[0] for item in items]
     return [p.lone if isinstance(p, Expression) else None for p in parts]
@@ -203,7 +203,7 @@ def _single(name: str, outline: Outline, binder: Binder) -> Any:
     return card[name] if card else None
 
 
-def units_of(row: Row | None, report: list[Diagnostic]) -> Units:
+def units_of(row: ParsedLine | None, report: list[Diagnostic]) -> Units:
     """Units of the UNITS card; default units without the card, or where it has mistakes."""
     if row is None or row.items is None:
         return Units()
@@ -235,7 +235,7 @@ def _default_gravity(units: Units) -> float | None:
 
 
 def _doubtful_gravity(
-    gravity: float | None, units: Units, single: Mapping[str, Row], weights: Sequence[Card]
+    gravity: float | None, units: Units, single: Mapping[str, ParsedLine], weights: Sequence[Card]
 ) -> Iterator[Diagnostic]:
     """Report gravity in a unit of length other than the deck's, or gravity that is needed but unknown."""
     known = _default_gravity(units)
@@ -254,7 +254,7 @@ def _doubtful_gravity(
         yield Diagnostic("P342", message, items[1].span, hint, "warning")
 
 
-def _title(row: Row | None) -> str:
+def _title(row: ParsedLine | None) -> str:
     if row is None:
         return ""
     text = " ".join(row.line.text.split("\n")).strip()[len("TITLE") :].strip()

@@ -18,9 +18,9 @@ from lark import Lark, Token, Transformer, UnexpectedCharacters, UnexpectedInput
 from lark.lark import PostLex
 
 from pound_deck.diagnostics import Diagnostic, Mistake
-from pound_deck.expressions import Expression, Range, Step
+from pound_deck.expressions import Expression, ExpressionStep, Range
 from pound_deck.model import Span
-from pound_deck.source import Line
+from pound_deck.source import LogicalLine
 from pound_deck.syntax import Fault, check_nesting, explain
 
 Part = Expression | Range
@@ -56,16 +56,16 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ParsedLine:
     """Parsed line: first word in upper case, items (None where it could not be parsed), place."""
 
     word: str
     items: tuple[Item, ...] | None
-    line: Line
+    line: LogicalLine
     span: Span
 
 
-def parse(lines: Iterable[Line], report: list[Diagnostic]) -> Iterator[Row]:
+def parse(lines: Iterable[LogicalLine], report: list[Diagnostic]) -> Iterator[ParsedLine]:
     """Parse line by line; a line that cannot be parsed adds a diagnostic and comes without items."""
     shapes: dict[tuple[str, ...], _Shape] = {}
     for line in lines:
@@ -79,10 +79,10 @@ def parse(lines: Iterable[Line], report: list[Diagnostic]) -> Iterator[Row]:
                 items = parse_items(line, shapes)
             except Mistake as error:
                 error.keep(report)
-        yield Row(word, items, line, line.span)
+        yield ParsedLine(word, items, line, line.span)
 
 
-def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None) -> tuple[Item, ...]:
+def parse_items(line: LogicalLine, shapes: dict[tuple[str, ...], _Shape] | None = None) -> tuple[Item, ...]:
     """Items of one logical line; `shapes` keeps what was parsed before.
 
     Raises
@@ -105,7 +105,7 @@ def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None)
     return tuple([_item(item, tokens, line) for item in shape])
 
 
-def _first_error(parser: Lark, line: Line, error: UnexpectedInput) -> UnexpectedInput:
+def _first_error(parser: Lark, line: LogicalLine, error: UnexpectedInput) -> UnexpectedInput:
     """First error that the parser finds in a line, which may precede that of the lexer."""
     try:
         parser.parse(line.text)
@@ -235,7 +235,7 @@ def _lark() -> tuple[Lark, Lark]:
     )
 
 
-def _span(token: Token, line: Line) -> Span:
+def _span(token: Token, line: LogicalLine) -> Span:
     number = line.number + (token.line or 1) - 1
     column = token.column or 1
     return Span(line.file, number, column, column + max(1, len(token.rstrip())))
@@ -246,22 +246,24 @@ def _join(first: Span, last: Span) -> Span:
     return Span(first.file, first.line, first.column, last.end if last.line == first.line else first.end)
 
 
-def _expression(formula: _Formula, tokens: list[Token], line: Line) -> Expression:
+def _expression(formula: _Formula, tokens: list[Token], line: LogicalLine) -> Expression:
     first, last = tokens[formula.first], tokens[formula.last]
     text = line.text[first.start_pos : last.end_pos]
     if formula.first == formula.last:
         kind = formula.steps[0][0]
         span = _span(first, line)
-        return Expression((Step(kind, text[1:-1] if kind == "text" else text, span),), span, text)
+        return Expression((ExpressionStep(kind, text[1:-1] if kind == "text" else text, span),), span, text)
     steps = []
     for kind, k, arity in formula.steps:
         token = tokens[k]
-        steps.append(Step(kind, token[1:-1] if kind == "text" else str(token), _span(token, line), arity))
+        steps.append(
+            ExpressionStep(kind, token[1:-1] if kind == "text" else str(token), _span(token, line), arity)
+        )
     return Expression(tuple(steps), _join(_span(first, line), _span(last, line)), text)
 
 
 def _item(
-    shape: tuple[int | None, tuple[tuple[_Formula, ...], ...]], tokens: list[Token], line: Line
+    shape: tuple[int | None, tuple[tuple[_Formula, ...], ...]], tokens: list[Token], line: LogicalLine
 ) -> Item:
     name, raw = shape
     parts: list[Part] = []
@@ -278,7 +280,7 @@ def _item(
     return Item(tokens[name].upper(), tuple(parts), span, _span(tokens[name], line))
 
 
-def _fault(error: UnexpectedInput, line: Line) -> Fault:
+def _fault(error: UnexpectedInput, line: LogicalLine) -> Fault:
     """Place and token of a syntax error."""
     end = len(line.text)
     at = min(end if error.pos_in_stream is None else error.pos_in_stream, end)

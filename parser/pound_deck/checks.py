@@ -22,9 +22,9 @@ _MOST_HINTS: Final = 100  #: most hints: further messages are not printed, and e
 def run_checks(
     model: Model,
     cards: Iterable[Card],
-    broken: Set[str] = frozenset(),
-    gone: Set[str] = frozenset(),
-    maimed: Set[str] = frozenset(),
+    unreadable_sections: Set[str] = frozenset(),
+    incomplete_sections: Set[str] = frozenset(),
+    unreadable_props: Set[str] = frozenset(),
 ) -> list[Diagnostic]:
     """Run every check.
 
@@ -34,25 +34,27 @@ def run_checks(
         Model of all that could be read.
     cards : iterable of Card
         Every card of the deck; those of NODES and ELEMENTS have the places of single items.
-    broken, gone, maimed : set of str
+    unreadable_sections, incomplete_sections, unreadable_props : set of str
         Sections with unreadable lines, those whose unreadable lines define unknown names, and the labels of
         unreadable property sets: checks that depend on unreadable lines are skipped.
     """
-    diagnostics = [d for check, needs in CHECKS if not broken & needs for d in check(model)]
-    return diagnostics + list(_references(model, cards, gone, maimed))
+    diagnostics = [d for check, needs in CHECKS if not unreadable_sections & needs for d in check(model)]
+    return diagnostics + list(_references(model, cards, incomplete_sections, unreadable_props))
 
 
-def _references(model: Model, cards: Iterable[Card], gone: Set[str], maimed: Set[str]) -> Found:
+def _references(
+    model: Model, cards: Iterable[Card], incomplete_sections: Set[str], unreadable_props: Set[str]
+) -> Found:
     """Report nodes, elements and property sets that are named but not defined."""
     tables: tuple[tuple[str, str, str, Any], ...] = (
         ("P305", "node", "NODES", model.nodes),
         ("P306", "element", "ELEMENTS", model.elements),
-        ("P307", "property set", "PROPS", dict.fromkeys((*model.props, *sorted(maimed)))),
+        ("P307", "property set", "PROPS", dict.fromkeys((*model.props, *sorted(unreadable_props)))),
     )
     reported: set[Span] = set()  # one report for an item is enough: a range may miss a hundred
     for value, kind, span in _named(cards):
         code, what, section, known = tables[_TABLE[kind]]
-        if section not in gone and value not in known and span not in reported:
+        if section not in incomplete_sections and value not in known and span not in reported:
             reported.add(span)
             near = suggest(value, known) if isinstance(value, str) and len(reported) <= _MOST_HINTS else ""
             ground = "leave J out for the ground" if value == 0 else ""

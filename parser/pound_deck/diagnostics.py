@@ -52,7 +52,7 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     return any(d.severity == "error" for d in diagnostics)
 
 
-def doubted(diagnostics: Iterable[Diagnostic], meant: Container[str]) -> list[Diagnostic]:
+def unsuppressed(diagnostics: Iterable[Diagnostic], meant: Container[str]) -> list[Diagnostic]:
     """Diagnostics without the warnings suppressed by MEANT."""
     return [d for d in diagnostics if d.severity == "error" or d.code not in meant]
 

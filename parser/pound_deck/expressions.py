@@ -20,7 +20,7 @@ Value = float | str
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ExpressionStep:
     """A ``number``, ``word`` or ``text``, or a ``call`` or ``operator`` that takes `arity` values."""
 
     kind: str
@@ -33,12 +33,12 @@ class Step:
 class Expression:
     """A number, word, text or formula of the deck, with its `text` as written."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[ExpressionStep, ...]
     span: Span
     text: str
 
     @property
-    def lone(self) -> Step | None:
+    def lone(self) -> ExpressionStep | None:
         """The only step of an expression; None if it has several."""
         return self.steps[0] if len(self.steps) == 1 else None
 
@@ -123,7 +123,7 @@ def evaluate(expression: Expression, params: Mapping[str, Value | None]) -> Valu
     return stack[0]
 
 
-def _leaf(step: Step, params: Mapping[str, Value | None]) -> Value:
+def _leaf(step: ExpressionStep, params: Mapping[str, Value | None]) -> Value:
     if step.kind == "text":
         return step.text
     if step.kind == "number":
@@ -145,7 +145,7 @@ def _leaf(step: Step, params: Mapping[str, Value | None]) -> Value:
     raise mistake("P222", f"{step.text} is no number and no PARAM of this deck", step.span, hint)
 
 
-def _apply(step: Step, values: list[Value]) -> float:
+def _apply(step: ExpressionStep, values: list[Value]) -> float:
     numbers = [v for v in values if not isinstance(v, str)]
     if len(numbers) < len(values):
         text = next(v for v in values if isinstance(v, str))
@@ -162,7 +162,7 @@ def _apply(step: Step, values: list[Value]) -> float:
         raise mistake("P225", message, step.span, "the arguments must be in its range") from None
 
 
-def _call(step: Step, numbers: list[float]) -> float:
+def _call(step: ExpressionStep, numbers: list[float]) -> float:
     name = step.text.upper()
     if name not in FUNCTIONS:
         raise mistake(
@@ -194,7 +194,7 @@ def _operate(sign: str, numbers: list[float]) -> float:
     return math.pow(a, b)
 
 
-def _finite(value: float, step: Step) -> float:
+def _finite(value: float, step: ExpressionStep) -> float:
     if not math.isfinite(value):
         raise mistake(
             "P224", f"{step.text} gives a number that is too large", step.span, "the limit is 1.8e308"

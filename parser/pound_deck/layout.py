@@ -14,11 +14,11 @@ from itertools import groupby
 from operator import itemgetter
 from typing import Final
 
-from pound_deck.cards import Item, Row, parse, parse_items
+from pound_deck.cards import Item, ParsedLine, parse, parse_items
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
 from pound_deck.model import Span
 from pound_deck.sections import FAMILIES, NAMES, SINGLE
-from pound_deck.source import INCLUDE, Line, Source, is_end, without_comment
+from pound_deck.source import INCLUDE, DeckSource, LogicalLine, is_end, without_comment
 
 _INDENT: Final = "   "  #: of the lines of a section; twice as much for continuation lines
 _WIDE: Final = "   "  #: least gap after a positional item
@@ -75,7 +75,7 @@ def arranged(name: str, data: bytes) -> tuple[bytes | None, list[Diagnostic], di
     files : dict of str to str
         The text by its name, for :func:`~pound_deck.diagnostics.caret`.
     """
-    source = Source()
+    source = DeckSource()
     text = source.decode(name, data, Span(name, 1, 1, 2))
     report = source.report
     laid_out = None
@@ -100,7 +100,7 @@ def layout(text: str, name: str = "deck.inp") -> tuple[str | None, list[Diagnost
     diagnostics : list of Diagnostic
         Mistakes of syntax in this text; included files are not read.
     """
-    source = Source()
+    source = DeckSource()
     lines = list(_up_to_end(source.logical(name, text)))
     cards = (line for line in lines if not INCLUDE.match(line.text) and not is_end(line.text))
     rows = list(parse(cards, source.report))
@@ -116,19 +116,19 @@ def layout(text: str, name: str = "deck.inp") -> tuple[str | None, list[Diagnost
     return (body + "\n" if body else ""), source.report
 
 
-def _up_to_end(lines: Iterable[Line]) -> Iterator[Line]:
+def _up_to_end(lines: Iterable[LogicalLine]) -> Iterator[LogicalLine]:
     for line in lines:
         yield line
         if is_end(line.text):
             return
 
 
-def _stripped(lines: Iterable[Line]) -> Iterator[tuple[int, str]]:
+def _stripped(lines: Iterable[LogicalLine]) -> Iterator[tuple[int, str]]:
     """Yield index and stripped text of each line that is a whole card."""
     return ((line.number - 1, line.text.strip()) for line in lines if "\n" not in line.text)
 
 
-def _blocks(rows: Iterable[Row]) -> Iterator[list[_Cells]]:
+def _blocks(rows: Iterable[ParsedLine]) -> Iterator[list[_Cells]]:
     """Yield groups of lines that share columns: those below one heading, and consecutive PARAMs."""
     section = ""
     block: list[_Cells] = []
@@ -150,11 +150,11 @@ def _blocks(rows: Iterable[Row]) -> Iterator[list[_Cells]]:
     yield block
 
 
-def _lines(row: Row, section: str) -> list[_Cells]:
+def _lines(row: ParsedLine, section: str) -> list[_Cells]:
     """Physical lines of a row as cells; empty where an item spans two lines, or the first has no item."""
     texts = row.line.text.split("\n")
     try:
-        items = [parse_items(Line("", 1, text)) for text in texts]
+        items = [parse_items(LogicalLine("", 1, text)) for text in texts]
     except Mistake:
         return []
     if not items[0]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from pound_deck.cards import Item, Row
+from pound_deck.cards import Item, ParsedLine
 from pound_deck.diagnostics import Diagnostic, closest, hints, suggest
 from pound_deck.expressions import RESERVED, Definition, Expression
 from pound_deck.model import Span
@@ -21,24 +21,24 @@ _KEYWORDS: Final = (*NAMES, *(spec.name for spec in CARDS))
 class Outline:
     """Rows of a deck, sorted into sections and single cards.
 
-    `broken` names the sections with unreadable rows, and `gone` those of them whose unreadable rows define
-    unknown names, so that references cannot be checked.  `maimed` are labels of property sets whose rows
-    are unreadable.
+    `unreadable_sections` are names of sections with unreadable rows, and `incomplete_sections` those of
+    them whose unreadable rows define unknown names, so that references cannot be checked.
+    `unreadable_props` are labels of property sets whose rows are unreadable.
     """
 
     catalog: Catalog
     report: list[Diagnostic]
-    sections: dict[str, list[Row]] = field(default_factory=lambda: {name: [] for name in NAMES})
-    single: dict[str, Row] = field(default_factory=dict)
+    sections: dict[str, list[ParsedLine]] = field(default_factory=lambda: {name: [] for name in NAMES})
+    single: dict[str, ParsedLine] = field(default_factory=dict)
     definitions: dict[str, Definition] = field(default_factory=dict)
     lost: set[str] = field(default_factory=set)
-    broken: set[str] = field(default_factory=set)
-    gone: set[str] = field(default_factory=set)
-    maimed: set[str] = field(default_factory=set)
+    unreadable_sections: set[str] = field(default_factory=set)
+    incomplete_sections: set[str] = field(default_factory=set)
+    unreadable_props: set[str] = field(default_factory=set)
     _section: str | None = None
     _skipping: bool = False
 
-    def add(self, row: Row) -> None:
+    def add(self, row: ParsedLine) -> None:
         """Sort a row into its section, or take it as a single card or as PARAMs."""
         if row.word in NAMES:
             self._open(row)
@@ -69,18 +69,18 @@ class Outline:
 
     def lose(self, section: str, label: str = "") -> None:
         """Record that a section has lost a row to a mistake, with the row's first label, if known."""
-        self.broken.add(section)
+        self.unreadable_sections.add(section)
         if section == "PROPS" and label:
-            self.maimed.add(label)
+            self.unreadable_props.add(label)
         else:
-            self.gone.add(section)
+            self.incomplete_sections.add(section)
 
     def lose_all(self) -> None:
         """Record that rows of any section may be lost."""
         for section in NAMES:
             self.lose(section)
 
-    def _open(self, row: Row) -> None:
+    def _open(self, row: ParsedLine) -> None:
         self._section = row.word
         rest = (row.items or ())[1:]
         # Ruaumoko's sections may carry a number, which has no meaning here
@@ -88,7 +88,7 @@ class Outline:
             hint = "put column heads behind an exclamation mark; a name of a section cannot be a label"
             self._error("P236", f"{row.word} stands alone on its line", rest[0].name_span, hint)
 
-    def _misspelt(self, row: Row) -> bool:
+    def _misspelt(self, row: ParsedLine) -> bool:
         """Whether a row is a misspelt section name; if so, report it and open the section that is meant."""
         items = row.items or ()
         if not _like_a_heading(items) or row.word in self.definitions or row.word in self.lost:
@@ -107,7 +107,7 @@ class Outline:
             self.lose_all()
         return True
 
-    def _define(self, row: Row) -> None:
+    def _define(self, row: ParsedLine) -> None:
         if row.items is None:
             self.lost |= {name.upper() for name in re.findall(r"([A-Za-z_][\w.]*)\s*=", row.line.text)}
             return

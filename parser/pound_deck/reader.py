@@ -9,12 +9,12 @@ from contextlib import contextmanager
 from pound_deck.build import build
 from pound_deck.cards import parse, parse_items
 from pound_deck.checks import run_checks
-from pound_deck.diagnostics import Diagnostic, Mistake, doubted, has_errors, hints, suggest
-from pound_deck.expressions import Definition, Expression, Step, Value, resolve
+from pound_deck.diagnostics import Diagnostic, Mistake, has_errors, hints, suggest, unsuppressed
+from pound_deck.expressions import Definition, Expression, ExpressionStep, Value, resolve
 from pound_deck.model import Model, Span
 from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
-from pound_deck.source import Line, Source
+from pound_deck.source import DeckSource, LogicalLine
 
 Reading = tuple[Model | None, list[Diagnostic], dict[str, str]]
 
@@ -52,7 +52,7 @@ def read_deck(
     OSError
         The deck cannot be read.
     """
-    source = Source(unsaved=unsaved or {})
+    source = DeckSource(unsaved=unsaved or {})
     lines = source.read(str(path))
     with _no_collection():
         return _read(source, lines, catalog, overrides or {})
@@ -62,7 +62,7 @@ def read_text(
     text: str, catalog: Catalog, overrides: Mapping[str, str] | None = None, name: str = "deck.inp"
 ) -> Reading:
     """Read and check a deck given as text; see :func:`read_deck`."""
-    source = Source()
+    source = DeckSource()
     data = text.encode("utf-8", "surrogatepass")
     lines = source.lines(name, source.decode(name, data, Span(name, 1, 1, 2)))
     with _no_collection():
@@ -81,7 +81,9 @@ def _no_collection() -> Iterator[None]:
             gc.enable()
 
 
-def _read(source: Source, lines: list[Line], catalog: Catalog, overrides: Mapping[str, str]) -> Reading:
+def _read(
+    source: DeckSource, lines: list[LogicalLine], catalog: Catalog, overrides: Mapping[str, str]
+) -> Reading:
     report = source.report
     files = source.files
     unread = has_errors(report)
@@ -95,7 +97,9 @@ def _read(source: Source, lines: list[Line], catalog: Catalog, overrides: Mappin
         texts = {}
     params = _params(outline, texts, report)
     model, cards = build(outline, params, catalog, dict(files), report)
-    report += run_checks(model, cards, outline.broken, outline.gone, outline.maimed)
+    report += run_checks(
+        model, cards, outline.unreadable_sections, outline.incomplete_sections, outline.unreadable_props
+    )
     if unread:  # names may be defined in unread files
         report[:] = [d for d in report if d.code not in ("P222", "P234")]
     order = {name: k for k, name in enumerate(files)}
@@ -104,7 +108,7 @@ def _read(source: Source, lines: list[Line], catalog: Catalog, overrides: Mappin
             (order.get(d.span.file, -1), d.span.line, d.span.column) if d.span else (len(order), 0, 0)
         )
     )
-    report[:] = doubted(report, model.meant)
+    report[:] = unsuppressed(report, model.meant)
     return (None if has_errors(report) else model), report, {**files, **texts}
 
 
@@ -124,7 +128,7 @@ def _override(
 ) -> None:
     """Replace the definition of a PARAM by the text of an override; `params` are the deck's values."""
     name = source.removeprefix("--set ").strip()
-    line = Line(source, 1, text)
+    line = LogicalLine(source, 1, text)
     place = Span(source, 1, 1, max(2, len(text) + 1))
     key = name.upper()
     if key not in outline.definitions:
@@ -148,10 +152,10 @@ def _text(text: str, place: Span) -> Expression:
     """Expression of a text, without the quotes around it."""
     bare = text.strip()
     quoted = len(bare) > 1 and bare[0] == bare[-1] and bare[0] in "\"'" and bare.count(bare[0]) == 2
-    return Expression((Step("text", bare[1:-1] if quoted else bare, place),), place, bare)
+    return Expression((ExpressionStep("text", bare[1:-1] if quoted else bare, place),), place, bare)
 
 
-def _number(line: Line) -> Expression | None:
+def _number(line: LogicalLine) -> Expression | None:
     """The single expression of a line, such as a number; None where the line holds anything else."""
     try:
         items = parse_items(line)

@@ -24,7 +24,7 @@ _PAGE: Final = re.compile(r"\s*<(!doctype|html|head|\?xml)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LogicalLine:
     """A logical line without its comments: the text of one card.
 
     Continued lines are joined by a line end, so that columns still count from the start of their own line.
@@ -43,7 +43,7 @@ class Line:
 
 
 @dataclass(slots=True)
-class Source:
+class DeckSource:
     """Reads a deck and its included files.
 
     Attributes
@@ -62,7 +62,7 @@ class Source:
     _bytes: int = 0
     _includes: int = 0
 
-    def read(self, name: str) -> list[Line]:
+    def read(self, name: str) -> list[LogicalLine]:
         """Logical lines of a deck.
 
         Raises
@@ -72,10 +72,10 @@ class Source:
         """
         return self.lines(name, self._load(name, Span(name, 1, 1, 2)), (os.path.realpath(name),))
 
-    def lines(self, name: str, text: str, path: tuple[str, ...] = ()) -> list[Line]:
+    def lines(self, name: str, text: str, path: tuple[str, ...] = ()) -> list[LogicalLine]:
         """Logical lines of a text; `path` names the files being read, outermost first."""
         self.files[name] = text
-        lines: list[Line] = []
+        lines: list[LogicalLine] = []
         for line in self.logical(name, text):
             include = INCLUDE.match(line.text)
             if include:
@@ -88,7 +88,7 @@ class Source:
                 lines.append(line)
         return lines
 
-    def logical(self, name: str, text: str) -> Iterator[Line]:
+    def logical(self, name: str, text: str) -> Iterator[LogicalLine]:
         """Logical lines of one text, INCLUDE and END among them."""
         start, pending = 0, ""
         for number, raw in enumerate(text.split("\n"), 1):
@@ -102,14 +102,14 @@ class Source:
             if code.endswith("&"):
                 pending += code[:-1] + "\n"
                 continue
-            yield Line(name, start, pending + code)
+            yield LogicalLine(name, start, pending + code)
             pending = ""
         if pending:
-            last = Line(name, start, pending.rstrip())
+            last = LogicalLine(name, start, pending.rstrip())
             self._error("P109", "the line ends in & but nothing follows it", last.span)
             yield last
 
-    def _include(self, line: Line, rest: str, path: tuple[str, ...]) -> list[Line]:
+    def _include(self, line: LogicalLine, rest: str, path: tuple[str, ...]) -> list[LogicalLine]:
         match = _FILE_NAME.fullmatch(rest)
         if not match:
             self._error("P108", "INCLUDE takes one file name", line.span, 'write INCLUDE "file name"')

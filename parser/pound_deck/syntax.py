@@ -9,7 +9,7 @@ from typing import Final
 
 from pound_deck.diagnostics import Mistake, mistake
 from pound_deck.model import Span
-from pound_deck.source import Line
+from pound_deck.source import LogicalLine
 
 MAX_NESTING: Final = 50
 
@@ -32,14 +32,14 @@ class Fault:
 
     Attributes
     ----------
-    line : Line
+    line : LogicalLine
     at : int
         Index in the line's text.
     kind, token : str
         Kind and text of the token there; both are empty at a character that begins no token.
     """
 
-    line: Line
+    line: LogicalLine
     at: int
     kind: str = ""
     token: str = ""
@@ -65,7 +65,7 @@ class Fault:
         return place(self.line, self.at, len(self.token.rstrip()))
 
 
-def check_nesting(line: Line) -> None:
+def check_nesting(line: LogicalLine) -> None:
     """Refuse a line whose brackets are nested too deep.
 
     Raises
@@ -83,7 +83,7 @@ def check_nesting(line: Line) -> None:
             raise mistake("P204", message, place(line, mark.start()), "use PARAM for the parts")
 
 
-def place(line: Line, at: int, length: int = 1) -> Span:
+def place(line: LogicalLine, at: int, length: int = 1) -> Span:
     """Span of `length` characters of the line's text."""
     before = line.text[:at]
     column = at - before.rfind("\n")

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from pound_deck.cards import Part
 from pound_deck.diagnostics import Mistake, hints, mistake, suggest
-from pound_deck.expressions import FUNCTIONS, Expression, Range, Step, Value, evaluate
+from pound_deck.expressions import FUNCTIONS, Expression, ExpressionStep, Range, Value, evaluate
 from pound_deck.model import Units
 from pound_deck.schema import Catalog, Field, Kind, beyond, outside
 
@@ -134,7 +134,7 @@ class Values:
         hint = f'put the text in quotes: "{part.text[:60]}"'
         raise mistake("P216", f"{f.name} takes a text, and {what}", part.span, hint)
 
-    def _param(self, step: Step) -> Value | None:
+    def _param(self, step: ExpressionStep) -> Value | None:
         """Value of the PARAM that a step names; None if it names none."""
         name = step.text.upper()
         if name in self.params and self.params[name] is None:
@@ -195,7 +195,7 @@ class Values:
         )
         raise mistake("P210", f"{name} cannot be {shown}", part.span, hint)
 
-    def _substituted(self, step: Step, known: Collection[str]) -> str:
+    def _substituted(self, step: ExpressionStep, known: Collection[str]) -> str:
         """Text of a step in upper case; for an unknown word that names a PARAM, the PARAM's value."""
         text = step.text.upper()
         if step.kind != "word" or text in known:

@@ -8,7 +8,7 @@ from pound_deck.diagnostics import mistake
 from pound_legacy import equake
 from pound_legacy.draft import Draft, number, numbers
 from pound_legacy.header import Control
-from pound_legacy.lines import Row, Rows
+from pound_legacy.lines import DataLine, DataLines
 
 STATIC, STATIC_MODAL, EARTHQUAKE, FORCES = range(4)  #: of IPANAL
 #: by ICTYPE: the card, and whether a source confirms the code
@@ -98,7 +98,7 @@ def runs(control: Control, loaded: bool, draft: Draft) -> None:
 
 
 def motions(
-    rows: Rows, control: Control, appended: equake.File, separate: list[equake.File], draft: Draft
+    rows: DataLines, control: Control, appended: equake.File, separate: list[equake.File], draft: Draft
 ) -> None:
     """Add the ground motions of an EQUAKE section.
 
@@ -108,7 +108,7 @@ def motions(
         See `equake.record`.
     """
     horizontal = rows.next("the line of EQUAKE: " + " ".join(equake.NAMES))
-    vertical: Row | None = None
+    vertical: DataLine | None = None
     notes: list[str] = []
     if control.whole("IPVERT"):
         vertical = rows.next("the second line of EQUAKE")
@@ -123,7 +123,7 @@ def motions(
 
 
 def _motion(
-    row: Row,
+    row: DataLine,
     control: Control,
     appended: equake.Appended,
     separate: list[equake.File],
@@ -138,9 +138,9 @@ def _motion(
 
 
 def forces(
-    rows: Rows,
+    rows: DataLines,
     control: Control,
-    shape: list[tuple[Row, int, list[float]]],
+    shape: list[tuple[DataLine, int, list[float]]],
     appended: equake.File,
     separate: list[equake.File],
     draft: Draft,

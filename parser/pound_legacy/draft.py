@@ -29,7 +29,7 @@ _CHECK: Final = "compare it with your manual of Ruaumoko or a listing of the dec
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class DraftLine:
     """A line of the new deck, its comments, and the line of the old deck that it comes from."""
 
     text: str
@@ -50,21 +50,21 @@ class Draft:
     """
 
     report: list[Diagnostic] = field(default_factory=list)
-    sections: dict[str, list[Entry]] = field(default_factory=lambda: {name: [] for name in ORDER})
+    sections: dict[str, list[DraftLine]] = field(default_factory=lambda: {name: [] for name in ORDER})
     evidence: list[str] = field(default_factory=list)
 
     def add(self, section: str, text: str, span: Span, notes: Iterable[str] = ()) -> None:
         """Add a line."""
-        self.sections[section].append(Entry(text, span, tuple(notes)))
+        self.sections[section].append(DraftLine(text, span, tuple(notes)))
 
     def doubt(self, span: Span, reading: str) -> str:
         """Warn that an item is read by convention; return the comment that marks it."""
         self.report.append(Diagnostic("L605", f"by convention, {reading}", span, _CHECK, "warning"))
         return f"{CONVENTION}: {reading}"
 
-    def lose(self, span: Span, what: str, cure: str = "add it to the new deck by hand") -> str:
+    def lose(self, span: Span, what: str, remedy: str = "add it to the new deck by hand") -> str:
         """Warn that something is not carried over; return the comment that marks it."""
-        self.report.append(Diagnostic("L609", f"not carried over: {what}", span, cure, "warning"))
+        self.report.append(Diagnostic("L609", f"not carried over: {what}", span, remedy, "warning"))
         return f"NOT CARRIED OVER: {what}"
 
     def rest(self, reading: str) -> None:

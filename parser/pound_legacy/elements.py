@@ -7,27 +7,29 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
 from pound_legacy.draft import Draft
-from pound_legacy.lines import Row, Rows
-from pound_legacy.nodes import Node
+from pound_legacy.lines import DataLine, DataLines
+from pound_legacy.nodes import LegacyNode
 
 NAMES: Final = ("N", "MT", "I", "J", "K", "L", "IOUT")
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class LegacyMember:
     """A member: number, property set, end nodes, and its line."""
 
     id: int
     kind: int
     i: int
     j: int
-    row: Row
+    row: DataLine
 
 
-def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft) -> dict[int, Member]:
+def read(
+    rows: DataLines, last: int, kinds: int, nodes: dict[int, LegacyNode], draft: Draft
+) -> dict[int, LegacyMember]:
     """Members by number, up to `last`; mistakes in a line are reported, and the line is left out."""
-    members: dict[int, Member] = {}
-    before: Member | None = None
+    members: dict[int, LegacyMember] = {}
+    before: LegacyMember | None = None
     for row in rows:
         try:
             member = _member(row, last, kinds, before, nodes)
@@ -48,7 +50,9 @@ def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft
     return members
 
 
-def _member(row: Row, last: int, kinds: int, before: Member | None, nodes: dict[int, Node]) -> Member:
+def _member(
+    row: DataLine, last: int, kinds: int, before: LegacyMember | None, nodes: dict[int, LegacyNode]
+) -> LegacyMember:
     id_, kind, i, j = row.wholes(NAMES[:4], 4)
     first = before.id if before else 0
     if not first < id_ <= last or (not first and id_ > 1):
@@ -60,10 +64,12 @@ def _member(row: Row, last: int, kinds: int, before: Member | None, nodes: dict[
     for k, node in ((2, i), (3, j)):
         if node not in nodes:
             raise mistake("L608", f"there is no node {node}", row.items[k].span, "correct the number")
-    return Member(id_, kind, i, j, row)
+    return LegacyMember(id_, kind, i, j, row)
 
 
-def _between(before: Member, after: Member, nodes: dict[int, Node], draft: Draft) -> list[Member]:
+def _between(
+    before: LegacyMember, after: LegacyMember, nodes: dict[int, LegacyNode], draft: Draft
+) -> list[LegacyMember]:
     """Generate the members between two given ones."""
     members = []
     for id_ in range(before.id + 1, after.id):
@@ -72,14 +78,14 @@ def _between(before: Member, after: Member, nodes: dict[int, Node], draft: Draft
         if i not in nodes or j not in nodes:
             text = f"member {id_} is left out, and nodes {i} and {j} for it are not both there"
             raise mistake("L608", text, after.row.span, "write the members out")
-        members.append(Member(id_, before.kind, i, j, before.row))
+        members.append(LegacyMember(id_, before.kind, i, j, before.row))
     if members:
         what = f"members {before.id + 1} to {after.id - 1} are as {before.id}, each one node further"
         draft.doubt(after.row.span, what)
     return members
 
 
-def write(members: dict[int, Member], draft: Draft) -> None:
+def write(members: dict[int, LegacyMember], draft: Draft) -> None:
     """Add the lines of ELEMENTS."""
     for member in members.values():
         made = member.id != member.row.items[0].whole("N")

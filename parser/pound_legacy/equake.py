@@ -14,7 +14,7 @@ from typing import Final
 
 from pound_deck.diagnostics import mistake
 from pound_legacy.draft import Draft, number, quoted
-from pound_legacy.lines import Item, Row, row
+from pound_legacy.lines import DataItem, DataLine, row
 
 NAMES: Final = ("IBERG", "ISTART", "DELTAT", "ASCALE", "END", "VEL", "DIS", "TSCALE")
 _COUNTED: Final = 3
@@ -61,7 +61,9 @@ class _Data:
         return lines[self.first - 1 : self.last] if self.first else lines
 
 
-def record(options: Row, appended: Appended, separate: File | None, draft: Draft, notes: list[str]) -> str:
+def record(
+    options: DataLine, appended: Appended, separate: File | None, draft: Draft, notes: list[str]
+) -> str:
     """Text of the items of a RECORD card: the file, its format and the part of it that acts.
 
     Raises
@@ -100,7 +102,7 @@ def record(options: Row, appended: Appended, separate: File | None, draft: Draft
 
 
 def _plain(
-    v: dict[str, float], code: int, options: Row, draft: Draft, notes: list[str], items: list[str]
+    v: dict[str, float], code: int, options: DataLine, draft: Draft, notes: list[str], items: list[str]
 ) -> float:
     """Start time of a record without counters, which is zero; adds the step to `items`."""
     reading = {0: "one step DELTAT from number to number", 1: "pairs of time and acceleration", 6: "as 0"}[
@@ -124,7 +126,7 @@ def _plain(
     return 0.0
 
 
-def scale(options: Row, factor: float, draft: Draft) -> float:
+def scale(options: DataLine, factor: float, draft: Draft) -> float:
     """Factor that converts the numbers of the record into shares of gravity."""
     divisor = options.item(3).real("ASCALE")
     if divisor == 0.0:
@@ -136,7 +138,7 @@ def scale(options: Row, factor: float, draft: Draft) -> float:
     return factor / divisor
 
 
-def _data(appended: Appended, separate: File | None, options: Row) -> _Data:
+def _data(appended: Appended, separate: File | None, options: DataLine) -> _Data:
     """Location of the record: behind the line of EQUAKE, or in the file that the user names."""
     lines = appended.file.text.splitlines()
     first = last = 0
@@ -155,7 +157,7 @@ def _data(appended: Appended, separate: File | None, options: Row) -> _Data:
     return _Data(separate)
 
 
-def _time_of_counter(counter: int, data: _Data, options: Row) -> float:
+def _time_of_counter(counter: int, data: _Data, options: DataLine) -> float:
     """Time on the line of the record that has a counter."""
     name = options.span.file if data.first else data.file.name
     for k, raw in enumerate(data.rows(), data.first or 1):
@@ -168,5 +170,5 @@ def _time_of_counter(counter: int, data: _Data, options: Row) -> float:
     )
 
 
-def _is(item: Item, counter: int) -> bool:
+def _is(item: DataItem, counter: int) -> bool:
     return item.real("counter") == counter

@@ -11,7 +11,7 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_legacy import loss, rules
 from pound_legacy.draft import number, numbers
-from pound_legacy.lines import Row
+from pound_legacy.lines import DataLine
 from pound_legacy.property_set import PropertySet
 
 OPTIONS: Final = ("ITYPE", "IPIN", "ICOND", "IHYST", "ILOS", "IDAMG", "ICOL", "IGA", "IDUCT")
@@ -58,7 +58,7 @@ def read(props: PropertySet, label: str) -> None:
     props.draft.add("PROPS", " ".join([f"P{props.number}", word, *items]), options.span, notes)
 
 
-def _section(row: Row, pin: int) -> list[str]:
+def _section(row: DataLine, pin: int) -> list[str]:
     """Items of the cross-section and of the member's ends."""
     v = dict(zip(SECTION, row.reals(SECTION, 5)))
     items = [f"{name}={number(v[name])}" for name in ("E", "A", "I")]
@@ -88,7 +88,7 @@ def _initial(props: PropertySet, code: int, notes: list[str]) -> str:
 
 
 def _hinges(
-    props: PropertySet, codes: tuple[int, int, int], section: Row, options: Row, notes: list[str]
+    props: PropertySet, codes: tuple[int, int, int], section: DataLine, options: DataLine, notes: list[str]
 ) -> tuple[str, str]:
     """Kind of element in the new deck, and the items of its hinges."""
     kind, code, losing = codes
@@ -107,7 +107,7 @@ def _hinges(
     return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={rule.name}", parameters, lost) if x)
 
 
-def _beam(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
+def _beam(props: PropertySet, row: DataLine, notes: list[str]) -> tuple[str, str]:
     """Kind of element and items of the yield moments of a one-component beam."""
     tension, compression, *moments = row.reals(BEAM, 4)
     notes.append(props.draft.doubt(row.span, f"the order of a beam's strengths is {' '.join(BEAM)}"))
@@ -119,7 +119,7 @@ def _beam(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
     return "FRAME", f"MI={numbers(moments[:2])} MJ={numbers(second)}"
 
 
-def _column(props: PropertySet, row: Row, notes: list[str]) -> tuple[str, str]:
+def _column(props: PropertySet, row: DataLine, notes: list[str]) -> tuple[str, str]:
     """Kind of element and items of the interaction diagram of a concrete column, symmetric in moment."""
     crush, balance, mb, m1b, m2b, m0, tension = row.reals(COLUMN, 7)
     notes.append(props.draft.doubt(row.span, f"the order of a column's strengths is {' '.join(COLUMN)}"))

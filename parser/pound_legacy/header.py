@@ -18,7 +18,7 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_legacy.draft import Draft, number
-from pound_legacy.lines import Row
+from pound_legacy.lines import DataLine
 
 ANALYSIS: Final = (
     *("IPANAL", "IFMT", "IPLAS", "IPCONM", "ICTYPE", "IPVERT"),
@@ -62,7 +62,7 @@ class Control:
         return self.places[name]
 
 
-def read(rows: Sequence[Row], here: Span) -> Control:
+def read(rows: Sequence[DataLine], here: Span) -> Control:
     """Items of the control lines; those that are left out at the end of a line are zero.
 
     Raises

@@ -13,7 +13,7 @@ from pound_legacy import analysis, elements, header, nodal, nodes, props
 from pound_legacy.draft import CONVENTION, ORDER, Draft
 from pound_legacy.equake import File
 from pound_legacy.header import Control
-from pound_legacy.lines import Row, Rows, row
+from pound_legacy.lines import DataLine, DataLines, row
 from pound_legacy.recognise import control_lines, in_space
 
 #: heads of sections
@@ -99,16 +99,16 @@ def translate(
 
 
 @dataclass(frozen=True, slots=True)
-class _Section:
+class _SectionLines:
     """A section's head and its lines; the record behind EQUAKE is not among them."""
 
-    head: Row
-    rows: Rows
+    head: DataLine
+    rows: DataLines
 
 
 def _outline(
     name: str, text: str, lines: list[str], draft: Draft
-) -> tuple[Mapping[str, _Section], Control]:
+) -> tuple[Mapping[str, _SectionLines], Control]:
     """Sections of the deck by name, and the values of its control lines.
 
     Raises
@@ -125,9 +125,9 @@ def _outline(
     if in_space(first):
         what = "this is a deck of Ruaumoko-3D; this program reads plane structures only"
         raise Mistake(Diagnostic("L601", what, here, "model one of its frames as a plane deck"))
-    begins: list[Row] = []
-    sections: dict[str, _Section] = {}
-    current: list[Row] | None = None
+    begins: list[DataLine] = []
+    sections: dict[str, _SectionLines] = {}
+    current: list[DataLine] | None = None
     for number, raw in enumerate(lines[1:_MOST_LINES], 2):
         line = row(name, number, raw)
         if line is None:
@@ -136,7 +136,7 @@ def _outline(
             if line.word in sections:
                 what = f"{line.word} is given twice"
                 draft.report.append(Diagnostic("L607", what, line.span, "join the two"))
-            sections[line.word] = _Section(line, Rows([], line.span))
+            sections[line.word] = _SectionLines(line, DataLines([], line.span))
             current = sections[line.word].rows.rows
         elif current is None:
             begins.append(line)
@@ -150,7 +150,7 @@ def _outline(
 
 
 def _translate(
-    sections: Mapping[str, _Section],
+    sections: Mapping[str, _SectionLines],
     control: Control,
     files: tuple[File, list[File]],
     catalog: Catalog,
@@ -199,10 +199,10 @@ def _translate(
 
 
 def _excite(
-    sections: Mapping[str, _Section],
+    sections: Mapping[str, _SectionLines],
     control: Control,
     files: tuple[File, list[File]],
-    points: dict[int, nodes.Node],
+    points: dict[int, nodes.LegacyNode],
     draft: Draft,
 ) -> None:
     """Add ground motions or forces in time."""

@@ -18,7 +18,7 @@ MOST_ITEMS: Final = 200  #: most items of a line
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class DataItem:
     """One item and its place."""
 
     text: str
@@ -76,10 +76,10 @@ def is_number(text: str) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class DataLine:
     """A data line: its items and its place."""
 
-    items: tuple[Item, ...]
+    items: tuple[DataItem, ...]
     span: Span
 
     @property
@@ -88,9 +88,9 @@ class Row:
         first = self.items[0]
         return "" if first.numeric else first.text.upper()
 
-    def item(self, k: int) -> Item:
+    def item(self, k: int) -> DataItem:
         """Item by position; a zero where the line is shorter."""
-        return self.items[k] if k < len(self.items) else Item("0", self.span)
+        return self.items[k] if k < len(self.items) else DataItem("0", self.span)
 
     def reals(self, names: Sequence[str], least: int = 0) -> list[float]:
         """Values of the items called `names`; those left out at the end are zero.
@@ -116,35 +116,35 @@ class Row:
             raise mistake("L602", what, self.span, f"the line is {' '.join(names)}")
 
 
-def row(file: str, number: int, raw: str) -> Row | None:
+def row(file: str, number: int, raw: str) -> DataLine | None:
     """Parse a physical line as a data line; None where it has no data."""
     code = without_comment(raw)
     if not code or code.isspace():
         return None
     items = []
     for match in _ITEM.finditer(code):
-        items.append(Item(match[0], Span(file, number, match.start() + 1, match.end() + 1)))
+        items.append(DataItem(match[0], Span(file, number, match.start() + 1, match.end() + 1)))
         if len(items) == MOST_ITEMS:
             break
     if not items:
         return None
-    return Row(tuple(items), Span(file, number, items[0].span.column, items[-1].span.end))
+    return DataLine(tuple(items), Span(file, number, items[0].span.column, items[-1].span.end))
 
 
-class Rows:
+class DataLines:
     """The data lines of a section, read in sequence.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of DataLine
     here : Span
         Place of the section's head, for messages about missing lines.
     """
 
-    def __init__(self, rows: Sequence[Row], here: Span) -> None:
+    def __init__(self, rows: Sequence[DataLine], here: Span) -> None:
         self.rows, self.here, self.at = list(rows), here, 0
 
-    def __iter__(self) -> Iterator[Row]:
+    def __iter__(self) -> Iterator[DataLine]:
         while self.more:
             yield self.next("a line")
 
@@ -153,11 +153,11 @@ class Rows:
         """Whether there is another line."""
         return self.at < len(self.rows)
 
-    def peek(self) -> Row:
+    def peek(self) -> DataLine:
         """Return the next line without taking it."""
         return self.rows[self.at]
 
-    def next(self, what: str) -> Row:
+    def next(self, what: str) -> DataLine:
         """Take and return the next line.
 
         Raises

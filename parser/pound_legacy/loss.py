@@ -8,7 +8,7 @@ from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_deck.schema import Spec
 from pound_legacy.draft import Draft, number
-from pound_legacy.lines import Rows
+from pound_legacy.lines import DataLines
 
 NAMES: Final = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 _WORDS: Final = {
@@ -24,7 +24,7 @@ _SUDDEN: Final = (5, 7)
 _COUNTING: Final = 4  #: the first code with RCYC
 
 
-def read(code: int, rule: Spec, rows: Rows, place: Span, draft: Draft, notes: list[str]) -> str:
+def read(code: int, rule: Spec, rows: DataLines, place: Span, draft: Draft, notes: list[str]) -> str:
     """Text of the items of the loss of strength in the new deck.
 
     Parameters

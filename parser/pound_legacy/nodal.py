@@ -6,18 +6,18 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
 from pound_legacy.draft import Draft, number
-from pound_legacy.lines import Item, Row, Rows
-from pound_legacy.nodes import Node
+from pound_legacy.lines import DataItem, DataLine, DataLines
+from pound_legacy.nodes import LegacyNode
 
 WEIGHTS: Final = ("N", "WX", "WY", "MZ")
 LOADS: Final = ("N", "FX", "FY", "MZ")
 
 
 def _lines(
-    rows: Rows, names: tuple[str, ...], nodes: dict[int, Node], draft: Draft
-) -> list[tuple[Row, int, list[float]]]:
+    rows: DataLines, names: tuple[str, ...], nodes: dict[int, LegacyNode], draft: Draft
+) -> list[tuple[DataLine, int, list[float]]]:
     """Row, node and values of each line of a list; a line with a mistake is reported and left out."""
-    lines: list[tuple[Row, int, list[float]]] = []
+    lines: list[tuple[DataLine, int, list[float]]] = []
     for row in rows:
         try:
             id_, values = row.item(0).whole("N"), row.reals(names, 2)[1:]
@@ -30,7 +30,9 @@ def _lines(
     return lines
 
 
-def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, Node], draft: Draft) -> None:
+def weights(
+    rows: DataLines, option: DataItem | None, gravity: float, nodes: dict[int, LegacyNode], draft: Draft
+) -> None:
     """Add the weights; option 1 of the section's head says that they are masses."""
     scale, notes = 1.0, []
     if option is not None and option.whole("the option of WEIGHTS"):
@@ -51,7 +53,7 @@ def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, No
             notes = []
 
 
-def loads(rows: Rows, nodes: dict[int, Node], draft: Draft) -> bool:
+def loads(rows: DataLines, nodes: dict[int, LegacyNode], draft: Draft) -> bool:
     """Add the loads; return whether there are any."""
     some = False
     for row, id_, values in _lines(rows, LOADS, nodes, draft):
@@ -61,6 +63,8 @@ def loads(rows: Rows, nodes: dict[int, Node], draft: Draft) -> bool:
     return some
 
 
-def shape(rows: Rows, nodes: dict[int, Node], draft: Draft) -> list[tuple[Row, int, list[float]]]:
+def shape(
+    rows: DataLines, nodes: dict[int, LegacyNode], draft: Draft
+) -> list[tuple[DataLine, int, list[float]]]:
     """Row, node and values of each line of SHAPE: factors on the force history at the node."""
     return [line for line in _lines(rows, ("N", "SX", "SY", "SM"), nodes, draft) if any(line[2])]

@@ -13,7 +13,7 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
 from pound_deck.model import Span
 from pound_legacy.draft import Draft, number
-from pound_legacy.lines import Row, Rows
+from pound_legacy.lines import DataLine, DataLines
 
 NAMES: Final = ("N", "X", "Y", "NF1", "NF2", "NF3", "KUP1", "KUP2", "KUP3", "IOUT")
 _LETTERS: Final = "XYR"
@@ -21,7 +21,7 @@ _FREE, _FIXED, _SLAVED = 0, 1, 2
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class LegacyNode:
     """A node: number, coordinates [L], codes and masters of its directions, and its line."""
 
     id: int
@@ -29,16 +29,16 @@ class Node:
     y: float
     codes: tuple[int, ...]
     masters: tuple[int, ...]
-    row: Row
+    row: DataLine
 
 
-def read(rows: Rows, last: int, draft: Draft) -> dict[int, Node]:
+def read(rows: DataLines, last: int, draft: Draft) -> dict[int, LegacyNode]:
     """Nodes by number, up to `last`; those that are generated lie between their neighbours.
 
     Mistakes in a line are reported, and the line is left out.
     """
-    nodes: dict[int, Node] = {}
-    before: Node | None = None
+    nodes: dict[int, LegacyNode] = {}
+    before: LegacyNode | None = None
     for row in rows:
         if row.word and not nodes:  # names of the columns
             continue
@@ -59,14 +59,14 @@ def read(rows: Rows, last: int, draft: Draft) -> dict[int, Node]:
     return nodes
 
 
-def _rest(rows: Rows, draft: Draft) -> None:
+def _rest(rows: DataLines, draft: Draft) -> None:
     """Report lines behind that of the last node."""
     if rows.more:
         text = "lines follow the last node that NNP counts"
         draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NNP, or take them out"))
 
 
-def _node(row: Row, last: int, before: Node | None) -> Node:
+def _node(row: DataLine, last: int, before: LegacyNode | None) -> LegacyNode:
     id_, *codes = (row.item(k).whole(NAMES[k]) for k in (0, *range(3, 9)))
     row.need(NAMES, 3)
     x, y = row.item(1).real("X"), row.item(2).real("Y")
@@ -81,10 +81,10 @@ def _node(row: Row, last: int, before: Node | None) -> Node:
         if code == _SLAVED and not 0 < codes[3 + k] <= last:
             text = f"NF{k + 1} is 2 and KUP{k + 1} is {codes[3 + k]}, no node"
             raise mistake("L608", text, row.item(6 + k).span, "KUP is the node that it follows")
-    return Node(id_, x, y, tuple(codes[:3]), tuple(codes[3:6]), row)
+    return LegacyNode(id_, x, y, tuple(codes[:3]), tuple(codes[3:6]), row)
 
 
-def _between(before: Node, after: Node, draft: Draft) -> list[Node]:
+def _between(before: LegacyNode, after: LegacyNode, draft: Draft) -> list[LegacyNode]:
     """Generate the nodes that lie evenly between two given ones."""
     count = after.id - before.id
     what = f"nodes {before.id + 1} to {after.id - 1} lie evenly between {before.id} and {after.id}"
@@ -95,14 +95,14 @@ def _between(before: Node, after: Node, draft: Draft) -> list[Node]:
     draft.doubt(after.row.span, f"{what}, with their supports")
     nodes = []
     for k in range(1, count):
-        share = k / count
-        x = before.x + share * (after.x - before.x)
-        y = before.y + share * (after.y - before.y)
-        nodes.append(Node(before.id + k, x, y, after.codes, after.masters, after.row))
+        fraction = k / count
+        x = before.x + fraction * (after.x - before.x)
+        y = before.y + fraction * (after.y - before.y)
+        nodes.append(LegacyNode(before.id + k, x, y, after.codes, after.masters, after.row))
     return nodes
 
 
-def write(nodes: dict[int, Node], draft: Draft) -> None:
+def write(nodes: dict[int, LegacyNode], draft: Draft) -> None:
     """Add the lines of NODES."""
     for node in nodes.values():
         try:
@@ -118,7 +118,7 @@ def write(nodes: dict[int, Node], draft: Draft) -> None:
         draft.add("NODES", text, node.row.span, notes)
 
 
-def _slaved(node: Node, nodes: dict[int, Node], draft: Draft) -> tuple[str, list[str]]:
+def _slaved(node: LegacyNode, nodes: dict[int, LegacyNode], draft: Draft) -> tuple[str, list[str]]:
     """Items of a node that is slaved to another, and comments; both empty for others."""
     ways = [k for k in range(3) if node.codes[k] == _SLAVED]
     if not ways:
@@ -140,11 +140,11 @@ def _slaved(node: Node, nodes: dict[int, Node], draft: Draft) -> tuple[str, list
     return f"  SLAVED={letters} MASTER={master}", notes
 
 
-def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: Draft) -> None:
+def drifts(rows: DataLines, levels: int, place: Span, nodes: dict[int, LegacyNode], draft: Draft) -> None:
     """Add the lines of DRIFT: each storey between neighbours in the list, which holds as many nodes as
     NLEVEL says, at its `place` among the control lines.
     """
-    listed: list[tuple[int, Row]] = []
+    listed: list[tuple[int, DataLine]] = []
     count = 0  # wrong items included: NLEVEL need not change where these are corrected
     for row in rows:
         for item in row.items:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from pound_deck.schema import Catalog
 from pound_legacy.draft import Draft
-from pound_legacy.lines import Rows
-from pound_legacy.nodes import Node
+from pound_legacy.lines import DataLines
+from pound_legacy.nodes import LegacyNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +21,8 @@ class PropertySet:
     """
 
     number: int
-    rows: Rows
-    ends: list[tuple[Node, Node]]
+    rows: DataLines
+    ends: list[tuple[LegacyNode, LegacyNode]]
     elastic: bool
     catalog: Catalog
     draft: Draft

@@ -8,9 +8,9 @@ from pound_deck.diagnostics import Diagnostic, Mistake, mistake
 from pound_deck.schema import Catalog
 from pound_legacy import frames, springs
 from pound_legacy.draft import Draft
-from pound_legacy.elements import Member
-from pound_legacy.lines import Row, Rows
-from pound_legacy.nodes import Node
+from pound_legacy.elements import LegacyMember
+from pound_legacy.lines import DataLine, DataLines
+from pound_legacy.nodes import LegacyNode
 from pound_legacy.property_set import PropertySet
 
 READERS: Final = {"SPRING": springs.read, "FRAME": frames.read}
@@ -22,10 +22,10 @@ OTHERS: Final = (
 
 
 def read(
-    rows: Rows,
+    rows: DataLines,
     count: int,
-    members: dict[int, Member],
-    nodes: dict[int, Node],
+    members: dict[int, LegacyMember],
+    nodes: dict[int, LegacyNode],
     elastic: bool,
     catalog: Catalog,
     draft: Draft,
@@ -51,7 +51,7 @@ def read(
         draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NTYPE, or take them out"))
 
 
-def _kind(head: Row, expected: int) -> str:
+def _kind(head: DataLine, expected: int) -> str:
     """Type of the property set on its first line; raise Mistake where it cannot be read."""
     if head.item(0).whole("the number of a property set") != expected or len(head.items) < 2:
         text = f"a line `{expected} TYPE` should begin property set {expected}"
@@ -69,11 +69,11 @@ def _kind(head: Row, expected: int) -> str:
     return word
 
 
-def _skip(rows: Rows) -> None:
+def _skip(rows: DataLines) -> None:
     """Skip lines up to one that begins a property set: a number and a word."""
     while rows.more and not _begins(rows.peek()):
         rows.next("a line")
 
 
-def _begins(row: Row) -> bool:
+def _begins(row: DataLine) -> bool:
     return len(row.items) > 1 and row.items[0].numeric and not row.items[1].numeric

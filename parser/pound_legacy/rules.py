@@ -12,12 +12,12 @@ from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_deck.schema import Catalog, Spec
 from pound_legacy.draft import Draft, number, numbers
-from pound_legacy.lines import Row, Rows
+from pound_legacy.lines import DataLine, DataLines
 
 Values = dict[str, float]
 
 
-class Layout(NamedTuple):
+class RuleLayout(NamedTuple):
     """Items of a rule's lines, and their conversion to the new deck.
 
     `write` converts the values, including the post-yield ratio R, to items of the new deck; `losses` names
@@ -70,20 +70,20 @@ def _schoettler(v: Values) -> str:
 
 
 LAYOUTS: Final = {
-    0: Layout((), _nothing),
-    1: Layout((), _nothing),
-    2: Layout((), _ratio),
-    3: Layout((("R-exponent",),), _ramberg_osgood),
-    4: Layout((("ALFA", "BETA", "NF", "KKK"),), _takeda, (("NF", 1.0), ("KKK", 1.0))),
-    5: Layout((("GAP+", "GAP-", "IMODE"),), _slack),
-    7: Layout((), _ratio),
-    9: Layout(
+    0: RuleLayout((), _nothing),
+    1: RuleLayout((), _nothing),
+    2: RuleLayout((), _ratio),
+    3: RuleLayout((("R-exponent",),), _ramberg_osgood),
+    4: RuleLayout((("ALFA", "BETA", "NF", "KKK"),), _takeda, (("NF", 1.0), ("KKK", 1.0))),
+    5: RuleLayout((("GAP+", "GAP-", "IMODE"),), _slack),
+    7: RuleLayout((), _ratio),
+    9: RuleLayout(
         (("FU", "FI", "PTRI", "PUNL", "GAP+", "GAP-", "BETA", "ALPHA", "LOOP"),), _stewart, (("LOOP", 0.0),)
     ),
-    10: Layout((("ALFA",),), _alfa),
-    11: Layout((("ALFA",),), _alfa),
-    12: Layout((("ALFA",),), _alfa),
-    52: Layout(
+    10: RuleLayout((("ALFA",),), _alfa),
+    11: RuleLayout((("ALFA",),), _alfa),
+    12: RuleLayout((("ALFA",),), _alfa),
+    52: RuleLayout(
         (
             ("Kneg", "Rbeg", "Fcr+", "Fcr-", "Rho+", "Rho-", "Dult+", "Dult-", "IOP"),
             ("ALFA", "BETA", "PINCH", "KAPPA+", "FRESID", "DFACTOR"),
@@ -111,7 +111,7 @@ def known(code: int, place: Span, catalog: Catalog) -> Spec:
     return spec
 
 
-def read(code: int, rows: Rows, ratio: float, draft: Draft, notes: list[str]) -> str:
+def read(code: int, rows: DataLines, ratio: float, draft: Draft, notes: list[str]) -> str:
     """Read the next set of lines of a rule; return its items in the new deck.
 
     Raises
@@ -120,7 +120,7 @@ def read(code: int, rows: Rows, ratio: float, draft: Draft, notes: list[str]) ->
         A line is missing or holds something else.
     """
     layout, values = LAYOUTS[code], {"R": ratio}
-    first: Row | None = None
+    first: DataLine | None = None
     for names in layout.lines:
         row = rows.next(f"the parameters of rule {code}: {' '.join(names)}")
         first = first or row

@@ -12,7 +12,7 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_legacy import loss, rules
 from pound_legacy.draft import number, numbers
-from pound_legacy.lines import Row
+from pound_legacy.lines import DataLine
 from pound_legacy.property_set import PropertySet
 
 NAMES: Final = ("ITYPE", "IHYST", "ILOS", "IDAMG", "KX", "KY", "GJ", "WGT", "RF", "RT")
@@ -56,7 +56,7 @@ def read(props: PropertySet, label: str) -> None:
     props.draft.add("PROPS", text.rstrip(), row.span, notes)
 
 
-def _axes(props: PropertySet, stiff: list[float], row: Row, notes: list[str]) -> None:
+def _axes(props: PropertySet, stiff: list[float], row: DataLine, notes: list[str]) -> None:
     """Warn of the convention for directions of components, and of the effect of a spring's length."""
     if any(length == 0.0 for length in props.lengths) and stiff[0] != stiff[1]:
         notes.append(props.draft.doubt(row.span, "a spring without length has x along global x"))
@@ -74,7 +74,7 @@ def _yielding(
     losing: int,
     stiff: list[float],
     ratios: tuple[float, float, float],
-    row: Row,
+    row: DataLine,
     notes: list[str],
 ) -> str:
     """Text of the items of the components that yield; empty where none does, or all is elastic."""

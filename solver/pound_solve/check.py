@@ -80,7 +80,7 @@ class Check:
         return self.verdict is Verdict.LOOK
 
     @property
-    def told(self) -> str:
+    def value_text(self) -> str:
         """The value with its unit."""
         return f"{self.value:.3g} {self.unit}".rstrip()
 
@@ -92,7 +92,7 @@ class Check:
 
     def __str__(self) -> str:
         allowed = f", {self.bound} {self.allowed:.3g} {self.unit}".rstrip() if self.bound else ""
-        return f"{self.name}: {self.told}{allowed}" + (f"; {self.remark}" if self.remark else "")
+        return f"{self.name}: {self.value_text}{allowed}" + (f"; {self.remark}" if self.remark else "")
 
     def row(self) -> tuple[Any, ...]:
         """Row of the table `checks`, in the order of `COLUMNS`."""

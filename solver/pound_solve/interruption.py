@@ -31,7 +31,7 @@ class Interruption:
 
     def __init__(self) -> None:
         self.pending = False
-        self._told = False
+        self._reported = False
         self._before: dict[int, object] = {}
 
     def __enter__(self) -> Self:
@@ -48,9 +48,9 @@ class Interruption:
             signal.signal(number, handler)  # type: ignore[arg-type]
 
     def _take(self, number: int, _: FrameType | None) -> None:
-        if self._told:
+        if self._reported:
             os._exit(128 + number)
-        self._told = self.pending = True
+        self._reported = self.pending = True
         name = signal.Signals(number).name
         text = f"\npound-solve: {name}: the run ends with what it has; a second one ends it at once\n"
         with suppress(OSError, ValueError):  # the terminal may be gone

@@ -12,7 +12,7 @@ from highlighters.words import words
 from pound_deck.cards import parse
 from pound_deck.expressions import Expression
 from pound_deck.sections import CARDS, NAMES
-from pound_deck.source import INCLUDE, Source, is_end, without_comment
+from pound_deck.source import INCLUDE, DeckSource, is_end, without_comment
 from pound_solve.catalog import catalog
 from pound_solve.report.listing import vocabulary
 from refresh_manual import editors
@@ -140,7 +140,7 @@ def test_decks_are_coloured_as_they_are_read(path):
         code = without_comment(line)
         if code != line:
             assert seen[number, len(code) + 1, len(line) + 1] == "comment.line.exclamation"
-    lines = Source().logical(str(path), text)
+    lines = DeckSource().logical(str(path), text)
     section = ""
     for row in parse((x for x in lines if not INCLUDE.match(x.text) and not is_end(x.text)), []):
         section = row.word if row.word in NAMES else section

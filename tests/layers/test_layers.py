@@ -19,7 +19,7 @@ DECK, LEGACY, SOLVER = (
 )
 
 #: layers, the lowest first: a layer may import only from itself and from layers below it
-ROOMS = (
+LAYERS = (
     "version",
     "deck",
     "modules",
@@ -116,7 +116,7 @@ WITHIN = {
         "fragility_of_sweep",
         "needed_gaps",
     ),
-    "sweep": ("study", "execution", "plan", "table", "session", "hunt"),
+    "sweep": ("study", "execution", "plan", "table", "session", "ida"),
     "driver": (
         "request",
         "record_card",
@@ -152,7 +152,7 @@ ONLY_IN = {
     "pygls": {"editor/server.py"},
     "lsprotocol": {"editor/server.py"},
 }
-#: rooms and modules that read no file and print nothing
+#: layers and modules that read no file and print nothing
 NUMERICS = (
     "numerics",
     "statistics/fragility",
@@ -229,10 +229,10 @@ def imported(path):
     return facts(path).imported
 
 
-def room(dotted):
+def layer(dotted):
     """The first folder or module below ``pound_solve``."""
     words = dotted.split(".")
-    return words[1] if len(words) > 1 and words[1] in ROOMS else "__init__"
+    return words[1] if len(words) > 1 and words[1] in LAYERS else "__init__"
 
 
 def test_files_of_a_user_are_read_in_one_way():
@@ -288,7 +288,7 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
         assert taken <= allowed, path
 
 
-def test_every_room_is_known_and_few_modules_lie_outside_of_rooms():
+def test_every_layer_is_known_and_few_modules_lie_outside_of_layers():
     flat = {p.stem for p in SOLVER.glob("*.py")}
     assert flat == {
         "__init__",
@@ -301,7 +301,7 @@ def test_every_room_is_known_and_few_modules_lie_outside_of_rooms():
         "modules",
         "version",
     }
-    assert {p.name for p in SOLVER.iterdir() if (p / "__init__.py").is_file()} == set(ROOMS) - flat
+    assert {p.name for p in SOLVER.iterdir() if (p / "__init__.py").is_file()} == set(LAYERS) - flat
 
 
 def test_imports_go_down():
@@ -309,7 +309,7 @@ def test_imports_go_down():
         own = path.relative_to(SOLVER).parts[0].removesuffix(".py")
         for name in imported(path):
             if name.startswith("pound_solve"):
-                assert ROOMS.index(room(name)) <= ROOMS.index(own), f"{place(path)} imports {name}"
+                assert LAYERS.index(layer(name)) <= LAYERS.index(own), f"{place(path)} imports {name}"
 
 
 def test_no_modules_import_each_other_in_a_circle():
@@ -323,7 +323,7 @@ def test_no_modules_import_each_other_in_a_circle():
 
 
 @pytest.mark.parametrize("name", WITHIN)
-def test_imports_go_down_within_a_room(name):
+def test_imports_go_down_within_a_layer(name):
     order = WITHIN[name]
     for path in (SOLVER / name).rglob("*.py"):
         own = path.relative_to(SOLVER / name).parts[0].removesuffix(".py")
@@ -333,8 +333,8 @@ def test_imports_go_down_within_a_room(name):
                 assert order.index(words[2]) <= order.index(own), f"{place(path)} imports {dotted}"
 
 
-@pytest.mark.parametrize("name", [x for x in ROOMS if (SOLVER / x).is_dir()])
-def test_parts_of_a_room_import_each_other_one_way(name):
+@pytest.mark.parametrize("name", [x for x in LAYERS if (SOLVER / x).is_dir()])
+def test_parts_of_a_layer_import_each_other_one_way(name):
     """Files and folders of a layer, each folder as one part."""
     needs = {}
     for path in (SOLVER / name).rglob("*.py"):

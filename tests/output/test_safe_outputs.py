@@ -17,7 +17,7 @@ import pytest
 import pound_solve
 from legacy.decks import STICK
 from pound_deck.model import Units
-from pound_solve.analyses.envelopes import Envelopes
+from pound_solve.analyses.envelopes import ResponseEnvelopes
 from pound_solve.analyses.recorder import EnergyBalance, HistoryRecorder
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError
@@ -25,7 +25,7 @@ from pound_solve.interruption import Interruption
 from pound_solve.results import Results, ResultsError, Writer, place, safe_file
 from pound_solve.results.place import digest_in
 from pound_solve.results.whole_file import partial, write_text
-from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from sweep.small import folder, swept
 from tiers import each_once
 
@@ -202,7 +202,7 @@ def interrupt(monkeypatch):
     [
         (safe_file.SafeFile, "write", 400, "stopped"),
         (safe_file.SafeFile, "commit", 60, "stopped"),
-        (Envelopes, "take", 9, "stopped"),
+        (ResponseEnvelopes, "take", 9, "stopped"),
         (EnergyBalance, "take", 9, "stopped"),
         (HistoryRecorder, "closeups", 0, "done"),
         (Writer, "finish", 0, "done"),
@@ -613,7 +613,7 @@ def test_nothing_stays_of_a_report_or_of_histories_that_find_no_room(tmp_path):
         with pytest.raises(ResultsError, match=r"model\.rpt: .*; the results of this run are in"):
             place.put_in_place(results, "report\n" * 100, whole=True)
         with pytest.raises(OSError, match=r"model\.npz"):
-            Journal(tmp_path).add(Entry("model", "done", histories=histories))
+            Journal(tmp_path).add(JournalEntry("model", "done", histories=histories))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert [path.name for path in tmp_path.iterdir()] == ["model.partial.h5"]

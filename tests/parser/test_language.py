@@ -8,7 +8,7 @@ from pound_deck.cards import parse_items
 from pound_deck.diagnostics import has_errors, render
 from pound_deck.model import Units
 from pound_deck.reader import read_deck, read_text
-from pound_deck.source import Line
+from pound_deck.source import LogicalLine
 
 HEAD = """NODES
  1 0 0 FIX=XYR
@@ -318,7 +318,7 @@ def test_twenty_thousand_lines(read):
 def test_lines_of_one_shape_are_parsed_once():
     shapes = {}
     for k in range(100):
-        parse_items(Line("deck.inp", k, f" {k} {k}/2  (3.5+{k})*h FIX=YR "), shapes)
+        parse_items(LogicalLine("deck.inp", k, f" {k} {k}/2  (3.5+{k})*h FIX=YR "), shapes)
     assert len(shapes) == 1
 
 

@@ -13,7 +13,7 @@ from pound_deck.layout import arranged, layout
 from pound_deck.model import Span
 from pound_deck.reader import read_text
 from pound_deck.schema import Spec
-from pound_deck.source import Source, without_comment
+from pound_deck.source import DeckSource, without_comment
 from pound_solve.catalog import catalog as solver_catalog
 from verification.generated.decks import deck
 
@@ -25,7 +25,7 @@ quiet = settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow])
 
 
 def text_of(path):
-    return Source().decode(str(path), path.read_bytes(), Span("", 1, 1, 2))
+    return DeckSource().decode(str(path), path.read_bytes(), Span("", 1, 1, 2))
 
 
 def bare(thing):
@@ -52,7 +52,7 @@ def meaning(text, name):
 def items(text):
     """Section-blind contents of every line of a text."""
     out = []
-    for row in parse(Source().logical("deck.inp", text), []):
+    for row in parse(DeckSource().logical("deck.inp", text), []):
         title = row.line.text.split() if row.word == "TITLE" else None
         out.append((row.word, title, [(i.name, i.text) for i in row.items]))
     return out

@@ -11,7 +11,7 @@ from pound_deck.cards import parse_items
 from pound_deck.diagnostics import render
 from pound_deck.messages import MESSAGES
 from pound_deck.reader import read_text
-from pound_deck.source import Line
+from pound_deck.source import LogicalLine
 
 DECK = """TITLE  Two towers
 UNITS  kN m s
@@ -95,8 +95,8 @@ def test_known_shapes_change_nothing(lines, data):
 
     shapes = {}
     for line in lines:
-        card = Line("deck.inp", 1, line)
-        same_kinds = Line(
+        card = LogicalLine("deck.inp", 1, line)
+        same_kinds = LogicalLine(
             "deck.inp", 2, re.sub(r"(?<![\w.])(\d+|(?!TO\b|BY\b)[A-Za-z]+)(?![\w.])", other, line)
         )
         for one in (card, same_kinds):

@@ -1,4 +1,4 @@
-"""Incremental analyses from a study's file: lines of a linear oscillator, resumed hunts, fragilities."""
+"""Incremental analyses from a study's file: lines of a linear oscillator, resumed analyses, fragilities."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from pound_solve.results.sweep_file import Sweep
 from pound_solve.statistics import fractiles
 from pound_solve.statistics.curves import Asked, CurveError, curves
 from pound_solve.statistics.fragility_of_sweep import fit
-from pound_solve.sweep import hunt
+from pound_solve.sweep import ida
 from pound_solve.sweep.execution.executors import Engine
 from pound_solve.sweep.session import Session
 from pound_solve.sweep.study.document import Document
@@ -43,24 +43,24 @@ def study(tmp_path, more="", deck=ALONE):
     return folder(tmp_path, STUDY.format(period=2 * np.pi / OMEGA, more=more), deck)
 
 
-def hunted(path, executor=None, stop=None):
+def analysed(path, executor=None, stop=None):
     """The table of an analysis, whose rounds may be interrupted after some runs."""
     document = Document.read(str(path))
-    aim = hunt.aim(document)
+    aim = ida.aim(document)
     own = executor or Here()
-    session = Session(read(document, (hunt.TABLE,)), Engine(lambda: own, 1, 1, 1, True))
+    session = Session(read(document, (ida.TABLE,)), Engine(lambda: own, 1, 1, 1, True))
 
     def report(state):
         if stop is not None and own.runs >= stop and not state.ending:
             raise KeyboardInterrupt
 
-    hunt.Hunt(session, aim).carry_out(report)
+    ida.IncrementalAnalysis(session, aim).carry_out(report)
     return Sweep.open(session.write()), aim
 
 
 def test_a_linear_oscillator_has_straight_lines(tmp_path):
     """Its demand is Sd(T1), of which the levels are shares: all lines have the slope g / omega^2."""
-    sweep, aim = hunted(study(tmp_path))
+    sweep, aim = analysed(study(tmp_path))
     (one, other) = curves(sweep, aim.asked)
     assert (one.record, other.record) == ("first.txt", "second.txt")
     for curve in (one, other):
@@ -80,22 +80,22 @@ def test_a_linear_oscillator_has_straight_lines(tmp_path):
 
 @pytest.mark.full
 def test_an_interrupted_analysis_goes_on_and_ends_the_same(tmp_path):
-    whole, aim = hunted(
+    whole, aim = analysed(
         study(tmp_path / "a" if (tmp_path / "a").mkdir() is None else tmp_path, "limit = 0.2")
     )
     (tmp_path / "b").mkdir()
     path, total = study(tmp_path / "b", "limit = 0.2"), 0
     for stop in (1, 4, 3, 100):
         count = Here()
-        sweep, _ = hunted(path, count, stop)
+        sweep, _ = analysed(path, count, stop)
         total += count.runs
     assert total == len(whole) == len(sweep)
     assert curves(sweep, aim.asked) == curves(whole, aim.asked)
     assert sweep["identity"].tolist() == whole["identity"].tolist()
 
 
-def test_limits_end_the_hunt_and_give_fragilities(tmp_path):
-    sweep, aim = hunted(study(tmp_path, "limit = 0.2"))
+def test_limits_end_the_analysis_and_give_fragilities(tmp_path):
+    sweep, aim = analysed(study(tmp_path, "limit = 0.2"))
     slope = [c.points[0].demand / c.points[0].level for c in curves(sweep, aim.asked)]
     (found,) = fit(sweep, aim.asked, [0.1])
     capacities = 0.1 / np.array(slope)
@@ -110,7 +110,7 @@ def test_contact_is_a_demand_like_any_other(tmp_path):
     deck = ALONE.replace("gap = 9", "gap = 0.02")
     path = study(tmp_path, deck=deck)
     path.write_text(path.read_text().replace('demand = "peak_drift"', 'demand = "closures"'))
-    sweep, _ = hunted(path)
+    sweep, _ = analysed(path)
     for curve in curves(sweep, Asked("closures")):
         assert curve.points[0].demand == 0.0 and curve.points[-1].demand >= 1.0
         met = next(p.level for p in curve.points if p.demand >= 1.0)
@@ -134,8 +134,8 @@ def test_mistakes_of_the_table_have_places(tmp_path, capsys, change, code, why):
     path.write_text(path.read_text().replace(*change))
     document = Document.read(str(path))
     with pytest.raises(StudyError) as told:
-        hunt.aim(document)
-        read(document, (hunt.TABLE,))
+        ida.aim(document)
+        read(document, (ida.TABLE,))
     (found,) = told.value.diagnostics
     assert found.code == code and why in found.message
     assert path.read_text().splitlines()[found.span.line - 1].lstrip()[:3] in (
@@ -155,7 +155,7 @@ def test_a_sweep_tells_whose_table_it_is(tmp_path, capsys):
 
 
 def test_what_a_sweep_does_not_hold_is_told(tmp_path):
-    sweep, _ = hunted(study(tmp_path))
+    sweep, _ = analysed(study(tmp_path))
     for asked, why in (
         (Asked("drift"), "there is no quantity drift"),
         (Asked("peak_drift", "roof"), "storey"),
@@ -170,7 +170,7 @@ def test_what_a_sweep_does_not_hold_is_told(tmp_path):
 def test_the_verbs_print_tables(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("POUND_COMPILE", "0")
     path = study(tmp_path, "limit = 0.2")
-    hunted(path)
+    analysed(path)
     picture = tmp_path / "pictures/ida.svg"
     assert main(["ida", str(path), "--workers", "1", "--picture", str(picture)]) == 0
     assert "peak drift storey" not in picture.read_text() and "peak drift [m]" in picture.read_text()

@@ -16,8 +16,8 @@ from pound_solve.statistics.curves import Asked, CurveError, curves, demands
 from pound_solve.statistics.fragility import from_capacities
 from pound_solve.statistics.fragility_of_sweep import STOPS, fit
 from pound_solve.statistics.incremental import capacity
-from pound_solve.statistics.needed_gaps import Group, Options, groups
-from pound_solve.statistics.separation import RULES, Peaks, correlation, share
+from pound_solve.statistics.needed_gaps import NeededGaps, Options, groups
+from pound_solve.statistics.separation import RULES, SeparationPeaks, correlation, share
 from sweep.small import swept
 
 T1, T2, XI = 0.5, 0.8, 0.05
@@ -255,7 +255,7 @@ def test_a_correlation_that_is_not_known_leaves_its_rule_out():
     assert "DDC" not in {row[3] for row in probabilities([group], Options())}
     (group,) = groups(synthetic(np.array([[0.04], [0.06]]), rho=math.nan), Options(correlation=1.0))
     assert group.rules[2] == pytest.approx(0.01)
-    assert math.isnan(Peaks(0.1, 0.2).difference) and Peaks(0.1, 0.0).difference == 0.1
+    assert math.isnan(SeparationPeaks(0.1, 0.2).difference) and SeparationPeaks(0.1, 0.0).difference == 0.1
 
 
 def test_the_verb_writes_all_of_it(free, tmp_path, capsys):
@@ -320,4 +320,4 @@ def test_a_picture_of_runs_that_all_met():
     assert found[0].fitted is None and all(map(math.isnan, found[0].rules))
     (shown,) = drawn(own, found, Options())
     assert shown.rules == [] and shown.gaps[-1] == 9.0 and isinstance(shown, suites.Contacts)
-    assert isinstance(found[0], Group)
+    assert isinstance(found[0], NeededGaps)

@@ -25,7 +25,7 @@ from pound_solve.sweep import run_study
 from pound_solve.sweep import session as sessions
 from pound_solve.sweep.execution import executors
 from pound_solve.sweep.execution.executors import Engine
-from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.execution.limits import within
 from pound_solve.sweep.execution.work import prepared
 from sweep.small import DECK, STUDY, Here, folder, record, session, swept
@@ -361,17 +361,17 @@ def test_processes_stay_between_the_rounds_of_a_study(tmp_path):
 
 def test_two_sweeps_do_not_write_one_folder(tmp_path, capsys):
     pytest.importorskip("fcntl")
-    from pound_solve.sweep.execution.lock import BusyError, locked
+    from pound_solve.sweep.execution.lock import FolderBusyError, locked
 
     with (
         locked(tmp_path / "out"),
-        pytest.raises(BusyError, match="another sweep"),
+        pytest.raises(FolderBusyError, match="another sweep"),
         locked(tmp_path / "out"),
     ):
         pass
     with locked(tmp_path / "out", "1-of-2"), locked(tmp_path / "out", "2-of-2"):
         for piece in ("1-of-2", ""):
-            with pytest.raises(BusyError), locked(tmp_path / "out", piece):
+            with pytest.raises(FolderBusyError), locked(tmp_path / "out", piece):
                 pass
     with locked(tmp_path / "out"):
         pass
@@ -397,7 +397,7 @@ class Foreseen(Executor):
 
     def submit(self, function, run, settings):
         self.ran.append((run.number, run.case.tol))
-        entry = Entry(run.identity, "done", cpu=self.cpu[run.case.tol], values=self.values)
+        entry = JournalEntry(run.identity, "done", cpu=self.cpu[run.case.tol], values=self.values)
         Journal(settings.journal).add(entry)
         future = Future()
         future.set_result(entry)
@@ -499,10 +499,12 @@ def test_a_disk_that_is_full_ends_the_sweep_in_words_and_loses_nothing(tmp_path,
 
 def test_a_line_that_the_disk_takes_in_part_is_taken_back(tmp_path):
     journal = Journal(tmp_path)
-    journal.add(Entry("first", "done"))
+    journal.add(JournalEntry("first", "done"))
     (path,) = tmp_path.iterdir()
     path.write_bytes(path.read_bytes() + b'{"identity": "sec')
-    journal.add(Entry("third", "stopped", "A503", values={"drift": {"a": float("nan"), "b": 0.1 + 0.2}}))
+    journal.add(
+        JournalEntry("third", "stopped", "A503", values={"drift": {"a": float("nan"), "b": 0.1 + 0.2}})
+    )
     found = journal.entries()
     assert list(found) == ["first", "third"] and found["third"].message == "A503"
     (_, (identity, values)) = journal.values(found)

@@ -18,7 +18,7 @@ import pytest
 import pound_solve
 from kernels import interpreted
 from pound_deck.schema import Spec
-from pound_solve.assess.law_test import has_loop, specimen
+from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law
 from pound_solve.numerics import library
@@ -27,6 +27,7 @@ from pound_solve.numerics.library import Library
 from pound_solve.numerics.providers import provider
 from pound_solve.results import Results
 from pound_solve.structure.corotational import member_actions
+from samples import has_loop
 
 pytestmark = pytest.mark.slow
 

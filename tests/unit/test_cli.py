@@ -13,7 +13,7 @@ import pytest
 
 from pound_solve import run
 from pound_solve.cli.main import main
-from pound_solve.cli.progress import Progress
+from pound_solve.cli.progress import AnalysisProgress
 from pound_solve.driver.run import DeckError
 from pound_solve.integrate.kernels.allocation import SAMPLES
 from pound_solve.interruption import Interruption
@@ -352,7 +352,7 @@ def test_what_keeps_a_run_waiting_is_told_once_where_there_is_no_terminal(monkey
     stream = io.StringIO()
     stream.isatty = lambda: terminal
     monkeypatch.setattr(sys, "stderr", stream)
-    progress = Progress(quiet)
+    progress = AnalysisProgress(quiet)
     progress(0.0, 5.0, "compiling the kernels")
     if not terminal:
         progress(0.0, 5.0, "compiling the kernels")
@@ -370,7 +370,7 @@ def test_progress_tells_the_time_to_go_of_the_present_run(monkeypatch, terminal)
     stream.isatty = lambda: terminal
     monkeypatch.setattr(sys, "stderr", stream)
     monkeypatch.setattr("time.monotonic", lambda: next(clock))
-    progress = Progress(False)
+    progress = AnalysisProgress(False)
     for t in [*range(1, 11), *(0.1 * k for k in range(1, 101))]:  # two runs, a second for each time
         progress(t, 10.0, "")
     progress.end()

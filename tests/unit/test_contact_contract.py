@@ -2,9 +2,10 @@
 
 import pytest
 
-from pound_solve.assess.law_test import has_loop, protocol, specimen
+from pound_solve.assess.law_test import protocol, specimen
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import transitions
+from samples import has_loop
 
 CONTACTS = {name: specimen(spec)[0] for name, spec in catalog().family("contact").items() if has_loop(spec)}
 

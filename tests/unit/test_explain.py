@@ -172,9 +172,9 @@ def test_a_report_needs_no_numerics(tmp_path):
     run(path)
     modules, _ = main(["report", str(path.with_suffix(".h5"))])
     assert not libraries(modules) & (NUMERICS | {"lark", "matplotlib"})
-    rooms = {name.split(".")[1] for name in modules if name.startswith("pound_solve.")}
+    layers = {name.split(".")[1] for name in modules if name.startswith("pound_solve.")}
     flat = {"check", "deck", "interruption", "modules", "user_error", "version"}
-    assert rooms <= flat | {"cli", "numerics", "report", "results"}
+    assert layers <= flat | {"cli", "numerics", "report", "results"}
     assert {name for name in modules if name.startswith("pound_solve.numerics.")} == {
         "pound_solve.numerics.threads",
         "pound_solve.numerics.types",

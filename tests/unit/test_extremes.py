@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pound_solve.analyses.extremes import BYTES, Extremes, intervals
+from pound_solve.analyses.extremes import BYTES, IntervalExtremes, intervals
 
 
 @pytest.mark.parametrize(
@@ -26,7 +26,7 @@ def test_intervals_are_joined_by_twos_until_they_find_room(samples, count, room,
 
 def test_an_instant_between_two_intervals_belongs_to_both():
     """Three intervals of one second; values at their ends and in the middle one."""
-    found = Extremes(np.array([0.0, 1.0, 2.0, 3.0]), 1)
+    found = IntervalExtremes(np.array([0.0, 1.0, 2.0, 3.0]), 1)
     found.take(np.array([[1.0, 5.0, -4.0, 2.0]]), np.array([0.0, 1.0, 1.5, 2.0]))
     assert found.high.tolist() == [[5.0, 5.0, 2.0]]
     assert found.low.tolist() == [[1.0, -4.0, 2.0]]
@@ -36,7 +36,7 @@ def test_an_instant_between_two_intervals_belongs_to_both():
 
 def test_some_quantities_may_be_counted_in_alone():
     """The others stay as nothing had been seen, as all are in a blank one."""
-    found = Extremes(np.array([0.0, 1.0, 2.0]), 3)
+    found = IntervalExtremes(np.array([0.0, 1.0, 2.0]), 3)
     found.take(np.array([[3.0, 4.0], [-1.0, -2.0]]), np.array([0.5, 1.5]), np.array([2, 0]))
     nothing = [-np.inf, -np.inf]
     assert found.high.tolist() == [[-1.0, -2.0], nothing, [3.0, 4.0]]

@@ -9,7 +9,7 @@ from pound_solve.statistics.incremental import (
     FLAT,
     STANDS,
     STOPPED,
-    Point,
+    IdaPoint,
     Rules,
     capacity,
     collapse,
@@ -21,10 +21,10 @@ from pound_solve.statistics.incremental import ends, next_level  # isort: skip
 
 def trace(demand, rules, first=0.1):
     """All points of a record whose demand is a function of the level."""
-    points = [Point(first, demand(first))]
+    points = [IdaPoint(first, demand(first))]
     while (level := next_level(points, rules)) is not None:
         assert all(abs(level - p.level) > 1e-9 * level for p in points), "no level is run twice"
-        points = sorted([*points, Point(level, demand(level))])
+        points = sorted([*points, IdaPoint(level, demand(level))])
     return points
 
 
@@ -80,7 +80,7 @@ def test_a_curve_that_goes_flat_has_collapsed():
 
 def test_what_stands_again_above_a_collapse_counts_as_collapsed():
     rules = Rules(step=0.1)
-    points = [Point(0.1, 0.002), Point(0.2, math.inf), Point(0.3, 0.005)]
+    points = [IdaPoint(0.1, 0.002), IdaPoint(0.2, math.inf), IdaPoint(0.3, 0.005)]
     assert collapse(points, rules) == (0.1, 0.2)
     assert ends(points, rules) == [STANDS, STOPPED, STANDS]
     assert capacity(points, rules, 0.004) == (0.1, 0.2)
@@ -88,10 +88,10 @@ def test_what_stands_again_above_a_collapse_counts_as_collapsed():
 
 def test_counts_and_what_begins_between_two_runs_are_not_interpolated():
     rules = Rules(step=0.1)
-    counted = [Point(0.1, 1.0), Point(0.2, 3.0), Point(0.3, 9.0)]
+    counted = [IdaPoint(0.1, 1.0), IdaPoint(0.2, 3.0), IdaPoint(0.3, 9.0)]
     assert capacity(counted, rules, 2.0, in_steps=True) == (0.1, 0.2)
     assert capacity(counted, rules, 1.0, in_steps=True) == (0.0, 0.1)
-    force = [Point(0.1, 0.0), Point(0.2, 300.0), Point(0.3, 500.0)]
+    force = [IdaPoint(0.1, 0.0), IdaPoint(0.2, 300.0), IdaPoint(0.3, 500.0)]
     assert capacity(force, rules, 100.0) == (0.1, 0.2)
     assert capacity(force, rules, 400.0) == pytest.approx((0.25, 0.25), rel=1e-12)
 
@@ -99,9 +99,9 @@ def test_counts_and_what_begins_between_two_runs_are_not_interpolated():
 def test_levels_follow_from_the_points_alone():
     """Whatever is left of an interrupted analysis, the next level is that of an undisturbed one."""
     rules = Rules(step=0.1, growth=0.1, runs=12)
-    demand, points, order = falls_at(0.77), [Point(0.1, linear(0.1))], [0.1]
+    demand, points, order = falls_at(0.77), [IdaPoint(0.1, linear(0.1))], [0.1]
     while (level := next_level(points, rules)) is not None:
         order.append(level)
-        points = sorted([*points, Point(level, demand(level))])
+        points = sorted([*points, IdaPoint(level, demand(level))])
     for n in range(1, len(order)):
-        assert next_level(sorted(Point(x, demand(x)) for x in order[:n]), rules) == order[n]
+        assert next_level(sorted(IdaPoint(x, demand(x)) for x in order[:n]), rules) == order[n]

@@ -16,8 +16,7 @@ from hypothesis import strategies as st
 from pound_solve.assess.law_test import (
     AXES,
     LawTestError,
-    Point,
-    has_loop,
+    LoopPoint,
     law_of,
     protocol,
     specimen,
@@ -28,6 +27,7 @@ from pound_solve.catalog import specs
 from pound_solve.cli.main import main
 from pound_solve.laws.automaton import Law, drive, transitions
 from pound_solve.report import text_plot
+from samples import has_loop
 
 LAWS = [s for s in specs() if s.family in AXES and has_loop(s)]
 
@@ -36,7 +36,7 @@ def law(name: str, *items: str) -> Law:
     return specimen(law_of(name), items)[0].law
 
 
-def corners(points: tuple[Point, ...]) -> list[tuple[float, float, str]]:
+def corners(points: tuple[LoopPoint, ...]) -> list[tuple[float, float, str]]:
     return [(p.d, p.f, p.branch) for p in points]
 
 
@@ -285,6 +285,6 @@ def test_ticks_are_round() -> None:
 
 def test_rounding_is_printed_as_nought() -> None:
     text = table(
-        [Point(1.0, 5e-17, "a", 1.0, 2e-33, 1.0, True), Point(2.0, 1.0, "b", 2.0, 1.0, 1.0, False)]
+        [LoopPoint(1.0, 5e-17, "a", 1.0, 2e-33, 1.0, True), LoopPoint(2.0, 1.0, "b", 2.0, 1.0, 1.0, False)]
     )
     assert text.splitlines()[1].split() == ["1", "0", "1", "0", "1", "a", "turn"]

@@ -7,9 +7,10 @@ import pytest
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
-from pound_solve.assess.law_test import has_loop, specimen
+from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import BranchKind, drive
+from samples import has_loop
 from verification.cases import run_text
 
 LAWS = {

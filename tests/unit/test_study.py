@@ -13,12 +13,12 @@ import pytest
 
 from kernels import steps_alone
 from pound_solve.assess import advice, study
-from pound_solve.assess.advice import StudyError
+from pound_solve.assess.advice import MethodStudyError
 from pound_solve.assess.study import Plan
 from pound_solve.cli.main import main
 from pound_solve.driver import run
 from pound_solve.results import Results
-from pound_solve.results.study_record import Reference, Trial, order
+from pound_solve.results.study_record import MethodTrial, Reference, order
 from tiers import at_night
 
 pytestmark = pytest.mark.full
@@ -60,7 +60,7 @@ def studied(tmp_path_factory):
 
 def trial(steps, error, seconds=0.1, method="NEWMARK", stopped=""):
     found = {} if stopped else {**NONE, "drift": error}
-    return Trial(
+    return MethodTrial(
         method, f"DT={1 / steps if steps else 0:g}", (seconds,), steps, errors=found, stopped=stopped
     )
 
@@ -91,7 +91,7 @@ def test_an_error_is_the_largest_difference_over_the_largest_extreme_of_its_kind
 def test_extrapolation_finds_the_limit_of_what_shrinks_with_the_square_of_the_step():
     def rung(n, cubic=0.0):
         values = np.array([2.0 + 3.0 / n**2 + cubic / n**3, -1.0 + 1.0 / n**2])
-        return Trial("NEWMARK", f"DT={1 / n}", steps=n, peaks={("drift", ""): values})
+        return MethodTrial("NEWMARK", f"DT={1 / n}", steps=n, peaks={("drift", ""): values})
 
     found = advice.extrapolated("NEWMARK", [rung(10), rung(20), rung(45)])
     assert found.peaks["drift", ""] == pytest.approx([2.0, -1.0], abs=1e-14)
@@ -104,7 +104,7 @@ def test_extrapolation_finds_the_limit_of_what_shrinks_with_the_square_of_the_st
 
 def test_a_reference_needs_three_runs():
     rungs = [trial(10, 0.1), trial(20, 0.0, stopped="A503 no equilibrium"), trial(40, 0.1)]
-    with pytest.raises(StudyError, match="A503"):
+    with pytest.raises(MethodStudyError, match="A503"):
         advice.extrapolated("NEWMARK", rungs)
 
 
@@ -118,7 +118,7 @@ def test_a_tolerance_has_no_order():
     """It shortens some steps and not those that end with the record's."""
     rungs = trial(3726, 3.7e-4), trial(3743, 8.5e-5)
     by_tolerance = tuple(replace(t, method="LAGUERRE", setting=f"TOL={t.error:g}") for t in rungs)
-    orders = study.Study(rungs + by_tolerance, EXACTLY, ()).orders
+    orders = study.MethodStudy(rungs + by_tolerance, EXACTLY, ()).orders
     assert [math.isnan(x) for x in orders] == [True, False, True, True]
 
 
@@ -208,7 +208,7 @@ def test_only_cpu_time_breaks_a_run_off(two, monkeypatch, leaping):
         found, _ = study.run(two, plan)
         assert [t.stopped for t in found.trials] == [""] * 4  # two of NEWMARK made the reference
     else:
-        with pytest.raises(StudyError, match="longer than --longest"):
+        with pytest.raises(MethodStudyError, match="longer than --longest"):
             study.run(two, plan)
 
 

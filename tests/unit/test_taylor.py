@@ -10,10 +10,10 @@ import pytest
 
 from kernels import FAST, interpreted
 from pound_deck.schema import REQUIRED, Spec
-from pound_solve.assess.law_test import has_loop, specimen
+from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import catalog
 from pound_solve.integrate.series import branches, taylor
-from samples import written
+from samples import has_loop, written
 from tiers import at_night, each_once
 from unit.test_laplace import SOIL
 from verification.cases import ROOT, Ran, run_deck, run_text

@@ -11,10 +11,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
-from pound_solve.assess.law_test import has_loop, specimen
+from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law
 from pound_solve.numerics.types import Array
+from samples import has_loop
 from tiers import at_night, each_once
 from verification.cases import Ran, run_text
 

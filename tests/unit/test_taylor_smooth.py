@@ -13,10 +13,11 @@ from scipy.integrate import solve_ivp
 
 from kernels import FAST
 from pound_deck.schema import Spec
-from pound_solve.assess.law_test import has_loop, specimen
+from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import drive
 from pound_solve.numerics.types import Array
+from samples import has_loop
 from tiers import at_night, each_once
 from unit.test_taylor import LOADS
 from unit.test_taylor_massless import hinged

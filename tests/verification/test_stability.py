@@ -105,7 +105,9 @@ def judged(case, **given):
 
 
 def test_the_judge_tells_right_from_wrong():
-    case = scene_case.Case("linear", "", "", "", "", within=0.1, right=lambda t: np.array([[0.0], [1.0]]))
+    case = scene_case.StabilityCase(
+        "linear", "", "", "", "", within=0.1, right=lambda t: np.array([[0.0], [1.0]])
+    )
     ends = np.array([[0.0], [1.05]]), np.array([[0.0], [1.2]])
     assert judged(case, u=ends[0]) == judge.RIGHT
     assert judged(case, u=ends[1]) == judge.FAULT
@@ -135,7 +137,7 @@ RIGHT_RUN = isolated.Findings(
 
 def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
     """How a made-up run is judged against a reference that `nudged` stands for with other masses."""
-    case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+    case = scene_case.StabilityCase("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def run(case, deck, method):
         return (RIGHT_RUN if deck == case.deck else nudged) if "REFINE" in method else off
@@ -176,7 +178,7 @@ def test_nothing_is_judged_beyond_what_other_digits_of_the_masses_change():
 
 def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
     grazed = RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
-    case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+    case = scene_case.StabilityCase("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def run(other):
         def found(case, deck, method):
@@ -194,7 +196,7 @@ def test_springs_are_not_judged_where_a_body_turns_unless_the_reference_has_no_s
     turning = RIGHT_RUN._replace(v=np.where(LINE > 0.95, 1e-9, 1.0)[:, None])
     late, early = 1.0 * LINE, 1.0 * LINE
     late[-1], early[-2] = 1.2, 1.2
-    case = scene_case.Case("hysteresis", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+    case = scene_case.StabilityCase("hysteresis", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def end(f, by):
         def run(case, deck, method):
@@ -213,7 +215,7 @@ def test_springs_are_not_judged_where_a_body_turns_unless_the_reference_has_no_s
 def test_other_masses_show_a_touch_that_steps_take_for_rounding(monkeypatch):
     asked = []
     monkeypatch.setattr(judge, "nudged", lambda deck, share: asked.append(share) or deck)
-    case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+    case = scene_case.StabilityCase("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def run(case, deck, method):
         if "REFINE" in method:

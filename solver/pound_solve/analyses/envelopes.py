@@ -10,7 +10,7 @@ import numpy as np
 from pound_solve.analyses.cells import AT_ONCE, among_equals, may_exceed_alone
 from pound_solve.analyses.cells import NODES as OWN_NODES
 from pound_solve.analyses.closeups import Closeups
-from pound_solve.analyses.extremes import Extremes, intervals
+from pound_solve.analyses.extremes import IntervalExtremes, intervals
 from pound_solve.analyses.quantities import MOTION, Quantities
 from pound_solve.integrate.protocol import Course, Motion
 from pound_solve.numerics.crests import NODES, Doubts, crests, may_exceed, near, some_rows
@@ -79,7 +79,7 @@ class Envelope:
         return [max((high, t_high), (-low, t_low), key=lambda x: x[0]) for high, t_high, low, t_low in rows]
 
 
-class Envelopes:
+class ResponseEnvelopes:
     """Envelopes of the motion of some nodes, of the forces of some members and of sums of forces.
 
     Parameters
@@ -101,7 +101,7 @@ class Envelopes:
     Attributes
     ----------
     closeups : Closeups
-    extremes : Extremes
+    extremes : IntervalExtremes
         Within the intervals of the samples.
     node : dict of Envelope
         Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
@@ -137,7 +137,7 @@ class Envelopes:
         self.closeups = Closeups(np.flatnonzero(contacts[self.acting]), room)
         self.quantities = Quantities(system, nodes, outputs, sums, self.acting)
         count = self.quantities.count
-        self.extremes = Extremes(intervals(times, count, bytes_of_extremes), count)
+        self.extremes = IntervalExtremes(intervals(times, count, bytes_of_extremes), count)
         self.shown = self.quantities.shown | used_columns(system.law_rows[self.acting])
         if contacts.any():
             self.shown |= followed
@@ -153,7 +153,7 @@ class Envelopes:
         self.sums = parts
         self.seen, self.apart, self.searched = 0, 0.0, False
 
-    def blank(self) -> Envelopes:
+    def blank(self) -> ResponseEnvelopes:
         """Return empty envelopes of the same quantities."""
         other = copy.copy(self)
         other.closeups, other.extremes = self.closeups.blank(), self.extremes.blank()
@@ -184,7 +184,7 @@ class Envelopes:
             worst = max(worst, float(x[:2].max()) / (shear or 1.0), float(x[2]) / (moment or 1.0))
         return worst
 
-    def widen(self, other: Envelopes) -> None:
+    def widen(self, other: ResponseEnvelopes) -> None:
         """Include the extremes of another envelope of the same quantities."""
         self._all.widen(other._all)
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
@@ -270,11 +270,11 @@ class Envelopes:
         whole = self._whole(motion, s)
         self._all.take(whole, motion.t)
         self.extremes.take(whole, motion.t)
-        return self.told(whole)
+        return self.split_by_kind(whole)
 
     def values(self, motion: Motion) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Motion of nodes, forces of members and sums, as from `take`, at instants between samples."""
-        return self.told(self._whole(motion, self.quantities.inputs(motion.t)))
+        return self.split_by_kind(self._whole(motion, self.quantities.inputs(motion.t)))
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:
         """Values of all quantities, the constant ones included, shape (n, nt)."""
@@ -282,7 +282,7 @@ class Envelopes:
         values[self.quantities.place] = self.quantities.values(motion, s)
         return values
 
-    def told(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+    def split_by_kind(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Split the values of all quantities into those of nodes, members and sums."""
         parts = {name: whole[part] for name, part in self.quantities.parts.items()}
         return {q: parts.pop(q) for q in MOTION}, parts.pop("output"), parts

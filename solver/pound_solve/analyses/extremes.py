@@ -34,7 +34,7 @@ def intervals(times: Array, count: int, room: float) -> Array:
     return np.append(times[:-1:joined], times[-1])
 
 
-class Extremes:
+class IntervalExtremes:
     """Smallest and largest values of some quantities within contiguous intervals.
 
     Parameters
@@ -55,11 +55,11 @@ class Extremes:
         shape = count, max(len(bounds) - 1, 0)
         self.low, self.high = np.full(shape, np.inf), np.full(shape, -np.inf)
 
-    def blank(self) -> Extremes:
+    def blank(self) -> IntervalExtremes:
         """Return empty extremes of the same quantities and intervals."""
-        return Extremes(self.bounds, len(self.low))
+        return IntervalExtremes(self.bounds, len(self.low))
 
-    def widen(self, other: Extremes) -> None:
+    def widen(self, other: IntervalExtremes) -> None:
         """Include the extremes of another instance."""
         np.minimum(self.low, other.low, out=self.low)
         np.maximum(self.high, other.high, out=self.high)

@@ -187,12 +187,12 @@ class HistoryResult:
         energy = self.recorder.energy
         # not relative to the final input, which a free body may have returned
         if energy.largest <= self._rounding():
-            told = "nothing moves: there is no energy to compare"
-            return Check(Subject.ENERGY, RESIDUAL, 0.0, Bound.MOST, self._allowed, remark=told)
+            remark = "nothing moves: there is no energy to compare"
+            return Check(Subject.ENERGY, RESIDUAL, 0.0, Bound.MOST, self._allowed, remark=remark)
         ratio = energy.largest_residual / energy.largest
         if energy.samples < 2:
-            told = "the run ended before there was anything to compare"
-            return beyond(Subject.ENERGY, RESIDUAL, ratio, self._allowed, told)
+            remark = "the run ended before there was anything to compare"
+            return beyond(Subject.ENERGY, RESIDUAL, ratio, self._allowed, remark)
         return at_most(Subject.ENERGY, RESIDUAL, ratio, self._allowed, "energy is lost or made")
 
     def _closeups(self) -> Iterator[Check]:
@@ -206,8 +206,8 @@ class HistoryResult:
         """Compare the base shear with inertia and loads, if there are buildings."""
         if self.items.buildings:
             balance = self.recorder.envelopes.imbalance(self.items.buildings)
-            cure = "forces are out of balance; where a method takes time steps, shorter ones help"
-            yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, cure)
+            remedy = "forces are out of balance; where a method takes time steps, shorter ones help"
+            yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, remedy)
 
     def _hinges(self) -> Iterator[Check]:
         """Compare the peaks of hinges, which the method tracks between steps too, with the envelopes of
@@ -282,8 +282,8 @@ def output_interval(model: Model, loading: Loading, end: float) -> float:
     """
     every: float | None = model.output["EVERY"]
     if every is None:
-        told = [m.info for m in loading.motions] + [f.info for f in loading.forces]
-        steps = [dt for info in told if (dt := info.get("dt"))]
+        infos = [m.info for m in loading.motions] + [f.info for f in loading.forces]
+        steps = [dt for info in infos if (dt := info.get("dt"))]
         every = float(min(steps, default=end / ROWS))
         every *= max(1, round(end / every / ROWS))
     return every

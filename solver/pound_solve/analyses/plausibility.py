@@ -37,8 +37,8 @@ def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> It
     """Drifts beyond a tenth of their height."""
     for name, ratio in history.storey_drift_ratios():
         if ratio > LARGEST_DRIFT:
-            told = "check units, masses and strengths"
-            yield beyond(RESPONSE, f"drift ratio of {name}", 100 * ratio, 100 * LARGEST_DRIFT, told, "%")
+            remark = "check units, masses and strengths"
+            yield beyond(RESPONSE, f"drift ratio of {name}", 100 * ratio, 100 * LARGEST_DRIFT, remark, "%")
 
 
 def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -51,13 +51,13 @@ def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
     lost = [r.spring for r in history.springs if r.failed]
     if lost:
         name = f"springs and hinges without strength, first {lost[0].element} {lost[0].component}"
-        told = "their rule has failed them; what they carried is on others"
-        yield beyond(RESPONSE, name, len(lost), 0, told)
+        remark = "their rule has failed them; what they carried is on others"
+        yield beyond(RESPONSE, name, len(lost), 0, remark)
     failed = [r.damage.total for r in history.springs if r.damage is not None and r.damage.total >= 1.0]
     if failed:
         name = f"damage index of {len(failed)} springs and hinges"
-        told = "1 is failure; the model goes on as if they held"
-        yield beyond(RESPONSE, name, max(failed), 1, told)
+        remark = "1 is failure; the model goes on as if they held"
+        yield beyond(RESPONSE, name, max(failed), 1, remark)
 
 
 def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -68,11 +68,11 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
         ends = f"{len(far)} hinges" if len(far) > 1 else "one hinge"
         where = f"{worst.spring.component} of element {worst.spring.element}"
         name = f"plastic rotation of {ends}, largest {where}, ductility {worst.ductility:.3g}"
-        told = (
+        remark = (
             "many members lose strength from there on (of concrete: FEMA 356, Tables 6-7 and 6-8); "
             "DUCTU states a limit of your own"
         )
-        yield beyond(RESPONSE, name, worst.rotation, ORDINARY_ROTATION, told, "rad")
+        yield beyond(RESPONSE, name, worst.rotation, ORDINARY_ROTATION, remark, "rad")
 
 
 def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -93,8 +93,8 @@ def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) 
         worst = max(far, key=lambda r: r.ductility)
         ends = f"{len(far)} hinges" if len(far) > 1 else "one hinge"
         name = f"ductility of {ends}, largest {worst.spring.component} of element {worst.spring.element}"
-        told = "check yield moments, stiffnesses and their units"
-        yield beyond(RESPONSE, name, worst.ductility, LARGEST_DUCTILITY, told)
+        remark = "check yield moments, stiffnesses and their units"
+        yield beyond(RESPONSE, name, worst.ductility, LARGEST_DUCTILITY, remark)
 
 
 def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -109,8 +109,8 @@ def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
         for ductility, limit in zip(reached, (limits[0], limits[-1])):
             if ductility > limit:
                 name = f"ductility of {spring.component} of element {spring.element}"
-                told = f"beyond DULT the rule {spring.rule} is not known"
-                yield beyond(RESPONSE, name, ductility, limit, told)
+                remark = f"beyond DULT the rule {spring.rule} is not known"
+                yield beyond(RESPONSE, name, ductility, limit, remark)
 
 
 def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -126,8 +126,8 @@ def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
         element = structure.model.elements[structure.laws[i].element]
         which = f"contact {element.name or element.id}"
         name = f"largest share of a gap that closes, {which}" + f" and {len(far) - 1} more" * (len(far) > 1)
-        told = "check the unit of the gap, the direction of the contact and the strength of the motion"
-        yield at_least(RESPONSE, name, 100 * share, 100 * LEAST_CLOSURE, told, "%")
+        remark = "check the unit of the gap, the direction of the contact and the strength of the motion"
+        yield at_least(RESPONSE, name, 100 * share, 100 * LEAST_CLOSURE, remark, "%")
 
 
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -142,15 +142,15 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         overlap = max(outcome.peaks.deformation[i].high - law.gap, 0.0)
         name, limit = contact.name or str(law.element), law.facts["limit"]
         if overlap > limit:
-            about, told = f"overlap of contact {name} beyond its law", "its law is not meant for more"
-            yield beyond(RESPONSE, about, overlap, limit, told, model.units.length)
+            about, remark = f"overlap of contact {name} beyond its law", "its law is not meant for more"
+            yield beyond(RESPONSE, about, overlap, limit, remark, model.units.length)
         ends = [n for n in (contact.i, contact.j) if n is not None]
         near = [members[n] for n in ends if n in members] or [others[n] for n in ends if n in others]
         there = min(near, default=0.0)
         if there and overlap > LARGEST_OVERLAP * there:
             about = f"overlap of contact {name} over the shortest member there"
-            share, told = 100 * overlap / there, "check the stiffness of the contact"
-            yield beyond(RESPONSE, about, share, 100 * LARGEST_OVERLAP, told, "%")
+            share, remark = 100 * overlap / there, "check the stiffness of the contact"
+            yield beyond(RESPONSE, about, share, 100 * LARGEST_OVERLAP, remark, "%")
 
 
 def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -165,8 +165,8 @@ def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome)
         force = max(peak.high, -peak.low)
         if pair and force > MOST_FORCE * min(pair):
             about = f"force of contact {contact.name or contact.id} over the weight of the lighter building"
-            told = "check the stiffness of the contact"
-            yield beyond(RESPONSE, about, force / min(pair), MOST_FORCE, told)
+            remark = "check the stiffness of the contact"
+            yield beyond(RESPONSE, about, force / min(pair), MOST_FORCE, remark)
 
 
 def leaning(structure: Structure, history: HistoryResult, residual: Sequence[float]) -> Iterator[Check]:
@@ -186,8 +186,8 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
         most, storey = max(residuals, default=(0.0, 0))
         if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
             name = f"drift of {building.name} storey {storey} at the end"
-            told = "it leans: check strengths and hardening (R); without hardening drifts add up"
-            yield beyond(RESPONSE, name, 100 * most, 100 * LARGEST_RESIDUAL, told, "%")
+            remark = "it leans: check strengths and hardening (R); without hardening drifts add up"
+            yield beyond(RESPONSE, name, 100 * most, 100 * LARGEST_RESIDUAL, remark, "%")
 
 
 def lengths(model: Model) -> tuple[dict[int, float], dict[int, float]]:

@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 import numpy as np
 
 from pound_solve.analyses.closeups import MEGABYTE
-from pound_solve.analyses.envelopes import Envelopes
+from pound_solve.analyses.envelopes import ResponseEnvelopes
 from pound_solve.integrate.energy import ENERGIES, energies
 from pound_solve.integrate.protocol import Course, LawValues, MonitoredOutputs, Motion, Stop
 from pound_solve.numerics.matrices import used_columns
@@ -277,7 +277,7 @@ class HistoryRecorder:
         first_energy: Array | None = None,
     ) -> None:
         self.items, self._append, self._progress = items, append, progress
-        self.envelopes = Envelopes(
+        self.envelopes = ResponseEnvelopes(
             items.system,
             items.nodes,
             items.outputs,
@@ -323,14 +323,16 @@ class HistoryRecorder:
         system = self.items.system
         names = [system.name(i) for i in range(len(u))]
         springs = [f"the spring of element {s.element}" for s in system.structure.laws]
-        told = [(x, names) for x in (u, v, a)] + [(x, springs) for x in laws] + [(works, ["the work"] * 3)]
-        good = np.array([(np.abs(x) <= LARGEST).all(axis=0) for x, _ in told]).all(axis=0)
+        checked = (
+            [(x, names) for x in (u, v, a)] + [(x, springs) for x in laws] + [(works, ["the work"] * 3)]
+        )
+        good = np.array([(np.abs(x) <= LARGEST).all(axis=0) for x, _ in checked]).all(axis=0)
         first = int(np.argmin(good))
         if first:
             parts = LawValues(*(x[:, :first] for x in laws))
             self.keep(t[:first], u[:, :first], v[:, :first], a[:, :first], parts, works[:, :first])
-        at = ((x[:, first], named) for x, named in told)
-        where = next(n for x, named in at for n, y in zip(named, x) if not abs(y) <= LARGEST)
+        at = ((x[:, first], labels) for x, labels in checked)
+        where = next(n for x, labels in at for n, y in zip(labels, x) if not abs(y) <= LARGEST)
         return Stop("A504", float(t[first]), f"the motion is beyond all numbers, first at {where}")
 
     def between(self, course: Course) -> None:
@@ -397,7 +399,7 @@ class HistoryRecorder:
         count = int(np.isfinite(extremes.low).all(axis=0).sum())
         blocks = []
         for values in (extremes.low, extremes.high):
-            told = self.envelopes.told(values[:, :count])
+            by_kind = self.envelopes.split_by_kind(values[:, :count])
             t = extremes.bounds[:count]
-            blocks.append(SampleBlock(self.items, t, none, none, none, none, *told, np.zeros((0, 7))))
+            blocks.append(SampleBlock(self.items, t, none, none, none, none, *by_kind, np.zeros((0, 7))))
         return np.minimum(extremes.bounds[: count + 1], self.reached) if count else np.zeros(0), blocks

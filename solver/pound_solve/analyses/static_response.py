@@ -59,8 +59,8 @@ class StaticResponse:
     def check(self) -> Check:
         """Self-check: whether all forces balance."""
         about = "static forces and moments out of balance over the largest"
-        told = "loads and reactions do not balance"
-        return at_most(Subject.EQUILIBRIUM, about, self.imbalance, SUM_ROUNDING, told)
+        remark = "loads and reactions do not balance"
+        return at_most(Subject.EQUILIBRIUM, about, self.imbalance, SUM_ROUNDING, remark)
 
 
 def without_rounding(values: Array, kinds: Sequence[str]) -> Array:

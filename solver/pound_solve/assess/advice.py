@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from pound_solve.results.study_record import NOISY, Advice, Errors, Peaks, Reference, Trial
+from pound_solve.results.study_record import NOISY, Advice, Errors, MethodTrial, Peaks, Reference
 from pound_solve.user_error import UserError
 
 TARGETS: Final = (1e-2, 1e-3, 1e-6)  #: target errors of the advice
@@ -17,7 +17,7 @@ MARGIN: Final = 5.0  #: factor by which errors of another record may exceed thos
 ORDER: Final = 2  #: of every stepping method
 
 
-class StudyError(UserError):
+class MethodStudyError(UserError):
     """Raised if the deck or the options contain nothing to study."""
 
 
@@ -37,31 +37,31 @@ def errors(peaks: Peaks, reference: Peaks) -> Errors:
     return largest
 
 
-def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
+def extrapolated(method: str, ladder: Sequence[MethodTrial]) -> Reference:
     """Reference extrapolated to steps of zero from the two finest trials of a ladder by the method's order.
 
     Its error is estimated by comparison with the extrapolation from one rung before.
 
     Raises
     ------
-    StudyError
+    MethodStudyError
         Fewer than three trials were completed.
     """
     done = [t for t in ladder if not t.stopped]
     if len(done) < 3:
         why = next((t.stopped for t in ladder if t.stopped), "give more --steps")
-        raise StudyError(f"a reference needs three completed runs of {method}: {why}")
+        raise MethodStudyError(f"a reference needs three completed runs of {method}: {why}")
 
-    def limit(coarse: Trial, fine: Trial) -> Peaks:
-        share = 1.0 / ((fine.steps / coarse.steps) ** ORDER - 1.0)
-        return {k: x + share * (x - coarse.peaks[k]) for k, x in fine.peaks.items()}
+    def limit(coarse: MethodTrial, fine: MethodTrial) -> Peaks:
+        weight = 1.0 / ((fine.steps / coarse.steps) ** ORDER - 1.0)
+        return {k: x + weight * (x - coarse.peaks[k]) for k, x in fine.peaks.items()}
 
     best, before = limit(*done[-2:]), limit(*done[-3:-1])
     return Reference(best, errors(before, best), f"{method} extrapolated from {done[-2].setting} and "
                      f"{done[-1].setting}")  # fmt: skip
 
 
-def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
+def advise(trials: Sequence[MethodTrial], reference: Reference) -> tuple[Advice, ...]:
     """The fastest trial for each target; of several with similar times, the one with the least error.
 
     The error allowed for is `MARGIN` times the largest of the trial's error, of the errors extrapolated
@@ -78,7 +78,7 @@ def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
     return tuple(advice)
 
 
-def allowed(trials: Sequence[Trial], reference: Reference) -> list[float]:
+def allowed(trials: Sequence[MethodTrial], reference: Reference) -> list[float]:
     """Error that the advice allows for, of each trial, see `advise`; infinite for one that stopped."""
     margins = []
     for n, t in enumerate(trials):

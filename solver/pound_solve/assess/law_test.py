@@ -45,7 +45,7 @@ class LawTestError(UserError):
 
 
 @dataclass(frozen=True)
-class Point:
+class LoopPoint:
     """A corner of the path: a change of branch, or a turning point of the deformation.
 
     Attributes
@@ -72,7 +72,7 @@ class Point:
 class Trace:
     """Response of a law to a path: its corners, and the curve between them for drawings."""
 
-    corners: tuple[Point, ...]
+    corners: tuple[LoopPoint, ...]
     curve: tuple[tuple[float, float], ...]
 
 
@@ -138,15 +138,6 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
     return spring, card
 
 
-def has_loop(spec: Spec) -> bool:
-    """Whether a rule or contact law has a loop to draw: ELASTIC and rigid contacts have none."""
-    try:
-        specimen(spec)
-    except LawTestError:
-        return False
-    return True
-
-
 def protocol(spring: LawSpring) -> list[float]:
     """Deformations of cycles to growing ductilities; closures and openings of a contact.
 
@@ -207,9 +198,9 @@ def _branches(law: Law, state: State, d: float, goal: float, rate: float) -> Ite
     yield goal, state
 
 
-def _point(law: Law, state: State, d: float, v: float, drag: float, turn: bool) -> Point:
+def _point(law: Law, state: State, d: float, v: float, drag: float, turn: bool) -> LoopPoint:
     force, stored, lost = law.force(state, d, v)[0], law.stored(state, d), law.dissipated(state, d)
-    return Point(d, force, law.branch(state).name, law.work(state, d) + drag, stored, lost + drag, turn)
+    return LoopPoint(d, force, law.branch(state).name, law.work(state, d) + drag, stored, lost + drag, turn)
 
 
 def _drag(law: Law, state: State, d0: float, d1: float, v: float) -> float:
@@ -223,7 +214,7 @@ def _drag(law: Law, state: State, d0: float, d1: float, v: float) -> float:
     return half * float(_WEIGHTS @ extra)
 
 
-def table(points: Sequence[Point]) -> str:
+def table(points: Sequence[LoopPoint]) -> str:
     """Text of a table of the corners, turning points marked and rounding errors set to zero."""
     heads = ("deformation", "force", "work", "stored", "dissipated")
     columns = np.array([(p.d, p.f, p.work, p.stored, p.lost) for p in points])

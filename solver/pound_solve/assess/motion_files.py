@@ -79,8 +79,8 @@ def _file(number: int, motion: GroundMotion, gravity: float, dt: float | None) -
         step = float(f"{step:.12g}")  # of times that are sums
     steps_of_file = (a.end - a.start) / step
     if not 1.0 - EQUAL <= steps_of_file <= LONGEST:
-        told = f"--dt {step:g} divides {name} into {steps_of_file:.3g} steps"
-        raise MotionError(f"{told}, and a file holds from one to {LONGEST:g}")
+        message = f"--dt {step:g} divides {name} into {steps_of_file:.3g} steps"
+        raise MotionError(f"{message}, and a file holds from one to {LONGEST:g}")
     count = int(np.ceil(steps_of_file - EQUAL)) + 1
     times = np.minimum(a.start + step * np.arange(count), a.end)
     values = np.asarray(a.value(times)) / gravity

@@ -17,7 +17,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Units
 from pound_solve.driver import record_card
 from pound_solve.driver.prepare import ground
-from pound_solve.driver.reading import Deck
+from pound_solve.driver.reading import ReadDeck
 from pound_solve.driver.request import Request
 from pound_solve.loading.piecewise import Piecewise
 from pound_solve.results import Results
@@ -32,7 +32,7 @@ class SpectrumError(UserError):
 
 
 @dataclass(frozen=True)
-class Source:
+class AccelerationSource:
     """Accelerations of one file.
 
     Attributes
@@ -51,7 +51,7 @@ class Source:
     files: Mapping[str, str] = field(default_factory=dict)
 
 
-def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()) -> Source:
+def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()) -> AccelerationSource:
     """The acceleration of a record file or a known record, in kN, m and s.
 
     Parameters
@@ -68,14 +68,14 @@ def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()
     DeckError
         The record cannot be read, or the card has no such item.
     """
-    card = Deck(*record_card.read(name, items, "spectrum"))
+    card = ReadDeck(*record_card.read(name, items, "spectrum"))
     source = _of_motions(Request("spectrum", records=tuple(folders)), card)
     (acceleration,) = source.accelerations.values()
     title = " ".join([Path(name).name, *items])
-    return Source(source.units, {title: acceleration}, source.warnings, source.files)
+    return AccelerationSource(source.units, {title: acceleration}, source.warnings, source.files)
 
 
-def of_deck(request: Request) -> Source:
+def of_deck(request: Request) -> AccelerationSource:
     """The motions of the EQUAKE cards of a deck, a wave as one for each place.
 
     Raises
@@ -93,18 +93,18 @@ def of_deck(request: Request) -> Source:
     return source
 
 
-def _of_motions(request: Request, deck: Deck | None = None) -> Source:
+def _of_motions(request: Request, deck: ReadDeck | None = None) -> AccelerationSource:
     """Motions of a deck, see `prepare.ground`."""
     base = ground(request, deck)
     stem = Path(request.deck).stem
     names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(base.motions, 1))
     series = {name: m.acceleration for name, m in zip(names, base.motions)}
-    return Source(
+    return AccelerationSource(
         base.model.units, series, [d for d in base.diagnostics if d.code.startswith("R")], base.files
     )
 
 
-def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> Source:
+def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> AccelerationSource:
     """Stored absolute accelerations of nodes, straight lines between the output times and
     the instants of close-ups.
 
@@ -138,10 +138,10 @@ def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> So
         )
         for node in nodes
     }
-    return Source(results.units, accelerations)
+    return AccelerationSource(results.units, accelerations)
 
 
-def coarse(source: Source, shortest: float) -> str:
+def coarse(source: AccelerationSource, shortest: float) -> str:
     """Warning if accelerations are stored too seldom for the shortest period [T]; else empty."""
     step = max(float(np.diff(a.breaks).max()) for a in source.accelerations.values())
     if step * SAMPLES <= shortest * (1.0 + 1e-9):

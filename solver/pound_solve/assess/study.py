@@ -23,7 +23,7 @@ import numpy as np
 
 from pound_deck.schema import out_of_limits
 from pound_solve.analyses.history import ROWS
-from pound_solve.assess.advice import MARGIN, TARGETS, StudyError, advise, errors, extrapolated
+from pound_solve.assess.advice import MARGIN, TARGETS, MethodStudyError, advise, errors, extrapolated
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject
 from pound_solve.driver import run as driver
@@ -32,7 +32,7 @@ from pound_solve.driver.preflight import MOST_STEPS
 from pound_solve.results import Results
 from pound_solve.results.place import put_in_place
 from pound_solve.results.schema import Stage
-from pound_solve.results.study_record import Peaks, Reference, Study, Trial
+from pound_solve.results.study_record import MethodStudy, MethodTrial, Peaks, Reference
 from pound_solve.results.whole_file import partial
 
 Report = Callable[[str], None]
@@ -77,7 +77,7 @@ class Plan:
 
 def run(
     request: driver.Request, plan: Plan, report: Report = lambda text: None
-) -> tuple[Study, driver.Prepared]:
+) -> tuple[MethodStudy, driver.Prepared]:
     """Run the study of a deck.
 
     Parameters
@@ -90,7 +90,7 @@ def run(
 
     Raises
     ------
-    StudyError
+    MethodStudyError
         There is no HISTORY, an unknown method, or no run that could be a reference.
     DeckError, OSError
         See `app.prepare`.
@@ -98,22 +98,22 @@ def run(
     ready = driver.prepare(request)
     cards = [c for c in ready.model.analyses if c.spec.name == "HISTORY"]
     if not cards:
-        raise StudyError("the deck has no HISTORY: there is nothing to study")
+        raise MethodStudyError("the deck has no HISTORY: there is nothing to study")
     known = catalog().family("method")
     for name in plan.methods:
         if name not in known:
-            raise StudyError(f"--methods {name}: known methods are {', '.join(known)}")
+            raise MethodStudyError(f"--methods {name}: known methods are {', '.join(known)}")
     _check_settings(plan, max(card["T"] for card in cards))
     model = replace(ready.model, analyses=tuple(cards))
     with tempfile.TemporaryDirectory(prefix="pound-study-") as folder:
         bench = _Bench(request, replace(ready, model=model), plan, Path(folder) / "run.h5", report)
         trials, reference = bench.all()
-    return Study(tuple(trials), reference, advise(trials, reference)), ready
+    return MethodStudy(tuple(trials), reference, advise(trials, reference)), ready
 
 
 def _check_settings(plan: Plan, end: float) -> None:
-    """Raise StudyError where a step or a tolerance is out of the limits of a method, or a step is too short
-    for a history up to `end`.
+    """Raise MethodStudyError where a step or a tolerance is out of the limits of a method, or a step is too
+    short for a history up to `end`.
     """
     methods = [catalog().family("method")[name] for name in plan.methods]
     for option, item, values in (("--steps", "DT", plan.steps), ("--tols", "TOL", plan.tols)):
@@ -121,9 +121,9 @@ def _check_settings(plan: Plan, end: float) -> None:
         narrow = sorted(fields, key=lambda field: field.lo or 0.0, reverse=True)  # its limits suit all
         for value, field in itertools.product(values, narrow):
             if wrong := out_of_limits(value, field):
-                raise StudyError(f"{option}: {item} {wrong}")
+                raise MethodStudyError(f"{option}: {item} {wrong}")
     if plan.steps and end / min(plan.steps) > MOST_STEPS:
-        raise StudyError(f"--steps: DT={min(plan.steps):g} asks for more than {MOST_STEPS:g} steps")
+        raise MethodStudyError(f"--steps: DT={min(plan.steps):g} asks for more than {MOST_STEPS:g} steps")
 
 
 class _Bench:
@@ -136,9 +136,9 @@ class _Bench:
         self.methods = catalog().family("method")
         self.warm: set[str] = set()
 
-    def all(self) -> tuple[list[Trial], Reference]:
+    def all(self) -> tuple[list[MethodTrial], Reference]:
         """Every trial with its errors, and the reference."""
-        plan, trials = self.plan, dict[str, list[Trial]]()
+        plan, trials = self.plan, dict[str, list[MethodTrial]]()
         items = {m: {f.name for f in self.methods[m].fields} for m in plan.methods}
         stepping = [m for m in plan.methods if "DT" in items[m]]
         reference = self._exact(trials) or self._finest_tolerance(trials) or self._stepped(stepping, trials)
@@ -155,7 +155,7 @@ class _Bench:
             replace(t, errors=errors(t.peaks, known.peaks)) for m in plan.methods for t in trials[m]
         ], known
 
-    def _exact(self, out: dict[str, list[Trial]]) -> Reference | None:
+    def _exact(self, out: dict[str, list[MethodTrial]]) -> Reference | None:
         """EXACT with a finer search grid, or None if it is not requested or stops; its trial goes into
         `out`.
         """
@@ -169,7 +169,7 @@ class _Bench:
             return None
         return Reference(fine.peaks, errors(usual.peaks, fine.peaks), "EXACT with REFINE=2")
 
-    def _finest_tolerance(self, out: dict[str, list[Trial]]) -> Reference | None:
+    def _finest_tolerance(self, out: dict[str, list[MethodTrial]]) -> Reference | None:
         """LAGUERRE with `FINE`, or None if it is not requested or stops; its trials go into `out`."""
         if "LAGUERRE" not in self.plan.methods:
             return None
@@ -183,17 +183,17 @@ class _Bench:
             return None
         return Reference(fine.peaks, errors(usual.peaks, fine.peaks), f"LAGUERRE with {fine.setting}")
 
-    def _stepped(self, methods: Sequence[str], out: dict[str, list[Trial]]) -> Reference:
+    def _stepped(self, methods: Sequence[str], out: dict[str, list[MethodTrial]]) -> Reference:
         """Reference extrapolated from the ladder of the first of some methods for which that succeeds; the
         trials of all ladders go into `out`, but for the two finest of the reference.
         """
-        told = "without EXACT and LAGUERRE a study needs a method with steps: name one in --methods"
-        why = StudyError(told)
+        message = "without EXACT and LAGUERRE a study needs a method with steps: name one in --methods"
+        why = MethodStudyError(message)
         for method in methods:
             out[method] = ladder = self._ladder(method, None)
             try:
                 reference = extrapolated(method, ladder)
-            except StudyError as err:
+            except MethodStudyError as err:
                 why = err
                 continue
             # the two finest made the reference: their own errors would look too small
@@ -201,15 +201,15 @@ class _Bench:
             return reference
         raise why
 
-    def _ladder(self, method: str, reference: Reference | None) -> list[Trial]:
+    def _ladder(self, method: str, reference: Reference | None) -> list[MethodTrial]:
         """Trials with successively shorter steps."""
         if self.plan.steps:
             return [self.trial(method, DT=dt) for dt in self.plan.steps]
         return self._halved(method, reference)
 
-    def _halved(self, method: str, reference: Reference | None) -> list[Trial]:
+    def _halved(self, method: str, reference: Reference | None) -> list[MethodTrial]:
         """Trials with halved steps until the errors are small, or a run would take too long."""
-        trials: list[Trial] = []
+        trials: list[MethodTrial] = []
         for k in range(HALVINGS):
             trial = self.trial(method, DT=self.first / 2**k)
             if trials and trial.steps and trial.steps == trials[-1].steps:
@@ -228,9 +228,9 @@ class _Bench:
                 break
         return trials
 
-    def _tolerances(self, method: str) -> list[Trial]:
+    def _tolerances(self, method: str) -> list[MethodTrial]:
         """Trials of a method with a tolerance."""
-        trials: list[Trial] = []
+        trials: list[MethodTrial] = []
         for tol in self.plan.tols:
             trials.append(self.trial(method, TOL=tol))
             taken = trials[-1].method.removeprefix(f"{method}: ")
@@ -252,7 +252,7 @@ class _Bench:
 
     def trial(
         self, method: str, longest: float | None = None, *, timed: bool = True, **given: float
-    ) -> Trial:
+    ) -> MethodTrial:
         """Run one method with one setting, as often as planned; the first run of a method is not timed,
         because it imports and compiles.
         """
@@ -260,7 +260,7 @@ class _Bench:
         ready = replace(self.ready, model=replace(self.ready.model, analyses=cards))
         setting = " ".join(f"{k}={v:.12g}" for k, v in given.items())
         cold = timed and method not in self.warm
-        trial, seconds = Trial(method, setting), list[float]()
+        trial, seconds = MethodTrial(method, setting), list[float]()
         for n in range(self.plan.repeat + cold if timed else 1):
             self.report(f"{method} {setting}, run {n + 1}")
             # only what is compiled may take longer the first time
@@ -277,7 +277,7 @@ class _Bench:
 
     def _once(
         self, ready: driver.Prepared, method: str, setting: str, longest: float
-    ) -> tuple[float, Trial]:
+    ) -> tuple[float, MethodTrial]:
         used = time.process_time()
 
         def monitored(*_: object) -> None:
@@ -288,13 +288,13 @@ class _Bench:
             if results.message.startswith("A506"):
                 raise KeyboardInterrupt
             if results.message:
-                return 0.0, Trial(method, setting, stopped=results.message)
+                return 0.0, MethodTrial(method, setting, stopped=results.message)
             figures, took = dict(results.table("run").tolist()), dict(results.table("run_figures").tolist())
             name = figures["method"].split(",")[0]
             energy = next(check for check in results.checks if check.subject is Subject.ENERGY)
             if method == "EXACT" and energy.looks:  # it must not become the reference
-                return 0.0, Trial(method, setting, stopped=str(energy))
-            trial = Trial(
+                return 0.0, MethodTrial(method, setting, stopped=str(energy))
+            trial = MethodTrial(
                 f"AUTO: {name}" if method == "AUTO" and "steps" not in figures else method,
                 setting,
                 steps=int(figures.get("steps", 0)),
@@ -306,7 +306,7 @@ class _Bench:
             return float(took["solve seconds, CPU"]), trial
 
 
-def _converged(done: Sequence[Trial], reference: Reference | None) -> bool:
+def _converged(done: Sequence[MethodTrial], reference: Reference | None) -> bool:
     """Whether the error of the last trial is well below the last target, or as small as the reference's.
 
     Errors are those against the reference, without one those against the trial before.
@@ -351,7 +351,7 @@ def peaks(results: Results) -> Peaks:
     return {kind: np.array(values, float) for kind, values in extremes.items()}
 
 
-def write(study: Study, ready: driver.Prepared, path: Path) -> Results:
+def write(study: MethodStudy, ready: driver.Prepared, path: Path) -> Results:
     """Write the results file and the report of a study, and open the former."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with driver.writer_of(ready, partial(path)) as writer:

@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pound_solve.report.formats import IMAGE_FORMATS
+
 if TYPE_CHECKING:
     from pound_solve.driver.run import Request
 
 DONE, STOPPED, MISTAKES, FILES = range(4)  #: exit statuses
-FORMATS = ("svg", "png", "pdf")  #: of pictures by matplotlib
 
 
 def complain(text: str, status: int = FILES) -> int:
@@ -83,8 +84,8 @@ def parameters(items: Sequence[str]) -> dict[str, str]:
 def picture(word: str) -> Path:
     """Parse the file of a picture; its ending must be a format of matplotlib."""
     path = Path(word)
-    if path.suffix.removeprefix(".") not in FORMATS:
-        raise argparse.ArgumentTypeError(f"{word}: a picture ends in .{', .'.join(FORMATS)}")
+    if path.suffix.removeprefix(".") not in IMAGE_FORMATS:
+        raise argparse.ArgumentTypeError(f"{word}: a picture ends in .{', .'.join(IMAGE_FORMATS)}")
     return path
 
 

@@ -88,8 +88,8 @@ def _status(execute: Callable[[argparse.Namespace], int], args: argparse.Namespa
     except KeyboardInterrupt:
         return complain("interrupted", STOPPED)
     except MemoryError:
-        cure = "store less (OUTPUT EVERY, NODES, MEMBERS) or use a smaller model"
-        return complain(f"not enough memory: {cure}", STOPPED)
+        remedy = "store less (OUTPUT EVERY, NODES, MEMBERS) or use a smaller model"
+        return complain(f"not enough memory: {remedy}", STOPPED)
     except Exception as err:
         if os.environ.get("POUND_DEBUG"):
             raise

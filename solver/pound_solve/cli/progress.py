@@ -16,7 +16,7 @@ class StatusLine:
 
     def __init__(self, quiet: bool = False) -> None:
         self.quiet, self.live = quiet, sys.stderr.isatty() and not quiet
-        self._told: set[str] = set()
+        self._printed: set[str] = set()
 
     def show(self, text: str) -> None:
         """Replace the line."""
@@ -29,9 +29,9 @@ class StatusLine:
         """
         if self.live and len(text) <= WIDTH:
             self.show(text)
-        elif not self.quiet and text not in self._told:
+        elif not self.quiet and text not in self._printed:
             self.clear()
-            self._told.add(text)
+            self._printed.add(text)
             print(f"pound-solve: {text}", file=sys.stderr, flush=True)
 
     def note(self, text: str) -> None:
@@ -45,7 +45,7 @@ class StatusLine:
             print("\r" + " " * (WIDTH + 1) + "\r", end="", file=sys.stderr, flush=True)
 
 
-class Progress:
+class AnalysisProgress:
     """Progress of an analysis, at most ten lines a second.
 
     A method may run the history several times: when the time decreases, a new run begins, and the estimate
@@ -63,7 +63,7 @@ class Progress:
         self.line, self._check = StatusLine(quiet), check
         self.began = self.shown = time.monotonic()
         self.pause, self.first, self.reached, self.runs = QUIET, 0.0, 0.0, 1
-        self.told = self.began
+        self.noted = self.began
 
     def __call__(self, t: float, end: float, doing: str) -> None:
         """Show the time `t` of `end` and an estimate of the remaining time, or the activity `doing`."""
@@ -80,8 +80,8 @@ class Progress:
             return
         text = self._state(now, t, end)
         self.line.show(text)
-        if now - self.told > self.pause:
-            self.told, self.pause = now, 2.0 * self.pause
+        if now - self.noted > self.pause:
+            self.noted, self.pause = now, 2.0 * self.pause
             self.line.note(text)
 
     def _state(self, now: float, t: float, end: float) -> str:

@@ -46,7 +46,7 @@ def carried_out(study: str, work: Callable[[], int]) -> int:
         return common.complain(f"{study}: {err}", common.MISTAKES)
 
 
-class Progress:
+class StudyProgress:
     """Line that shows the progress of a study; a call may raise KeyboardInterrupt."""
 
     def __init__(self, args: argparse.Namespace) -> None:

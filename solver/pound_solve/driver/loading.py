@@ -24,7 +24,7 @@ from pound_solve.version import __version__
 
 #: motions to be checked; pulses and sines are textbook motions, which may be truncated
 EARTHQUAKES: Final = ("RECORD", "SYNTHETIC", "MATCHED")
-LEAST_ACTED: Final = 0.2  #: least share of an earthquake's Arias intensity before the end of a history
+LEAST_ACTED: Final = 0.2  #: least fraction of an earthquake's Arias intensity before the end of a history
 MOST: Final = 6  #: differences from a saved run in a message
 
 
@@ -98,7 +98,7 @@ def _tell(card: Card, info: Mapping[str, Any], diagnostics: list[Diagnostic]) ->
     notes = info.get("notes", ())
     cuts = info.get("cuts", ())
     diagnostics += [
-        Diagnostic("R412", what, card.place(item), cure, "warning") for what, item, cure in cuts
+        Diagnostic("R412", what, card.place(item), remedy, "warning") for what, item, remedy in cuts
     ]
     diagnostics += [Diagnostic("R409", n, card.place("FILE"), severity="warning") for n in notes]
 

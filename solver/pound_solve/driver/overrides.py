@@ -42,7 +42,7 @@ def overridden(model: Model, request: Request, diagnostics: list[Diagnostic]) ->
     if all(card.spec.name != "HISTORY" for card in cards):
         if request.method is not None:
             _method(request.method, diagnostics)
-        diagnostics += _told(asked, None)
+        diagnostics += _invalid(asked, None)
     return replace(model, analyses=tuple(cards))
 
 
@@ -73,9 +73,9 @@ def _changed(
     method = _method(name or card["METHOD"], diagnostics)
     if method is None:
         return None
-    told = [*_told(asked, method), *_unfit(card, method, asked)]
-    diagnostics += told
-    if has_errors(told):
+    problems = [*_invalid(asked, method), *_unfit(card, method, asked)]
+    diagnostics += problems
+    if has_errors(problems):
         return None
     card = with_method(card, method, asked)
     missing = [f.name for f in method.fields if card.values[f.name] is REQUIRED]
@@ -101,7 +101,7 @@ def option(item: str) -> Span:
     return Span(f"--{item.lower()}", 1, 1, 2)
 
 
-def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnostic]:
+def _invalid(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnostic]:
     """Yield diagnostics for requested values out of limits, and warnings for items that the method lacks.
 
     The limits are those of the method's items, or for an item that it lacks, those of another method.  The

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pound_deck.diagnostics import Diagnostic, doubted, has_errors, render
+from pound_deck.diagnostics import Diagnostic, has_errors, render, unsuppressed
 from pound_deck.model import Model
 from pound_solve.analyses import static
 from pound_solve.analyses.tangent_solution import InstabilityError
@@ -15,7 +15,7 @@ from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden, with_motion
 from pound_solve.driver.preflight import causes, preflight
-from pound_solve.driver.reading import Deck, read
+from pound_solve.driver.reading import ReadDeck, read
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import GroundMotion
@@ -69,13 +69,13 @@ class Ground:
     files: Mapping[str, str]
 
 
-def ground(request: Request, deck: Deck | None = None) -> Ground:
+def ground(request: Request, deck: ReadDeck | None = None) -> Ground:
     """Return the motions of the EQUAKE cards of a deck; a wave gives one for each place.
 
     Parameters
     ----------
     request : Request
-    deck : Deck, optional
+    deck : ReadDeck, optional
         Replaces the one that the request names.
 
     Raises
@@ -91,7 +91,7 @@ def ground(request: Request, deck: Deck | None = None) -> Ground:
     remarks = deck.moved(remarks, request.deck)
     if model is None or has_errors(remarks):
         raise DeckError(remarks, deck.files)
-    return Ground(model, tuple(motions), tuple(doubted(remarks, model.meant)), deck.files)
+    return Ground(model, tuple(motions), tuple(unsuppressed(remarks, model.meant)), deck.files)
 
 
 def prepare(request: Request) -> Prepared:
@@ -131,7 +131,7 @@ def assembled(
         remarks += [*err.diagnostics, *_causes(model)]
     remarks += overwritten(model, request, context)
     saved = loading.saved_state(model, request, motions, forces, remarks)
-    remarks = doubted(remarks, model.meant)
+    remarks = unsuppressed(remarks, model.meant)
     if has_errors(remarks) or structure is None:
         raise DeckError(remarks, files)
     return Prepared(model, tuple(motions), tuple(forces), structure, tuple(remarks), files, saved)
@@ -159,7 +159,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
     if has_errors(remarks):
         raise DeckError(remarks, ready.files)
     return replace(
-        ready, model=model, motions=tuple(motions), warnings=tuple(doubted(remarks, model.meant))
+        ready, model=model, motions=tuple(motions), warnings=tuple(unsuppressed(remarks, model.meant))
     )
 
 

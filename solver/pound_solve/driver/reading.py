@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 AS_READ: Final = " as read"  #: suffix of the name of a deck converted from an old one
 
 
-class Deck(NamedTuple):
+class ReadDeck(NamedTuple):
     """A deck as read.
 
     Attributes
@@ -52,7 +52,7 @@ def is_deck(name: str) -> bool:
     return name.endswith(".inp") or (os.path.isfile(name) and recognised(name))
 
 
-def read(request: Request) -> Deck:
+def read(request: Request) -> ReadDeck:
     """Read the deck of a request.
 
     Raises
@@ -62,13 +62,13 @@ def read(request: Request) -> Deck:
     """
     name = request.deck
     if os.path.realpath(name) in request.unsaved or not recognised(name):
-        return Deck(*read_deck(name, catalog(), request.params, request.unsaved))
+        return ReadDeck(*read_deck(name, catalog(), request.params, request.unsaved))
     text, old = imported(name, shown=Path(name).name, run=True)
     files = {name: text}
     if has_errors(old.report):
-        return Deck(None, list(old.report), files, old)
+        return ReadDeck(None, list(old.report), files, old)
     model, diagnostics, more = read_text(old.text, catalog(), request.params, name + AS_READ)
-    deck = Deck(model, diagnostics, more | files, old)
+    deck = ReadDeck(model, diagnostics, more | files, old)
     return deck._replace(diagnostics=[*old.report, *deck.moved(diagnostics, name)])
 
 

@@ -56,8 +56,8 @@ class Request:
         if self.name is None:
             return
         if not self.name.isprintable() or not any(map(str.isalnum, self.name)):
-            cure = "give characters that can be printed, a letter or a digit among them"
-            raise ValueError(f"{self.name[:60]!r} names no file: {cure}")
+            remedy = "give characters that can be printed, a letter or a digit among them"
+            raise ValueError(f"{self.name[:60]!r} names no file: {remedy}")
         if Path(self.name).name != self.name:
             raise ValueError(f"{self.name[:60]} is a path: a name stands without a folder, see -o")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pound_deck.cards import Item, Row
+from pound_deck.cards import Item, ParsedLine
 from pound_deck.model import Span, Units
 from pound_deck.schema import Field, Kind, Spec
 from pound_deck.sections import FAMILIES, NAMES, SECTIONS
@@ -28,7 +28,7 @@ def _holds(item: Item, place: Span) -> bool:
     return first.file == place.file and inside
 
 
-def _about(reading: Reading, section: str, row: Row, k: int, place: Span) -> str:
+def _about(reading: Reading, section: str, row: ParsedLine, k: int, place: Span) -> str:
     known = fields(words_of(row), section, reading.catalog, reading.params)
     item = (row.items or ())[k]
     parts = []

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from pound_deck.cards import Item, Row
+from pound_deck.cards import Item, ParsedLine
 from pound_deck.diagnostics import Mistake
-from pound_deck.expressions import Expression, Range, Step
+from pound_deck.expressions import Expression, ExpressionStep, Range
 from pound_deck.model import Span
 from pound_deck.schema import Field, Kind
 from pound_deck.values import Values
@@ -86,12 +86,12 @@ def definitions(all_mentions: Sequence[Mention], of: Mention) -> list[Mention]:
     return [m for m in all_mentions if m.defines and m.sort == of.sort and of.key in m.keys]
 
 
-def words_of(row: Row) -> list[tuple[str, str]]:
+def words_of(row: ParsedLine) -> list[tuple[str, str]]:
     """Items of a row as (name, text), the form that `fields` takes."""
     return [(item.name, item.text) for item in row.items or ()]
 
 
-def _of_row(row: Row, section: str, reading: Reading, values: Values) -> Iterator[Mention]:
+def _of_row(row: ParsedLine, section: str, reading: Reading, values: Values) -> Iterator[Mention]:
     items = row.items or ()
     if row.word == "PARAM" and not section:
         for item in items[1:]:
@@ -160,7 +160,7 @@ def _params(
                     yield Mention("PARAM", (name,), step.span, plain=True)
 
 
-def _is_word(step: Step, f: Field, values: Values) -> bool:
+def _is_word(step: ExpressionStep, f: Field, values: Values) -> bool:
     """Whether a field takes a word literally, although there is a PARAM of that name."""
     word = step.text.upper()
     match f.kind:
@@ -177,6 +177,6 @@ def _is_word(step: Step, f: Field, values: Values) -> bool:
     return False
 
 
-def _lone(item: Item) -> Step | None:
+def _lone(item: Item) -> ExpressionStep | None:
     part = item.parts[0]
     return part.lone if isinstance(part, Expression) else None

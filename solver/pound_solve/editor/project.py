@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.source import Source
+from pound_deck.source import DeckSource
 from pound_solve.catalog import catalog
 from pound_solve.editor.diagnose import diagnose
 from pound_solve.editor.reading import Reading, read
@@ -30,8 +30,8 @@ class Project:
 
     records: tuple[Path, ...] = ()
     texts: dict[str, str] = field(default_factory=dict)
-    _said: dict[str, Found] = field(default_factory=dict)  # by deck
-    _told: Found = field(default_factory=dict)
+    _diagnostics: dict[str, Found] = field(default_factory=dict)  # by deck
+    _published: Found = field(default_factory=dict)
     _decks: dict[str, str] = field(default_factory=dict)
     _readings: dict[str, Reading] = field(default_factory=dict)
 
@@ -45,7 +45,7 @@ class Project:
     def drop(self, path: str) -> None:
         """Remove a file that the editor has closed."""
         self.texts.pop(path, None)
-        self._told.pop(path, None)
+        self._published.pop(path, None)
         self._decks.clear()
         self._readings.clear()
 
@@ -74,7 +74,7 @@ class Project:
         return self._decks[path]
 
     def _including(self, path: str) -> Iterator[str]:
-        lines = Source().logical(path, self.texts.get(path, ""))
+        lines = DeckSource().logical(path, self.texts.get(path, ""))
         if any(line.text.split()[0].upper() == "ANALYSIS" for line in lines):
             return
         folder = Path(path).parent
@@ -87,15 +87,22 @@ class Project:
         """Check the decks that a file belongs to; return its mistakes, and those of files that changed."""
         decks = {self.deck(p) for p in self.texts}
         own_deck = self.deck(path) if path in self.texts else ""
-        changed = {deck for deck in decks if deck == own_deck or path in self._said.get(deck, {})}
-        touched = {name for deck in [*self._said] if deck not in decks for name in self._said.pop(deck)}
+        changed = {deck for deck in decks if deck == own_deck or path in self._diagnostics.get(deck, {})}
+        touched = {
+            name
+            for deck in [*self._diagnostics]
+            if deck not in decks
+            for name in self._diagnostics.pop(deck)
+        }
         for deck in sorted(changed):
-            touched |= set(self._said.get(deck, {}))
-            self._said[deck] = self._diagnosed(deck)
-            touched |= set(self._said[deck])
+            touched |= set(self._diagnostics.get(deck, {}))
+            self._diagnostics[deck] = self._diagnosed(deck)
+            touched |= set(self._diagnostics[deck])
         now = {name: self._of_file(name) for name in sorted(touched)}
-        news = {name: notes for name, notes in now.items() if name == path or notes != self._told.get(name)}
-        self._told.update(now)
+        news = {
+            name: notes for name, notes in now.items() if name == path or notes != self._published.get(name)
+        }
+        self._published.update(now)
         return news
 
     def _diagnosed(self, deck: str) -> Found:
@@ -109,12 +116,12 @@ class Project:
         return by_file
 
     def _of_file(self, name: str) -> list[Diagnostic]:
-        return list(dict.fromkeys(d for said in self._said.values() for d in said.get(name, ())))
+        return list(dict.fromkeys(d for notes in self._diagnostics.values() for d in notes.get(name, ())))
 
 
 def _files(deck: str, texts: dict[str, str]) -> set[str]:
     """Real paths of a deck and of the files that it includes."""
-    source = Source(unsaved=texts)
+    source = DeckSource(unsaved=texts)
     try:
         source.read(deck)
     except OSError:

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from typing import Final
 
 from pound_deck.build import units_of
-from pound_deck.cards import Row, parse
+from pound_deck.cards import ParsedLine, parse
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.expressions import Definition, Value, resolve
 from pound_deck.model import Units
 from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
 from pound_deck.sections import CARDS, NAMES
-from pound_deck.source import Source
+from pound_deck.source import DeckSource
 
 _CARDS: Final = frozenset(spec.name for spec in CARDS)
 
@@ -27,7 +27,7 @@ class Reading:
     Attributes
     ----------
     catalog : Catalog
-    rows : tuple of (str, Row)
+    rows : tuple of (str, ParsedLine)
         Every row with the name of its section; empty for headings and for cards outside sections.
     definitions : mapping of str to Definition
         PARAMs by upper-case name.
@@ -39,7 +39,7 @@ class Reading:
     """
 
     catalog: Catalog
-    rows: tuple[tuple[str, Row], ...]
+    rows: tuple[tuple[str, ParsedLine], ...]
     definitions: Mapping[str, Definition]
     params: Mapping[str, Value | None]
     units: Units
@@ -66,7 +66,7 @@ def read(path: str, catalog: Catalog, unsaved: Mapping[str, str]) -> Reading:
         The deck cannot be read; included files may be missing.
     """
     ignored: list[Diagnostic] = []
-    source = Source(unsaved=unsaved)
+    source = DeckSource(unsaved=unsaved)
     rows = list(parse(source.read(path), ignored))
     outline = Outline(catalog, ignored)
     for row in sorted(rows, key=lambda row: row.word != "PARAM"):

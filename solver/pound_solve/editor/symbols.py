@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pound_deck.cards import Row
+from pound_deck.cards import ParsedLine
 from pound_deck.model import Span
 from pound_deck.sections import FAMILIES, NAMES
 from pound_solve.editor.reading import Reading
@@ -65,7 +65,7 @@ def outline(reading: Reading, path: str) -> list[Symbol]:
     return entries
 
 
-def _line(row: Row, section: str, last: int) -> list[Symbol]:
+def _line(row: ParsedLine, section: str, last: int) -> list[Symbol]:
     items = row.items or ()
     if not items:
         return []
@@ -75,5 +75,5 @@ def _line(row: Row, section: str, last: int) -> list[Symbol]:
     return [Symbol(name, detail, "line", items[0].name_span, last)]
 
 
-def _rest(row: Row) -> str:
+def _rest(row: ParsedLine) -> str:
     return " ".join(item.text for item in (row.items or ())[1:])

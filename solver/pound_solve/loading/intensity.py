@@ -6,7 +6,7 @@ On a line from :math:`a_0` to :math:`a_1` of length h
           \int |a|\,dt = \begin{cases} \tfrac{h}{2}(|a_0| + |a_1|) & a_0 a_1 \ge 0 \\
           \tfrac{h}{2}\,(a_0^2 + a_1^2)/(|a_0| + |a_1|) & a_0 a_1 < 0 \end{cases}
 
-and the instant at which a share of the first integral is reached is the root of a cubic.
+and the instant at which a fraction of the first integral is reached is the root of a cubic.
 
 .. math:: I_A = \frac{\pi}{2g}\int a^2\,dt, \qquad \mathit{CAV} = \int |a|\,dt, \qquad
           \mathit{SI} = \int_{0.1}^{2.5} \mathit{PSV}(T, \xi)\,dT
@@ -117,9 +117,9 @@ def significant_duration(acceleration: Piecewise, start: float = 0.05, end: floa
     return _reached(lines, total, end) - _reached(lines, total, start)
 
 
-def _reached(lines: Piecewise, total: Array, share: float) -> float:
-    """Time at which the integral of the square, `total` at the breaks, reaches a share of its end [T]."""
-    wanted = share * float(total[-1])
+def _reached(lines: Piecewise, total: Array, fraction: float) -> float:
+    """Time [T] at which the integral of the square, `total` at the breaks, is a fraction of its end."""
+    wanted = fraction * float(total[-1])
     i = max(int(np.searchsorted(total, wanted)), 1) - 1
     a0, slope = lines.coefs[:, i]
     width = float(lines.breaks[i + 1] - lines.breaks[i])

@@ -164,9 +164,9 @@ class Piecewise:
         """The same function with every interval in `parts` equal ones; itself for 1."""
         if parts == 1:
             return self
-        share = np.arange(parts) / parts * np.diff(self.breaks)[:, None]
-        breaks = np.append((self.breaks[:-1, None] + share).ravel(), self.end)
-        coefs = shift(np.repeat(self.coefs, parts, axis=1), share.ravel())
+        offset = np.arange(parts) / parts * np.diff(self.breaks)[:, None]
+        breaks = np.append((self.breaks[:-1, None] + offset).ravel(), self.end)
+        coefs = shift(np.repeat(self.coefs, parts, axis=1), offset.ravel())
         return Piecewise(breaks, coefs)
 
     def chords(self, parts: int = 16) -> Piecewise:

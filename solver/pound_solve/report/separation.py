@@ -19,7 +19,7 @@ from pound_solve.report.text import printed
 from pound_solve.results import Results
 from pound_solve.results.columns import CONTACT
 from pound_solve.results.schema import Column, Row, Sheet
-from pound_solve.statistics.separation import Peaks, correlation, own_mode
+from pound_solve.statistics.separation import SeparationPeaks, correlation, own_mode
 from pound_solve.structure.elements.base import axes
 from pound_solve.user_error import UserError
 
@@ -91,7 +91,7 @@ def _ddc(
 ) -> tuple[float, str]:
     """Double difference combination of two peaks [L]; a remark if a period or damping [%] is unknown."""
     rho = correlation(*periods, *(xi / 100.0 for xi in damping))
-    return Peaks(u1, u2, rho).difference, UNKNOWN if math.isnan(rho) and u1 and u2 else ""
+    return SeparationPeaks(u1, u2, rho).difference, UNKNOWN if math.isnan(rho) and u1 and u2 else ""
 
 
 def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:

@@ -16,7 +16,7 @@ from pound_solve.report.text import block
 from pound_solve.results.schema import Column, Row, Sheet
 
 
-class Curve(NamedTuple):
+class SpectrumCurve(NamedTuple):
     """The spectrum of one motion.
 
     Attributes
@@ -31,7 +31,7 @@ class Curve(NamedTuple):
     spectrum: Spectrum
 
 
-def rows(curves: Sequence[Curve]) -> Iterator[Row]:
+def rows(curves: Sequence[SpectrumCurve]) -> Iterator[Row]:
     """One row for each period, damping after damping, motion after motion."""
     for curve in curves:
         s = curve.spectrum
@@ -41,7 +41,7 @@ def rows(curves: Sequence[Curve]) -> Iterator[Row]:
                 yield curve.name, 100.0 * float(xi), *values
 
 
-def text(units: Units, curves: Sequence[Curve]) -> str:
+def text(units: Units, curves: Sequence[SpectrumCurve]) -> str:
     """Tables of all curves, each headed by the name, the peak acceleration and the damping."""
     lines = []
     for curve in curves:
@@ -56,7 +56,7 @@ def text(units: Units, curves: Sequence[Curve]) -> str:
     return "\n".join(line.rstrip() for line in lines).rstrip()
 
 
-def write_csv(path: Path, units: Units, curves: Sequence[Curve]) -> None:
+def write_csv(path: Path, units: Units, curves: Sequence[SpectrumCurve]) -> None:
     """Write all curves with all digits into one file, in the rows of `rows`.
 
     Raises

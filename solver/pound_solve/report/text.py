@@ -31,7 +31,7 @@ _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
 _DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant digits by format
 _WHOLE: Final = 7  #: number of digits before the point from which on a number gets an exponent
-#: share of the largest value of a block of a column below which rounding prints as zero
+#: fraction of the largest value of a block of a column below which rounding prints as zero
 _DUST: Final = 1e-12
 
 _TINY: Final = 1e-300  #: always prints as zero
@@ -95,12 +95,14 @@ def _banner(results: Results) -> Iterator[str]:
 
 def _warning(results: Results) -> Iterator[str]:
     """Lines of the framed warning above the report of an unfinished analysis."""
-    told = incomplete(results)
-    if not told:
+    sentences = incomplete(results)
+    if not sentences:
         return
     inner = WIDTH - 8
     yield "*" * WIDTH
-    for line in "\n\n".join("\n".join(textwrap.wrap(_plain(text), inner)) for text in told).split("\n"):
+    for line in "\n\n".join("\n".join(textwrap.wrap(_plain(text), inner)) for text in sentences).split(
+        "\n"
+    ):
         yield f"**  {line.ljust(inner)}  **"
     yield "*" * WIDTH
     yield from ("", "")
@@ -136,7 +138,7 @@ def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     return _with_notes(lines[1:], table, results.note(table.name))
 
 
-class Shown(NamedTuple):
+class ReportTable(NamedTuple):
     """A part of a table as a report shows it.
 
     Attributes
@@ -156,13 +158,13 @@ class Shown(NamedTuple):
     more: str = ""
 
 
-def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]:
+def shown(results: Results, table: Table[Any], limit: int | None) -> list[ReportTable]:
     """Parts in which a report shows a table: those of its view, or the whole; `limit` as in `render`."""
     view = view_of(table.name, whole=limit == 0)
     if view is None:
-        return [Shown("", table, *_excerpt(results, table, limit))]
+        return [ReportTable("", table, *_excerpt(results, table, limit))]
     return [
-        Shown(part.title, replace(table, columns=part.columns, group=""), part.rows)
+        ReportTable(part.title, replace(table, columns=part.columns, group=""), part.rows)
         for part in view(results)
     ]
 

@@ -130,7 +130,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
 
 
 def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:
-    """Smallest and largest value, separated if equal and widened by `margin`, a share of their range."""
+    """Smallest and largest value, separated if equal and widened by `margin`, a fraction of their range."""
     low, high = min(values), max(values)
     if low == high:
         low, high = low - 1.0, high + 1.0

@@ -82,8 +82,8 @@ THERE: Final = digest_of({})
 def digest_of_file(parts: Mapping[str, str], attributes: Mapping[str, Any]) -> str:
     """Digest of a results file from those of its datasets, by their paths, and from its own attributes."""
     head = digest_of({key: attributes[key] for key in HEAD}).hexdigest()
-    told = "\n".join(f"{name} {digest}" for name, digest in sorted({**parts, "/": head}.items()))
-    return blake2b(told.encode(), digest_size=8).hexdigest()
+    lines = "\n".join(f"{name} {digest}" for name, digest in sorted({**parts, "/": head}.items()))
+    return blake2b(lines.encode(), digest_size=8).hexdigest()
 
 
 def reason(err: OSError) -> str:

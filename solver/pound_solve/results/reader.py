@@ -485,8 +485,8 @@ class Results:
         units = self.units
         yield f"<Results {str(self.path)!r}>"
         yield self.title or "(no title)"
-        told = [self.status, *([self.message] if self.message else [])]
-        yield f"{': '.join(told)}; units {units.force}, {units.length}, {units.time}"
+        state = [self.status, *([self.message] if self.message else [])]
+        yield f"{': '.join(state)}; units {units.force}, {units.length}, {units.time}"
         if "overview" in self.tables:
             said = dict(self.table("overview").tolist())
             yield from (f"{k}: {said[k]}" for k in ("structure", "analyses", "method") if said.get(k))
@@ -541,8 +541,8 @@ class Results:
         if self._whole:
             return data
         attrs = dataset.attrs
-        told = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY, "" if ours and self._sealed else None))
-        if told is not None and _plain(told) != digest_of(attrs, data).hexdigest():
+        digest = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY, "" if ours and self._sealed else None))
+        if digest is not None and _plain(digest) != digest_of(attrs, data).hexdigest():
             raise self._damaged(f"{name} is not as it was written")
         return data
 

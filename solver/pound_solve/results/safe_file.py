@@ -34,7 +34,7 @@ class NoRoomError(ResultsError):
     """Raised if the disk is full; the file keeps the state of the last commit."""
 
 
-class BusyError(ResultsError):
+class FileBusyError(ResultsError):
     """Raised if another program writes the file."""
 
 
@@ -50,7 +50,7 @@ class SafeFile:
 
     Raises
     ------
-    BusyError
+    FileBusyError
         Another program writes the file.
     NoRoomError
         The disk has no space for the reserve.
@@ -235,7 +235,7 @@ def _locked(path: Path) -> IO[bytes]:
         except BlockingIOError as err:
             if not _only_read(disk):
                 disk.close()
-                raise BusyError(
+                raise FileBusyError(
                     f"{path}: another run writes it; wait for it, or give another folder with -o"
                 ) from err
             _give_up(path, disk)  # leaves it to its readers, who keep it open
@@ -256,7 +256,7 @@ def _fresh(path: Path) -> IO[bytes]:
         path.unlink(missing_ok=True)
     except PermissionError as err:
         text = f"{path}: open in another run, or in a program that reads it; close it, or give another name"
-        raise BusyError(text) from err
+        raise FileBusyError(text) from err
     return path.open("x+b", 0)
 
 

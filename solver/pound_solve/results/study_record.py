@@ -20,7 +20,7 @@ Errors = dict[str, float]
 
 
 @dataclass(frozen=True)
-class Trial:
+class MethodTrial:
     """One method with one setting.
 
     Attributes
@@ -89,7 +89,7 @@ class Advice:
     """Fastest trial for a target, and the error allowed for; None if no trial meets the target."""
 
     target: float
-    trial: Trial | None = None
+    trial: MethodTrial | None = None
     sure: float = math.nan
 
     def __str__(self) -> str:
@@ -103,7 +103,7 @@ class Advice:
         return f"{target}: {name} ({self.trial.time:.3g} s)"
 
 
-def order(coarse: Trial, fine: Trial) -> float:
+def order(coarse: MethodTrial, fine: MethodTrial) -> float:
     """Observed order of the largest error between two trials; NaN without one."""
     ratio = fine.steps / coarse.steps if coarse.steps and fine.steps else 1.0
     if not (coarse.error > 0.0 and fine.error > 0.0 and ratio != 1.0):
@@ -112,10 +112,10 @@ def order(coarse: Trial, fine: Trial) -> float:
 
 
 @dataclass(frozen=True)
-class Study:
+class MethodStudy:
     """Trials with their errors, the reference, and the advice."""
 
-    trials: tuple[Trial, ...]
+    trials: tuple[MethodTrial, ...]
     reference: Reference
     advice: tuple[Advice, ...]
 

@@ -295,8 +295,8 @@ def _read(file: h5py.File) -> tuple[dict[str, Variable], dict[str, tuple[str, ..
         plain = [_plain(v) for v in item[:]] if item.dtype.kind == "O" else item[:]
         values = np.array(plain, object) if item.dtype.kind == "O" else item[:]
         axis = _plain(item.dims[1].keys()[0]) if len(item.shape) > 1 else ""
-        told = (str(_plain(item.attrs.get(key, ""))) for key in ("units", "long_name"))
-        variables[name] = Variable(values, axis, *told)
+        attributes = (str(_plain(item.attrs.get(key, ""))) for key in ("units", "long_name"))
+        variables[name] = Variable(values, axis, *attributes)
         axes |= {axis: None} if axis else {}
     labels = {axis: tuple(str(_plain(v)) for v in file[axis][:]) for axis in axes}
     known = ("filetype", "format_version", ORDER)

@@ -38,7 +38,7 @@ from pound_solve.results.whole_file import free
 if TYPE_CHECKING:
     from pound_deck.model import Units
     from pound_solve.results.record import RunRecord
-    from pound_solve.results.study_record import Study
+    from pound_solve.results.study_record import MethodStudy
 
 #: rows of a chunk, and numbers in it, at most (one row in any case); a block of as many steps costs little
 #: to write, and little is lost by a kill
@@ -217,13 +217,13 @@ class Writer:
         dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = digest.hexdigest()
         self._stored[f"{group}/{name}"] = THERE if name in OF_THE_DAY else digest
 
-    def tables(self, stage: Stage, record: RunRecord | Study) -> None:
+    def tables(self, stage: Stage, record: RunRecord | MethodStudy) -> None:
         """Store the tables of a stage, except those whose `rows` returns None.
 
         Parameters
         ----------
         stage : Stage
-        record : RunRecord or Study
+        record : RunRecord or MethodStudy
             Source of the rows.
         """
         for table in tables_at(stage):

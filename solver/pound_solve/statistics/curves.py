@@ -12,7 +12,7 @@ import numpy as np
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.results.sweep_file import DONE, RUN, STOPPED, Sweep
-from pound_solve.statistics.incremental import Point
+from pound_solve.statistics.incremental import IdaPoint
 
 LEVELS: Final = (
     "sa",
@@ -47,7 +47,7 @@ class CurveError(Exception):
 
 
 @dataclass(frozen=True)
-class Curve:
+class IdaCurve:
     """One record at several levels.
 
     Attributes
@@ -55,7 +55,7 @@ class Curve:
     case : str
         PARAMs and deck, those that differ within the sweep.
     record : str
-    points : tuple of Point
+    points : tuple of IdaPoint
         In the order of their levels.
     left_out : int
         Runs that failed or have not ended.
@@ -65,7 +65,7 @@ class Curve:
 
     case: str
     record: str
-    points: tuple[Point, ...]
+    points: tuple[IdaPoint, ...]
     left_out: int = 0
     from_rest: bool = False
 
@@ -80,7 +80,7 @@ class Curve:
     ) -> Self:
         """Make a curve from the levels and demands of runs; runs with demand NaN count as left out."""
         pairs = sorted(zip(levels, values))
-        points = tuple(Point(float(x), float(d)) for x, d in pairs if not math.isnan(d))
+        points = tuple(IdaPoint(float(x), float(d)) for x, d in pairs if not math.isnan(d))
         return cls(case, record, points, len(pairs) - len(points), from_rest)
 
 
@@ -203,7 +203,7 @@ def _short(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
+def curves(sweep: Sweep, asked: Asked) -> list[IdaCurve]:
     """Return one curve per record and case, in the order of the sweep.
 
     Raises
@@ -216,12 +216,12 @@ def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
     for i, key in enumerate(zip(cases(sweep), sweep["record"].tolist())):
         groups.setdefault(key, []).append(i)
     free = asked.quantity == NEEDED  # its motion is without collisions, and elastic at low levels
-    return [Curve.of(*key, levels[runs], values[runs], free) for key, runs in groups.items()]
+    return [IdaCurve.of(*key, levels[runs], values[runs], free) for key, runs in groups.items()]
 
 
-def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:
+def by_case(curves: Sequence[IdaCurve]) -> dict[str, list[IdaCurve]]:
     """Group curves by their case."""
-    groups: dict[str, list[Curve]] = {}
+    groups: dict[str, list[IdaCurve]] = {}
     for curve in curves:
         groups.setdefault(curve.case, []).append(curve)
     return groups

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.statistics.curves import Curve, fractiles_of
+from pound_solve.statistics.curves import IdaCurve, fractiles_of
 from pound_solve.statistics.incremental import Rules, collapse, demand_at
 
 ROWS: Final = 12  #: levels of the table of fractiles
@@ -17,7 +17,7 @@ ROWS: Final = 12  #: levels of the table of fractiles
 class Analysis(NamedTuple):
     """Curves of one case, and the rules that define collapse."""
 
-    curves: Sequence[Curve]
+    curves: Sequence[IdaCurve]
     rules: Rules
 
 

@@ -148,8 +148,8 @@ def from_capacities(
     a = np.full(len(b), -np.inf)
     a[low > 0.0] = _logarithms(low[low > 0.0])
     if len(x) + len(b) < 2 or (len(x) and not len(b) and np.ptp(x) == 0.0):
-        told = f"{len(x) + len(b)} of {len(x) + len(b) + len(c)} records reach the limit"
-        raise FragilityError(f"{told}, which needs two capacities that differ")
+        counted = f"{len(x) + len(b)} of {len(x) + len(b) + len(c)} records reach the limit"
+        raise FragilityError(f"{counted}, which needs two capacities that differ")
     if len(b) and np.concatenate([x, c, a]).max() <= np.concatenate([x, b]).min():
         raise FragilityError(
             "all capacities may be one level, which tells no dispersion: run levels between"

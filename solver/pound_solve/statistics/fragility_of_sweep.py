@@ -12,8 +12,8 @@ from pound_solve.statistics.curves import (
     COLLAPSE,
     NEEDED,
     Asked,
-    Curve,
     CurveError,
+    IdaCurve,
     by_case,
     curves,
     widest_known,
@@ -56,7 +56,7 @@ class Fitted(NamedTuple):
     observed: tuple[tuple[float, int, int], ...]
 
 
-def by_capacities(records: Sequence[Curve], limit: float, level: float) -> Fragility:
+def by_capacities(records: Sequence[IdaCurve], limit: float, level: float) -> Fragility:
     """Fit a fragility to the levels at which the records reach the limit."""
     demands = [p.demand for c in records for p in c.points if math.isfinite(p.demand)]
     in_steps = all(d == round(d) for d in demands)  # as counts and indicators are
@@ -66,13 +66,13 @@ def by_capacities(records: Sequence[Curve], limit: float, level: float) -> Fragi
     return from_capacities(known, never, [pair for pair in pairs if pair[0] < pair[1] < math.inf], level)
 
 
-def by_stripes(records: Sequence[Curve], limit: float, level: float) -> Fragility:
+def by_stripes(records: Sequence[IdaCurve], limit: float, level: float) -> Fragility:
     """Fit a fragility to the number of runs at every level that reach the limit."""
     levels, exceeded, runs = zip(*counts(records, limit))
     return from_stripes(levels, exceeded, runs, level)
 
 
-def by_cloud(records: Sequence[Curve], limit: float, level: float) -> Fragility:
+def by_cloud(records: Sequence[IdaCurve], limit: float, level: float) -> Fragility:
     """Fit a fragility to the demands of all runs that did not collapse."""
     points = [p for c in records for p in c.points if 0.0 < p.demand < math.inf]
     if not math.isfinite(limit):
@@ -80,12 +80,12 @@ def by_cloud(records: Sequence[Curve], limit: float, level: float) -> Fragility:
     return from_cloud([p.level for p in points], [p.demand for p in points], limit, level)
 
 
-METHODS: Final[Mapping[str, Callable[[Sequence[Curve], float, float], Fragility]]] = MappingProxyType(
+METHODS: Final[Mapping[str, Callable[[Sequence[IdaCurve], float, float], Fragility]]] = MappingProxyType(
     {"capacities": by_capacities, "stripes": by_stripes, "cloud": by_cloud}
 )
 
 
-def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, int], ...]:
+def counts(records: Sequence[IdaCurve], limit: float) -> tuple[tuple[float, int, int], ...]:
     """Return for each level the number of runs that reach the limit, and the number of all runs."""
     points = [p for c in records for p in c.points]
     return tuple(
@@ -94,7 +94,7 @@ def counts(records: Sequence[Curve], limit: float) -> tuple[tuple[float, int, in
     )
 
 
-def suited(records: Sequence[Curve]) -> str:
+def suited(records: Sequence[IdaCurve]) -> str:
     """Name of the default method: capacities if each record has at least `FEWEST` levels, else stripes if
     all records have the same two or more levels, else a cloud.
     """
@@ -145,7 +145,7 @@ def fit(
 
 
 def _fitted(
-    case: str, records: Sequence[Curve], limit: float, method: str, level: float, known: float
+    case: str, records: Sequence[IdaCurve], limit: float, method: str, level: float, known: float
 ) -> Fitted:
     """Fragility of one limit; none, with a remark, for limits above `known`, where it is unknown."""
     remarks, fragility = [], None

@@ -30,7 +30,7 @@ THIRD: Final = 1.0 / 3.0
 SAME: Final = 1e-9  #: relative difference below which two levels are the same
 
 
-class Point(NamedTuple):
+class IdaPoint(NamedTuple):
     """One run.
 
     Attributes
@@ -74,7 +74,7 @@ class Rules:
     slope: float = 0.2
 
 
-def ends(points: Sequence[Point], rules: Rules) -> list[str]:
+def ends(points: Sequence[IdaPoint], rules: Rules) -> list[str]:
     """Verdict on every point, such as `STANDS`; `points` must be in the order of their levels."""
     ends: list[str] = []
     first = before = None
@@ -96,12 +96,12 @@ def ends(points: Sequence[Point], rules: Rules) -> list[str]:
     return ends
 
 
-def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:
+def collapse(points: Sequence[IdaPoint], rules: Rules) -> tuple[float, float]:
     """Bracket of the collapse level of a record.
 
     Parameters
     ----------
-    points : sequence of Point
+    points : sequence of IdaPoint
         In the order of their levels.
     rules : Rules
 
@@ -118,12 +118,12 @@ def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:
     return stands, math.inf
 
 
-def next_level(points: Sequence[Point], rules: Rules) -> float | None:
+def next_level(points: Sequence[IdaPoint], rules: Rules) -> float | None:
     """The level of the next run; None where the record is done.
 
     Parameters
     ----------
-    points : sequence of Point
+    points : sequence of IdaPoint
         At least one, in the order of their levels.
     rules : Rules
     """
@@ -137,7 +137,7 @@ def next_level(points: Sequence[Point], rules: Rules) -> float | None:
     return _fill(points, stands)
 
 
-def _hunt(points: Sequence[Point], rules: Rules) -> float | None:
+def _hunt(points: Sequence[IdaPoint], rules: Rules) -> float | None:
     """Next level of the hunt; None where the highest level is reached."""
     highest = points[-1].level
     if highest >= rules.top * (1.0 - SAME):
@@ -149,7 +149,7 @@ def _hunt(points: Sequence[Point], rules: Rules) -> float | None:
     return min(level, rules.top)
 
 
-def _fill(points: Sequence[Point], stands: float) -> float | None:
+def _fill(points: Sequence[IdaPoint], stands: float) -> float | None:
     """The middle of the widest gap between levels that stand, the lowest of several."""
     levels = [0.0, *(p.level for p in points if p.level <= stands)]
     gaps = [high - low for low, high in pairwise(levels)]
@@ -160,14 +160,14 @@ def _fill(points: Sequence[Point], stands: float) -> float | None:
     return levels[at] + 0.5 * gaps[at]
 
 
-def standing(points: Sequence[Point], rules: Rules) -> list[Point]:
+def standing(points: Sequence[IdaPoint], rules: Rules) -> list[IdaPoint]:
     """The curve of a record up to the highest level that stands, from the origin on."""
     stands, _ = collapse(points, rules)
-    return [Point(0.0, 0.0), *(p for p in points if p.level <= stands)]
+    return [IdaPoint(0.0, 0.0), *(p for p in points if p.level <= stands)]
 
 
 def capacity(
-    points: Sequence[Point], rules: Rules, demand: float, in_steps: bool = False, from_rest: bool = False
+    points: Sequence[IdaPoint], rules: Rules, demand: float, in_steps: bool = False, from_rest: bool = False
 ) -> tuple[float, float]:
     """Levels between which a record first reaches a demand: zero and the lowest level where its first run
     reaches it, the highest level and infinity where none does, twice the same where the level is known.
@@ -180,13 +180,13 @@ def capacity(
         if point.demand >= demand:
             if in_steps or not (below.demand or (from_rest and not below.level)):
                 return below.level, point.level
-            share = (demand - below.demand) / (point.demand - below.demand)
-            level = below.level + share * (point.level - below.level)
+            fraction = (demand - below.demand) / (point.demand - below.demand)
+            level = below.level + fraction * (point.level - below.level)
             return level, level
     return collapse(points, rules)
 
 
-def demand_at(points: Sequence[Point], rules: Rules, level: float) -> float:
+def demand_at(points: Sequence[IdaPoint], rules: Rules, level: float) -> float:
     """Demand at a level: infinite from the middle of the bracket of a collapse on.
 
     NaN beyond the highest level of a record that stands.

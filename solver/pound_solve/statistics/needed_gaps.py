@@ -16,7 +16,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.results.sweep_file import DONE, Sweep
 from pound_solve.statistics.curves import CurveError, cases, measure
 from pound_solve.statistics.fragility import Fragility, FragilityError, from_capacities
-from pound_solve.statistics.separation import RULES, Peaks
+from pound_solve.statistics.separation import RULES, SeparationPeaks
 
 ANY: Final = "any"  #: name of all contacts together, in a deck with several
 DIGITS: Final = 4  #: of probabilities by a distribution
@@ -44,7 +44,7 @@ class Options(NamedTuple):
     level: float = 0.95
 
 
-class Group(NamedTuple):
+class NeededGaps(NamedTuple):
     """One contact under the records of one case and level.
 
     Attributes
@@ -87,7 +87,7 @@ class Group(NamedTuple):
         return 1.0 if gap <= 0.0 else round(1.0 - float(self.fitted.probability(gap)), DIGITS)
 
 
-def groups(sweep: Sweep, options: Options) -> list[Group]:
+def groups(sweep: Sweep, options: Options) -> list[NeededGaps]:
     """Every contact of every case and level; `ANY` first.
 
     Raises
@@ -113,7 +113,7 @@ def groups(sweep: Sweep, options: Options) -> list[Group]:
 
 def _contacts(
     sweep: Sweep, case: str, level: float, runs: Array, asked: int, options: Options
-) -> Iterator[Group]:
+) -> Iterator[NeededGaps]:
     """Groups of one case and level, one for each contact; `runs` are its completed runs, by index."""
     needed, given_gap, u1, u2, rho = (sweep[name][runs] for name in NEEDS)
     there = ~np.isnan(given_gap).all(axis=0)  # contacts of this deck
@@ -126,12 +126,12 @@ def _contacts(
     gaps = np.full((len(names), len(RULES)), np.nan)
     for k in range(len(names) if free.any() else 0):
         correlation = options.correlation if math.isfinite(options.correlation) else rho[free, k].mean()
-        peaks = Peaks(u1[free, k].mean(), u2[free, k].mean(), float(correlation), *options.raised)
+        peaks = SeparationPeaks(u1[free, k].mean(), u2[free, k].mean(), float(correlation), *options.raised)
         gaps[k] = [rule.of(peaks) for rule in RULES]
 
-    def group(contact: str, of: Array, rules: Array) -> Group:
+    def group(contact: str, of: Array, rules: Array) -> NeededGaps:
         fitted = _fit(of, met, options.level)
-        return Group(case, level, contact, of, met, asked - len(runs), tuple(rules.tolist()), fitted)
+        return NeededGaps(case, level, contact, of, met, asked - len(runs), tuple(rules.tolist()), fitted)
 
     if len(names) > 1:
         yield group(ANY, needed[free].max(axis=1), gaps.max(axis=0))

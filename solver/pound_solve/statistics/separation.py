@@ -70,7 +70,7 @@ def own_mode(components: Array, periods: Array, damping: Array) -> tuple[float, 
     return float(periods[longest]), float(damping[longest])
 
 
-class Peaks(NamedTuple):
+class SeparationPeaks(NamedTuple):
     """Input of the rules of separation: peak displacements of both buildings and their correlation.
 
     Attributes
@@ -114,7 +114,7 @@ class Separation(NamedTuple):
 
     name: str
     source: str
-    of: Callable[[Peaks], float]
+    of: Callable[[SeparationPeaks], float]
 
 
 RULES: Final = (

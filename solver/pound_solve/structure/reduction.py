@@ -179,11 +179,11 @@ class ReducedSystem:
         if not softens:
             return f"{self.name(index)} has no mass and nothing holds it"
         if d >= len(NAMES):
-            cure = f"give element {owner} a flatter softening branch, or a longer LP"
+            remedy = f"give element {owner} a flatter softening branch, or a longer LP"
         else:
-            cure = "give the joints WR in WEIGHTS" if NAMES[d] == "rz" else "give it weight"
+            remedy = "give the joints WR in WEIGHTS" if NAMES[d] == "rz" else "give it weight"
         why = "its stiffness has become negative: it snaps through"
-        return f"{self.name(index)} has no mass, and {why}; {cure}"
+        return f"{self.name(index)} has no mass, and {why}; {remedy}"
 
 
 def moved_supports(motions: Sequence[GroundMotion], fixed: Sequence[Dof]) -> tuple[Dof, ...]:

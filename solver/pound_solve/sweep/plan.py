@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final
 
 from pound_solve.results.sweep_file import DONE
-from pound_solve.sweep.execution.journal import Entry
-from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.execution.journal import JournalEntry
+from pound_solve.sweep.study.run import StudyRun
 from pound_solve.sweep.study.study import Study
 
 SHOWN: Final = 20  #: most runs listed of one kind
@@ -25,20 +25,20 @@ class Agenda:
 
     Attributes
     ----------
-    ahead : tuple of Run
+    ahead : tuple of StudyRun
         To be executed.
-    done : tuple of Run
+    done : tuple of StudyRun
         Completed.
-    ended : tuple of Run
+    ended : tuple of StudyRun
         Stopped or failed, and not to be repeated.
     """
 
-    ahead: tuple[Run, ...]
-    done: tuple[Run, ...]
-    ended: tuple[Run, ...]
+    ahead: tuple[StudyRun, ...]
+    done: tuple[StudyRun, ...]
+    ended: tuple[StudyRun, ...]
 
     @classmethod
-    def of(cls, runs: Sequence[Run], entries: Mapping[str, Entry], retry: bool) -> Agenda:
+    def of(cls, runs: Sequence[StudyRun], entries: Mapping[str, JournalEntry], retry: bool) -> Agenda:
         """Sort runs by their results; with `retry`, stopped and failed runs are to be executed again."""
         ends = [entries[r.identity].status if r.identity in entries else "" for r in runs]
         return cls(
@@ -48,12 +48,12 @@ class Agenda:
         )
 
 
-def piece(runs: Sequence[Run], k: int, count: int) -> tuple[Run, ...]:
+def piece(runs: Sequence[StudyRun], k: int, count: int) -> tuple[StudyRun, ...]:
     """The k-th of `count` pieces of nearly equal length, k from 1."""
     return tuple(r for r in runs if (r.number - 1) % count == k - 1)
 
 
-def lines(study: Study, agenda: Agenda, entries: Mapping[str, Entry]) -> Iterator[str]:
+def lines(study: Study, agenda: Agenda, entries: Mapping[str, JournalEntry]) -> Iterator[str]:
     """Lines of text of the plan."""
     decks = {r.case.deck for r in study.runs}
     cases = {r.case for r in study.runs}
@@ -81,7 +81,7 @@ def _shakings(study: Study) -> str:
     return f"{_many(records, 'record')}, {_many(levels, what)}"
 
 
-def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
+def reasons(runs: Sequence[StudyRun], entries: Mapping[str, JournalEntry]) -> Iterator[str]:
     """Lines that state for the first of some runs that are not done the reason of each."""
     for run in runs[:SHOWN]:
         entry = entries[run.identity]
@@ -92,7 +92,7 @@ def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
 
 
 @dataclass
-class Trial:
+class TrialRuns:
     """Trial runs, to estimate the time and the space of the others.
 
     Attributes
@@ -100,16 +100,16 @@ class Trial:
     ahead : int
         Number of runs to execute before the trial.
     workers : int
-    entries : list of Entry
+    entries : list of JournalEntry
         Runs with the tolerance of the study; the first was also run with others.
-    looser : dict of float to Entry
+    looser : dict of float to JournalEntry
         Runs with tolerances above that of the study, by tolerance.
     """
 
     ahead: int
     workers: int
-    entries: list[Entry] = field(default_factory=list)
-    looser: dict[float, Entry] = field(default_factory=dict)
+    entries: list[JournalEntry] = field(default_factory=list)
+    looser: dict[float, JournalEntry] = field(default_factory=dict)
 
     @property
     def spent(self) -> float:
@@ -126,13 +126,13 @@ class Trial:
         """Estimated time of the remaining runs [s]."""
         return self.spent / max(len(self.entries), 1) * self.left / self.workers
 
-    def seconds_with(self, looser: Entry) -> float:
+    def seconds_with(self, looser: JournalEntry) -> float:
         """Estimated time of all runs with the looser tolerance of a trial run [s]."""
         mean = self.spent / len(self.entries) * looser.cpu / self.entries[0].cpu
         return mean * self.ahead / self.workers
 
 
-def estimate(trial: Trial, size: float) -> Iterator[str]:
+def estimate(trial: TrialRuns, size: float) -> Iterator[str]:
     """Lines of text: time and disk space for the runs left; `size` is that of one run [bytes]."""
     count, left = len(trial.entries), trial.left
     beyond = 1000.0 * sum(e.cpu - e.solve for e in trial.entries) / count

@@ -13,12 +13,12 @@ from pound_solve.results.sweep_file import DONE, ENDS, FAILED, Sweep
 from pound_solve.sweep import plan, table
 from pound_solve.sweep.execution.conduct import Conductor, State
 from pound_solve.sweep.execution.executors import Engine, engine
-from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.execution.lock import locked
 from pound_solve.sweep.execution.work import Settings, options_of_auto
-from pound_solve.sweep.plan import Trial
+from pound_solve.sweep.plan import TrialRuns
 from pound_solve.sweep.study.document import Document
-from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.study.run import StudyRun
 from pound_solve.sweep.study.study import Study, read, request_of
 
 
@@ -49,7 +49,7 @@ class Session:
         """Lines of text of the plan."""
         return plan.lines(self.study, self.agenda, self.entries)
 
-    def trial(self, report: Callable[[State], None]) -> Trial:
+    def trial(self, report: Callable[[State], None]) -> TrialRuns:
         """Execute some runs, to estimate the time and the space of the others.
 
         These are the strongest shaking of the middle case, since collisions and yielding take time, and the
@@ -58,7 +58,7 @@ class Session:
         """
         ahead = self.agenda.ahead
         some = list(dict.fromkeys([_strongest(ahead), ahead[0], ahead[-1]])) if ahead else []
-        trial = Trial(len(ahead), self.engine.workers)
+        trial = TrialRuns(len(ahead), self.engine.workers)
         with self.conductor(report) as conductor:
             for entry in self._one_by_one(conductor, some):
                 trial.entries.append(entry)
@@ -72,7 +72,7 @@ class Session:
                         break
         return trial
 
-    def _one_by_one(self, conductor: Conductor, runs: Sequence[Run]) -> Iterator[Entry]:
+    def _one_by_one(self, conductor: Conductor, runs: Sequence[StudyRun]) -> Iterator[JournalEntry]:
         """Execute runs lazily, one per yielded entry; end at an interruption."""
         for run in runs:
             interrupted = conductor.run([run]).ending
@@ -82,7 +82,7 @@ class Session:
             if interrupted:
                 return
 
-    def _looser(self, run: Run) -> Iterator[Run]:
+    def _looser(self, run: StudyRun) -> Iterator[StudyRun]:
         """Yield the run with larger tolerances of AUTO, if AUTO ran it with an error estimate."""
         ((_, values),) = self.journal.values({run.identity: self.entries[run.identity]})
         request = request_of(run.case)
@@ -100,25 +100,25 @@ class Session:
         settings = Settings(folder, study.seconds, study.memory, study.histories)
         return Conductor(self.engine, settings, self.journal, report)
 
-    def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
+    def carry_out(self, runs: Sequence[StudyRun], report: Callable[[State], None]) -> list[JournalEntry]:
         """Execute runs; return the journal's entries of those that have ended."""
         with self.conductor(report) as conductor:
             return self.carry_on(conductor, runs)
 
-    def carry_on(self, conductor: Conductor, runs: Sequence[Run]) -> list[Entry]:
+    def carry_on(self, conductor: Conductor, runs: Sequence[StudyRun]) -> list[JournalEntry]:
         """Execute runs by a conductor that may have executed others before; see `carry_out`."""
         if runs:
             conductor.run(runs)
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 
-    def estimate(self, trial: Trial) -> Iterator[str]:
+    def estimate(self, trial: TrialRuns) -> Iterator[str]:
         """Lines of text: time and space of the remaining runs, estimated from a trial."""
         if trial.entries:
             size = sum(p.stat().st_size for p in self.journal.folder.iterdir()) / len(self.entries)
             yield from plan.estimate(trial, size)
 
-    def extend(self, runs: Sequence[Run]) -> None:
+    def extend(self, runs: Sequence[StudyRun]) -> None:
         """Replace the runs of the study by `runs`."""
         self.study = replace(self.study, runs=tuple(runs))
         self.runs = self.study.runs
@@ -162,7 +162,7 @@ class Session:
         yield from plan.reasons(others, self.entries)
 
 
-def _strongest(runs: Sequence[Run]) -> Run:
+def _strongest(runs: Sequence[StudyRun]) -> StudyRun:
     """Run of the highest level among those that share the case of the middle run."""
     middle = runs[len(runs) // 2].case
     return max((r for r in runs if r.case == middle), key=lambda r: r.shaking.level if r.shaking else 0.0)
@@ -186,7 +186,7 @@ def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: 
     ------
     StudyError
         The study has mistakes; the text names the place of each.
-    BusyError, ExecutorError, ResultsError, OSError
+    FolderBusyError, ExecutorError, ResultsError, OSError
         Another sweep writes the folder; the executor is not available; a file cannot be read or written.
     """
     document = Document.read(str(path))

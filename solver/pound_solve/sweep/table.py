@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from pound_deck.model import Units
 from pound_solve.results import sweep_file
 from pound_solve.results.sweep_file import RUN, Sweep, Variable
-from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.study.quantities import QUANTITIES, Values
-from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.study.run import StudyRun
 from pound_solve.sweep.study.study import Study
 from pound_solve.version import __version__
 
 MISSING = "missing"  #: status of a run that has not ended
 
 
-def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep:
+def table(study: Study, journal: Journal, entries: Mapping[str, JournalEntry]) -> Sweep:
     """Make the table of a study: the inputs, the status and the quantities of each run.
 
     Parameters
@@ -29,10 +29,10 @@ def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep
     study : Study
     journal : Journal
         Holds the values, which are read twice, run by run: first the labels, then the values.
-    entries : mapping of str to Entry
+    entries : mapping of str to JournalEntry
         By identity.
     """
-    outcomes = [entries.get(run.identity) or Entry(run.identity, MISSING) for run in study.runs]
+    outcomes = [entries.get(run.identity) or JournalEntry(run.identity, MISSING) for run in study.runs]
     units = Units(*study.units, stated=True)
     place = {run.identity: k for k, run in enumerate(study.runs)}
     by_identity = {e.identity: e for e in outcomes}
@@ -63,14 +63,16 @@ def _labels(place: Mapping[str, int], values: Iterable[tuple[str, Values]]) -> d
     return {axis: tuple(sorted(seen, key=seen.__getitem__)) for axis, seen in first.items()}
 
 
-def write(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Path:
+def write(study: Study, journal: Journal, entries: Mapping[str, JournalEntry]) -> Path:
     """Write the file and the CSV of a study; return the path of the former, see `sweep_file.write`."""
     path = study.out / "sweep.h5"
     sweep_file.write(table(study, journal, entries), path, _histories(study.runs, journal))
     return path
 
 
-def _histories(runs: Sequence[Run], journal: Journal) -> Iterator[tuple[int, Mapping[str, NDArray[Any]]]]:
+def _histories(
+    runs: Sequence[StudyRun], journal: Journal
+) -> Iterator[tuple[int, Mapping[str, NDArray[Any]]]]:
     """Yield number and histories of each run with kept histories."""
     for run in runs:
         path = journal.histories(run.identity)
@@ -106,7 +108,7 @@ def _inputs(study: Study) -> dict[str, Variable]:
 _ENDS = ("status", "message", "doubt", "reached", "cpu_seconds", "solve_seconds")
 
 
-def _ends(entries: Sequence[Entry], units: Units) -> dict[str, Variable]:
+def _ends(entries: Sequence[JournalEntry], units: Units) -> dict[str, Variable]:
     """Variables of the end of each run: status, message, times."""
     return dict(
         zip(

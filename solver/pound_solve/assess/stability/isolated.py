@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from pound_solve.assess.stability.scenes.case import METHOD, Case
+from pound_solve.assess.stability.scenes.case import METHOD, StabilityCase
 from pound_solve.assess.stability.scenes.linear import KICK, one
 from pound_solve.check import Check, Subject, looked
 from pound_solve.driver import run
@@ -115,7 +115,7 @@ class Runner:
         self.limit, self.kept = limit, dict[str, Findings]()
         self.worker: tuple[BaseProcess, Connection] | None = None
 
-    def __call__(self, case: Case, deck: str, method: str) -> Findings:
+    def __call__(self, case: StabilityCase, deck: str, method: str) -> Findings:
         """Run a deck with a method."""
         text = deck.replace(METHOD, method)
         if not self.limit:

@@ -8,7 +8,7 @@ The right answer is the closed form where there is one; else that of EXACT on a 
 finer; for curved laws, which EXACT does not support, that of NEWMARK with steps so short that a quarter of
 them changes nothing.  Displacements and the forces of springs are compared at all output times, of contacts
 the largest force (one that jumps by a dashpot has no value at the instant of touch).  The allowed error of
-stepping methods is the share that the case states, that of EXACT and TAYLOR is `EXACT_WITHIN`, that of
+stepping methods is the fraction that the case states, that of EXACT and TAYLOR is `EXACT_WITHIN`, that of
 LAGUERRE `LAGUERRE_WITHIN`.  AUTO is judged by its tolerance: its peaks by `AUTO_WITHIN`, its histories like
 those of stepping methods.
 
@@ -37,7 +37,7 @@ import numpy as np
 
 from pound_solve.assess.stability.isolated import LIMIT, Findings, Runner
 from pound_solve.assess.stability.scenes import cases
-from pound_solve.assess.stability.scenes.case import STEP, STOREY, Case, every
+from pound_solve.assess.stability.scenes.case import STEP, STOREY, StabilityCase, every
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject
 from pound_solve.integrate.events.within_step import MOVING_ALIKE, REVERSE_RATE
@@ -48,11 +48,11 @@ STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 #: errors allowed, as shares of the largest value
 EXACT_WITHIN, LAGUERRE_WITHIN, AUTO_WITHIN = 1e-6, 1e-3, 2e-3
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
-ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
-NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
+ROUNDING: Final = 1e-9  #: fraction of the force of a storey below which that of a contact counts as none
+NUDGE: Final = 1e-6  #: fraction of the allowed error by which masses are changed
 #: least change of masses with a reference by steps
 BLIND: Final = 10.0 * MOVING_ALIKE * EVENT_TOLERANCE
-SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
+SETTLED: Final = 1e-3  #: fraction by which a reference by steps may still change when they are quartered
 MOST_STEPS: Final = 1e6  #: most steps of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"
 PARTLY: Final = "compared as far as the answer is known"
@@ -66,18 +66,18 @@ class JudgedRun:
 
     Attributes
     ----------
-    case : Case
+    case : StabilityCase
     method : str
     end : str
         `RIGHT`, `FLAGGED`, `STOPPED` or `FAULT`.
     error : float
-        The largest of displacements, as a share of the largest; NaN where nothing was compared.
+        The largest of displacements, as a fraction of the largest; NaN where nothing was compared.
     says : str
         The message, or the fault.
     seconds : float
     """
 
-    case: Case
+    case: StabilityCase
     method: str
     end: str
     error: float
@@ -95,8 +95,8 @@ def written(method: str, step: float) -> str:
     return f"{method} DT={step!r}" if catalog().family("method")[method].field("DT") else method
 
 
-def reference(run: Runner, case: Case) -> tuple[Findings, str, float] | None:
-    """Reference motion of a case, its method, and its possible error as a share; None where there is none.
+def reference(run: Runner, case: StabilityCase) -> tuple[Findings, str, float] | None:
+    """Reference motion of a case, its method, and its possible error as a fraction; None for none.
 
     EXACT; where that stops or loses energy, NEWMARK with steps that are quartered until the motion changes
     no more.
@@ -124,15 +124,15 @@ def reference(run: Runner, case: Case) -> tuple[Findings, str, float] | None:
 
 
 def shares(x: Array, right: Array) -> Array:
-    """Largest error at each time, as a share of the largest right value."""
+    """Largest error at each time, as a fraction of the largest right value."""
     size, off = np.abs(right).max(initial=0.0), np.abs(x - right)
     off = off.reshape(len(off), math.prod(off.shape[1:]))
     return np.asarray((off / size if size else off).max(axis=1, initial=0.0))
 
 
-def nudged(deck: str, share: float) -> str:
-    """Deck whose masses are greater by a share, as far as they are given as weights."""
-    return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + share)!r}", deck)
+def nudged(deck: str, fraction: float) -> str:
+    """Deck whose masses are greater by a fraction, as far as they are given as weights."""
+    return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + fraction)!r}", deck)
 
 
 Offs = dict[str, tuple[Array, float]]  #: errors of quantities, and the allowed error of each
@@ -140,7 +140,7 @@ PEAKS: Final = "largest "  #: first word of those that are no series in time
 SPRINGS: Final = "spring forces"
 
 
-def judge(run: Runner, case: Case, method: str) -> JudgedRun:
+def judge(run: Runner, case: StabilityCase, method: str) -> JudgedRun:
     """Solve a case by a method and judge the outcome."""
     outcome = run(case, case.deck, written(method, case.step))
 
@@ -151,7 +151,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
         return row(FAULT, outcome.wrong)
     if outcome.stop:
         return row(STOPPED, outcome.stop)
-    says, part = "; ".join(f"{check.name}: {check.told}" for check in outcome.looks), ""
+    says, part = "; ".join(f"{check.name}: {check.value_text}" for check in outcome.looks), ""
     if case.right is not None:
         error = shares(case.compared(outcome.t, outcome.u), case.right(outcome.t))
         offs = {"displacements": (error, allowed(case, method))}
@@ -169,7 +169,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
 
 
 def compared(
-    run: Runner, case: Case, method: str, result: Findings, right: tuple[Findings, str, float]
+    run: Runner, case: StabilityCase, method: str, result: Findings, right: tuple[Findings, str, float]
 ) -> tuple[Offs, str]:
     """Errors against a reference, restricted to what is `known` of it; and a remark on the restriction."""
     best, by, doubt = right
@@ -187,20 +187,20 @@ def compared(
     offs = errors(result, 1.0)
     if not beyond(offs):
         return offs, ""
-    share = max(NUDGE * within, BLIND if doubt else 0.0)
-    other = run(case, nudged(case.like[0] or case.deck, share), by)
+    fraction = max(NUDGE * within, BLIND if doubt else 0.0)
+    other = run(case, nudged(case.like[0] or case.deck, fraction), by)
     if len(other.t) != len(best.t):
         return offs, ""
     return known(offs, errors(other, case.like[1]), best.t, turns(best) & (doubt > 0.0))
 
 
-def whole(case: Case) -> bool:
+def whole(case: StabilityCase) -> bool:
     """Whether the reference of a case is a run of the same deck, so that all quantities are compared."""
     return case.right is None and not case.like[0] and case.compared is every
 
 
-def allowed(case: Case, method: str) -> float:
-    """Allowed error of the displacements, as a share of the largest."""
+def allowed(case: StabilityCase, method: str) -> float:
+    """Allowed error of the displacements, as a fraction of the largest."""
     if method in STEPLESS:
         return EXACT_WITHIN + case.inexact
     if method == "LAGUERRE":
@@ -276,7 +276,7 @@ def beyond(offs: Offs) -> str:
 
 def matrix(
     families: tuple[str, ...] = FAMILIES,
-    chosen: Callable[[Case], bool] = lambda case: True,
+    chosen: Callable[[StabilityCase], bool] = lambda case: True,
     limit: float = LIMIT,
 ) -> Iterator[JudgedRun]:
     """Solve all cases by all methods.
@@ -296,7 +296,7 @@ def matrix(
     for _ in range(count):
         runners.put(Runner(limit))
 
-    def solved(case: Case) -> list[JudgedRun]:
+    def solved(case: StabilityCase) -> list[JudgedRun]:
         run = runners.get()
         run.kept.clear()
         try:

@@ -52,9 +52,9 @@ def _print(deck: str, ready: Prepared, size: Mapping[str, int]) -> None:
 
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    told = f"no errors, {_counted(len(ready.warnings), 'warning')}" if ready.warnings else "no mistakes"
+    verdict = f"no errors, {_counted(len(ready.warnings), 'warning')}" if ready.warnings else "no mistakes"
     sizes = ", ".join(_counted(size[f"{what}s"], what) for what in ("node", "element", "unknown"))
-    print(f"{deck}: {told}; {sizes}")
+    print(f"{deck}: {verdict}; {sizes}")
 
 
 def _counted(n: int, what: str) -> str:

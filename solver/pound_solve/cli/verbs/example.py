@@ -54,11 +54,11 @@ def listed(folder: Path) -> Mapping[str, str]:
     return {name: text + _needs(needs) for name, text, needs in rows}
 
 
-def _needs(told: str) -> str:
+def _needs(needs: str) -> str:
     """Remark on further requirements of an example, from the column on records of the README."""
-    if told == "yes":
+    if needs == "yes":
         return " (needs the extra records)"
-    return f" ({told.removeprefix('no; ')})" if told != "no" else ""
+    return f" ({needs.removeprefix('no; ')})" if needs != "no" else ""
 
 
 def _write(source: Path, out: Path) -> int:

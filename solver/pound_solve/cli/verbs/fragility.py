@@ -55,10 +55,12 @@ def execute(args: argparse.Namespace) -> int:
         sweep, asked = Sweep.open(Path(args.sweep)), Asked(args.demand, args.label)
         fitted = fit(sweep, asked, limits, args.method, args.confidence)
         lines = list(fragility.report(sweep, asked, fitted, at))
-        told = summary.write(Path(args.sweep).with_name(_name(asked, limits)), sweep, "fragilities", lines)
+        written = summary.write(
+            Path(args.sweep).with_name(_name(asked, limits)), sweep, "fragilities", lines
+        )
     except CurveError as err:
         return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
-    print("\n".join([*lines, str(told)]))
+    print("\n".join([*lines, str(written)]))
     if args.picture:
         suites.fragilities(fragility.drawn(fitted), axes_of(sweep, asked)[1], args.picture)
     return common.DONE

@@ -20,15 +20,15 @@ def execute(args: argparse.Namespace) -> int:
     """Read the study, run the rounds, write the table of all runs, print capacities and fractiles."""
     if not common.drawable(args.picture):
         return common.MISTAKES
-    return studies.carried_out(args.study, lambda: _hunted(args))
+    return studies.carried_out(args.study, lambda: _analysed(args))
 
 
-def _hunted(args: argparse.Namespace) -> int:
+def _analysed(args: argparse.Namespace) -> int:
     """Run the rounds, write the table and print the report."""
     from pound_solve.report.plot import suites
     from pound_solve.report.sweep import incremental
     from pound_solve.results.sweep_file import Sweep
-    from pound_solve.sweep import hunt
+    from pound_solve.sweep import ida
     from pound_solve.sweep.execution.executors import engine
     from pound_solve.sweep.execution.lock import locked
     from pound_solve.sweep.session import Session
@@ -37,12 +37,12 @@ def _hunted(args: argparse.Namespace) -> int:
 
     document = Document.read(args.study)
     studies.give_conduct(args, document)
-    aim = hunt.aim(document)
-    study = read(document, (hunt.TABLE,))
+    aim = ida.aim(document)
+    study = read(document, (ida.TABLE,))
     with locked(study.out):
         session = Session(study, engine(args.executor, study.workers), retry=args.retry)
-        progress = studies.Progress(args)
-        hunt.Hunt(session, aim).carry_out(progress)
+        progress = studies.StudyProgress(args)
+        ida.IncrementalAnalysis(session, aim).carry_out(progress)
         progress.end()
         path = session.write(
             "incremental dynamic analysis", lambda sweep: incremental.report(sweep, aim.asked, aim.rules)

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
+from pound_solve.report.formats import ANIMATION_FORMATS, IMAGE_FORMATS
 
 if TYPE_CHECKING:
     from pound_solve.report.plot import Choice
     from pound_solve.results import Results
 
 SUMMARY = "draw pictures of a results file (needs matplotlib: the extra plot)"
-STILL, MOVING = common.FORMATS, ("html", "gif", "mp4")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("pictures", nargs="*", metavar="PICTURE", help=text)
     parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
     text = "format (default: svg; of the animation html)"
-    parser.add_argument("--as", dest="ending", choices=(*STILL, *MOVING), help=text)
+    parser.add_argument("--as", dest="ending", choices=(*IMAGE_FORMATS, *ANIMATION_FORMATS), help=text)
     parser.add_argument(
         "--member",
         action="append",
@@ -96,14 +96,14 @@ def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
         if not held >= set(needs := plot.PICTURES[name].needs):
             text = f"{args.results} lacks what the picture {name} needs: {', '.join(needs)}"
             return common.complain(text, common.MISTAKES)
-    names = args.pictures or plot.possible(results, args.ending or STILL[0])
+    names = args.pictures or plot.possible(results, args.ending or IMAGE_FORMATS[0])
     if not names:
         return common.complain(f"{args.results} holds nothing that a picture shows", common.MISTAKES)
     drawn: list[Path] = []
     left_out: dict[str, list[str]] = {}
     for name in names:
         moves = plot.PICTURES[name].write is not None
-        ending = args.ending or (MOVING if moves else STILL)[0]
+        ending = args.ending or (ANIMATION_FORMATS if moves else IMAGE_FORMATS)[0]
         more, less = plot.draw(results, [name], folder, ending, choice)
         drawn += more
         for what, pictures in less.items():

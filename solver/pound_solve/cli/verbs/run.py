@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
-from pound_solve.cli.progress import Progress
+from pound_solve.cli.progress import AnalysisProgress
 
 if TYPE_CHECKING:
     from pound_solve.results import Results
@@ -36,7 +36,7 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.driver import run
     from pound_solve.report.text import render as report
 
-    request, progress = common.request(args), Progress(args.quiet, args.interruption.check)
+    request, progress = common.request(args), AnalysisProgress(args.quiet, args.interruption.check)
     try:
         status, results, ready = run.execute(request, progress)
     except Exception:

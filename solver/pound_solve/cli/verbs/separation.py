@@ -78,11 +78,11 @@ def _of_sweep(args: argparse.Namespace) -> int:
         contacts = groups(sweep, options)
         lines = list(separation.report(sweep, contacts, options))
         write_table(path, separation.variables(sweep, contacts, options), sweep.about)
-        told = summary.write(path, sweep, "separation of the buildings", lines)
+        written = summary.write(path, sweep, "separation of the buildings", lines)
     except CurveError as err:
         return common.complain(f"{args.results}: {err}", common.MISTAKES)
     print("\n".join(lines))
-    print(f"{told}\n{path.with_suffix('.csv')}\n{path}")
+    print(f"{written}\n{path.with_suffix('.csv')}\n{path}")
     if args.picture:
         gap = f"gap [{units_of(sweep).length}]"
         suites.separations(separation.drawn(sweep, contacts, options), gap, args.picture)

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
+from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
     from pound_deck.model import Units
-    from pound_solve.assess.spectra import Source
-    from pound_solve.report.spectrum import Curve
+    from pound_solve.assess.spectra import AccelerationSource
+    from pound_solve.report.spectrum import SpectrumCurve
 
 SUMMARY = "response spectra of records, of the motions of a deck, or of the floors of a run"
 DEFAULT = "0.01:10:91"  #: thirty periods per decade
@@ -47,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--damping", type=_damping, default="5", metavar="X,X,...", help="in percent (default 5)"
     )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write the spectra as CSV")
-    text = f"draw the spectra into a file, ending in {', '.join(common.FORMATS)}"
+    text = f"draw the spectra into a file, ending in {', '.join(IMAGE_FORMATS)}"
     parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
@@ -100,12 +101,12 @@ def execute(args: argparse.Namespace) -> int:
     return common.DONE
 
 
-def _curves(args: argparse.Namespace) -> tuple[Units, list[Curve]]:
+def _curves(args: argparse.Namespace) -> tuple[Units, list[SpectrumCurve]]:
     """Spectra of all motions of all files, and their units."""
     from pound_deck.diagnostics import render
     from pound_solve.assess.spectra import SpectrumError
     from pound_solve.loading.spectrum import response_spectrum
-    from pound_solve.report.spectrum import Curve
+    from pound_solve.report.spectrum import SpectrumCurve
 
     sources = [_source(name, args) for name in args.sources]
     units = sources[0].units
@@ -121,13 +122,13 @@ def _curves(args: argparse.Namespace) -> tuple[Units, list[Curve]]:
     curves = []
     for title, a in (item for source in sources for item in source.accelerations.items()):
         try:
-            curves.append(Curve(title, a, response_spectrum(a, args.periods, args.damping)))
+            curves.append(SpectrumCurve(title, a, response_spectrum(a, args.periods, args.damping)))
         except ValueError as err:  # a period too short
             raise SpectrumError(f"{title}: {err}") from None
     return units, curves
 
 
-def _source(name: str, args: argparse.Namespace) -> Source:
+def _source(name: str, args: argparse.Namespace) -> AccelerationSource:
     """Motions of one file."""
     from pound_solve.assess import spectra
     from pound_solve.driver.reading import is_deck
@@ -151,6 +152,6 @@ def _source(name: str, args: argparse.Namespace) -> Source:
         source = spectra.of_nodes(results, args.node, args.direction)
         if results.status != "done":
             common.complain(f"warning: {name} ended early, at {results.last_time:g} {results.units.time}")
-    if told := spectra.coarse(source, min(args.periods)):
-        common.complain(f"warning: {name}: {told}")
+    if remark := spectra.coarse(source, min(args.periods)):
+        common.complain(f"warning: {name}: {remark}")
     return source

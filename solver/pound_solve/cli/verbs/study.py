@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pound_solve.cli import common
-from pound_solve.cli.progress import WIDTH, Progress, StatusLine
+from pound_solve.cli.progress import WIDTH, AnalysisProgress, StatusLine
+from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
-    from pound_solve.assess.stability.scenes.case import Case
+    from pound_solve.assess.stability.scenes.case import StabilityCase
     from pound_solve.assess.study import Plan
 
 SUMMARY = "error against time of every method on this deck, and advice"
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--longest", type=common.finite, metavar="S", help="CPU seconds a run may take (default 5)"
     )
-    text = f"draw error against time into a file, ending in {', '.join(common.FORMATS)}"
+    text = f"draw error against time into a file, ending in {', '.join(IMAGE_FORMATS)}"
     parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
     parser.add_argument(
         "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"
@@ -94,7 +95,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
 
 def _plan(args: argparse.Namespace) -> Plan:
     """Plan of the study; items without an option keep their defaults."""
-    from pound_solve.assess.advice import StudyError
+    from pound_solve.assess.advice import MethodStudyError
     from pound_solve.assess.study import Plan
 
     items: dict[str, Any] = {
@@ -105,11 +106,13 @@ def _plan(args: argparse.Namespace) -> Plan:
     for name in ("steps", "tols"):
         words = getattr(args, name)
         if words:
-            values = common.numbers(words.replace(",", " ").split(), f"--{name} takes numbers", StudyError)
+            values = common.numbers(
+                words.replace(",", " ").split(), f"--{name} takes numbers", MethodStudyError
+            )
             items[name] = tuple(sorted(values, reverse=True))
     plan = Plan(**items)
     if plan.repeat < 1 or not plan.longest > 0 or any(x <= 0 for x in (*plan.steps, *plan.tols)):
-        raise StudyError("--repeat, --longest, --steps and --tols must be above zero")
+        raise MethodStudyError("--repeat, --longest, --steps and --tols must be above zero")
     return plan
 
 
@@ -120,7 +123,7 @@ def _stability(args: argparse.Namespace) -> int:
     families = (args.family,) if args.family else judge.FAMILIES
     law = (args.law or "").upper()
 
-    def chosen(case: Case) -> bool:
+    def chosen(case: StabilityCase) -> bool:
         return law in ("", case.law) and not (args.quick and case.heavy)
 
     runs = sum(map(chosen, scenes.cases(families))) * len(judge.methods())
@@ -128,7 +131,7 @@ def _stability(args: argparse.Namespace) -> int:
         near = f"--family {args.family} has" if args.family else "there are"
         text = f"{near} no scenes with the law {args.law}: see pound-solve list"
         return common.complain(text, common.MISTAKES)
-    progress, rows = Progress(False, args.interruption.check), []
+    progress, rows = AnalysisProgress(False, args.interruption.check), []
     for row in judge.matrix(families, chosen):
         rows.append(row)
         doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"

@@ -130,7 +130,7 @@ def _swept(args: argparse.Namespace) -> int:
         print(study.warnings, file=sys.stderr)
     with locked(study.out, f"{k}-of-{count}" if args.task else ""):
         session = Session(study, engine(args.executor, study.workers), (k, count), args.retry)
-        progress = studies.Progress(args)
+        progress = studies.StudyProgress(args)
         if args.plan:
             print("\n".join(session.plan()))
             trial = session.trial(progress)

@@ -1,4 +1,4 @@
-"""Common parts of all ground motions: items of the card, context, and the Motion made from it."""
+"""Common parts of all ground motions: items of the card, context, and the GroundMotion made from it."""
 
 from __future__ import annotations
 
@@ -233,11 +233,11 @@ def finish(
         and bare.direction != "R"
         and not (_WEAK if weakest is None else weakest) <= strength <= (_RARE if unit else _STRONG)
     ):
-        told = f"peak ground acceleration is {strength:.3g} g"
+        finding = f"peak ground acceleration is {strength:.3g} g"
         if info.get("file"):
-            warnings.append(f"{told}; {_likely_unit(strength, unit, context)}check UNIT and SCALE")
+            warnings.append(f"{finding}; {_likely_unit(strength, unit, context)}check UNIT and SCALE")
         else:
-            warnings.append(f"{told}, with GRAVITY {context.gravity:g}: check both")
+            warnings.append(f"{finding}, with GRAVITY {context.gravity:g}: check both")
     peaks = {
         "scale": scale,
         "duration": acceleration.end,

@@ -130,7 +130,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMoti
             "notes": raw.notes,
             "cuts": _cuts(raw, card_values),
         },
-        weakest=_USED if raw.unit is None and scale == 1.0 else None,
+        weakest=_LEAST_PLAUSIBLE_PEAK if raw.unit is None and scale == 1.0 else None,
     )
 
 
@@ -140,8 +140,8 @@ def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, st
     start, doubts = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
     at, _ = whole.peak()
     if at < start:
-        told = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
-        doubts.append((told, "START", "give an earlier START, or a DURATION to the part that is meant"))
+        message = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
+        doubts.append((message, "START", "give an earlier START, or a DURATION to the part that is meant"))
     if card_values.get("DT") is not None and (wrong := mispaced(whole)):
         doubts.append((wrong, "DT", "DT is the time from one sample to the next in s"))
     return tuple(doubts)
@@ -200,7 +200,7 @@ def step(raw: RawRecord) -> float | None:
     return float(f"{mean:.9g}") if np.abs(steps - mean).max() <= 0.01 * mean else None
 
 
-_USED: Final = 0.05  #: fraction of gravity above which an unscaled record is plausible
+_LEAST_PLAUSIBLE_PEAK: Final = 0.05  #: fraction of gravity above which an unscaled record is plausible
 
 #: items that select a part of the file and its time
 FIELDS: Final = (

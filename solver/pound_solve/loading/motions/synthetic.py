@@ -71,8 +71,8 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMoti
 def _cuts(card_values: Mapping[str, Any]) -> tuple[tuple[str, str, str], ...]:
     """Warning that the motion ends during the rise of its envelope, before its strong part."""
     rise, duration = float(card_values["RISE"]), float(card_values["DURATION"])
-    told = f"the motion ends at DURATION={duration:g}, within its RISE={rise:g}"
-    return () if rise < duration else ((told, "DURATION", "give DURATION room for RISE and STRONG"),)
+    message = f"the motion ends at DURATION={duration:g}, within its RISE={rise:g}"
+    return () if rise < duration else ((message, "DURATION", "give DURATION room for RISE and STRONG"),)
 
 
 def of_samples(
@@ -103,8 +103,8 @@ def _in_g(pga: float | None, context: LoadingContext) -> tuple[str, ...]:
     round_number = pga is not None and float(f"{pga:.2g}") == pga
     if pga is None or not round_number or not LIKE_G[0] <= pga <= min(LIKE_G[1], WEAK * context.gravity):
         return ()
-    told = f"PGA={pga:g} is {pga / context.gravity:.2g} g: PGA is no share of gravity"
-    return (f"{told}; {pga:g} g is PGA={pga * context.gravity:.4g}",)
+    message = f"PGA={pga:g} is {pga / context.gravity:.2g} g: PGA is no share of gravity"
+    return (f"{message}; {pga:g} g is PGA={pga * context.gravity:.4g}",)
 
 
 def samples(card_values: Mapping[str, Any]) -> Array:

@@ -45,7 +45,7 @@ _UNKNOWN: Final = -999.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Block:
+class _CosmosBlock:
     """Lines of one component, the 1-based number of the first, and the numbers of its header."""
 
     lines: list[str]
@@ -123,7 +123,7 @@ def _known(word: str) -> bool:
     return bool(plain) and float(plain) != _UNKNOWN
 
 
-def _blocks(lines: list[str]) -> Iterator[_Block]:
+def _blocks(lines: list[str]) -> Iterator[_CosmosBlock]:
     """Components of the file with the numbers of their headers.
 
     Raises
@@ -144,7 +144,7 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
                 f"line {first}: the header has {len(integers)} integers and {len(reals)} reals; "
                 f"{_AZIMUTH + 1} and {_PEAK + 1} are needed",
             )
-        yield _Block(part, first, integers, reals)
+        yield _CosmosBlock(part, first, integers, reals)
 
 
 SPEC: Final = Spec(

@@ -30,7 +30,7 @@ _STEP, _PEAK = 60, 65
 
 
 @dataclass(frozen=True, slots=True)
-class _Block:
+class _CsmipBlock:
     """Lines of one component and the 1-based line number of the first."""
 
     lines: list[str]
@@ -62,7 +62,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     RecordError
         R402 for a damaged header, R403, R405 for an unknown component.
     """
-    blocks = [_Block(*part) for part in parts(text.splitlines(), _OPENING.match)]
+    blocks = [_CsmipBlock(*part) for part in parts(text.splitlines(), _OPENING.match)]
     if not blocks:
         raise RecordError("R402", "no line 'Corrected accelerogram' in the file", "leave FORMAT out")
     block = blocks[choose([b.component for b in blocks], options.get("COMPONENT"))]

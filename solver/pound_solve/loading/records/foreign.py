@@ -61,9 +61,9 @@ def refuse_binary(data: bytes) -> None:
     RecordError
         R402, with the kind of the file and the remedy.
     """
-    for place, signature, kind, cure in _SIGNATURES:
+    for place, signature, kind, remedy in _SIGNATURES:
         if re.match(signature, data[place : place + 16]):
-            raise RecordError("R402", f"the file is {kind}, which is not read", cure)
+            raise RecordError("R402", f"the file is {kind}, which is not read", remedy)
     # NULs at the end pad the blocks of some old text files
     if b"\0" in data[:HEAD].rstrip(b"\0 \r\n"):
         raise RecordError("R402", "the file is binary, and records are read from text", _CONVERT)
@@ -71,7 +71,7 @@ def refuse_binary(data: bytes) -> None:
 
 def unread(head: str) -> RecordError | None:
     """Error for a text of a known but unsupported kind, or None."""
-    for pattern, kind, cure in _TEXTS:
+    for pattern, kind, remedy in _TEXTS:
         if re.match(pattern, head, re.IGNORECASE):
-            return RecordError("R402", f"the file is {kind}, which is not read", cure)
+            return RecordError("R402", f"the file is {kind}, which is not read", remedy)
     return None

@@ -27,7 +27,7 @@ _WIDTH: Final = 8
 
 
 @dataclass(frozen=True, slots=True)
-class _Block:
+class _GeonetBlock:
     """Lines of one component and the line number of the first."""
 
     lines: list[str]
@@ -64,7 +64,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         R402, R403 where a block does not hold what its integers count, R405 for an unknown component.
     """
     # the words occur again in the text of a header, but not on its first line
-    blocks = [_Block(*part) for part in parts(text.splitlines(), _OPENING.search)]
+    blocks = [_GeonetBlock(*part) for part in parts(text.splitlines(), _OPENING.search)]
     if not blocks:
         raise RecordError(
             "R402", "no line 'Corrected accelerogram' or 'Uncorrected accelerogram' in the file"

@@ -176,12 +176,12 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
     base = Path(name).name.casefold()
     by_file = next((r for r in KNOWN.values() if base in map(str.casefold, r.file_names())), None)
     if shipped := record or by_file:
-        return RecordError("R401", message, _cure(shipped))
+        return RecordError("R401", message, _remedy(shipped))
     names = {plain(key): key for key in KNOWN}
     if close := difflib.get_close_matches(plain(Path(name).stem), names, n=3, cutoff=0.75):
         meant = KNOWN[names[close[0]]]
         hint = f"did you mean {' or '.join(names[c] for c in close)}?"
-        return RecordError("R401", message, hint if meant.locate() else f"{hint} {_cure(meant)}")
+        return RecordError("R401", message, hint if meant.locate() else f"{hint} {_remedy(meant)}")
     if source := next((where for word, where in _SOURCES.items() if word in plain(name)), None):
         return RecordError("R401", message, f"it is not shipped; see {source}")
     return RecordError(
@@ -189,7 +189,7 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
     )
 
 
-def _cure(record: Known) -> str:
+def _remedy(record: Known) -> str:
     """Text on how to get a known record, with the package and without it, and what runs without it."""
     by_hand = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
     return (

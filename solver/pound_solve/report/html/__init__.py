@@ -13,8 +13,8 @@ from importlib.resources import files
 from itertools import accumulate
 from typing import Any, Final, NamedTuple
 
-from pound_solve.report.html.pictures import Picture, pictures
-from pound_solve.report.text import Shown, formatted, incomplete, shown
+from pound_solve.report.html.pictures import PlotlyPicture, pictures
+from pound_solve.report.text import ReportTable, formatted, incomplete, shown
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
 from pound_solve.results.schema import Table
@@ -26,7 +26,7 @@ POLICY: Final = (
 )
 
 
-class _Section(NamedTuple):
+class _PageSection(NamedTuple):
     """One section of the page: its anchor, heading, and content."""
 
     place: str
@@ -55,11 +55,11 @@ def page(results: Results, *, limit: int | None = None, only: Collection[str] | 
             for line in _table(results, TABLES[name], f"{number}.{place}", limit)
         )
         if body:
-            sections.append(_Section(f"s{number}", f"{number} {heading}", body))
+            sections.append(_PageSection(f"s{number}", f"{number} {heading}", body))
     drawn = pictures(results) if only is None else []
     if drawn:  # after the summary
         figures = "".join(_figure(f"p{k}", picture) for k, picture in enumerate(drawn, 1))
-        sections.insert(1, _Section("pictures", "Pictures", figures))
+        sections.insert(1, _PageSection("pictures", "Pictures", figures))
     return "".join((*_head(results), *_body(results, sections), *_programs(drawn, library)))
 
 
@@ -86,21 +86,21 @@ def _head(results: Results) -> Iterator[str]:
     yield f"<title>{_title(results)}</title>\n<style>\n{_own('page.css')}</style>\n</head>\n"
 
 
-def _body(results: Results, sections: Sequence[_Section]) -> Iterator[str]:
+def _body(results: Results, sections: Sequence[_PageSection]) -> Iterator[str]:
     links = (f'<a href="#{s.place}">{s.heading}</a>\n' for s in sections)
     yield f"<body>\n<nav>\n{''.join(links)}</nav>\n<main>\n<h1>{_title(results)}</h1>\n"
     units = ", ".join(map(escape, (results.units.force, results.units.length, results.units.time)))
     made = f"; results {results.digest}" if results.digest else ""
     yield f"<p>pound-solve {escape(results.program_version)}; units {units}{made}</p>\n"
-    told = incomplete(results)
-    if told:
-        yield f'<div class="warning">{"".join(f"<p>{escape(text)}</p>" for text in told)}</div>\n'
+    sentences = incomplete(results)
+    if sentences:
+        yield f'<div class="warning">{"".join(f"<p>{escape(text)}</p>" for text in sentences)}</div>\n'
     for s in sections:
         yield f'<section id="{s.place}">\n<h2>{s.heading}</h2>\n{s.body}</section>\n'
     yield "</main>\n"
 
 
-def _programs(drawn: Sequence[Picture], library: str) -> Iterator[str]:
+def _programs(drawn: Sequence[PlotlyPicture], library: str) -> Iterator[str]:
     if drawn:
         data = json.dumps([p.as_json() for p in drawn], allow_nan=False, separators=(",", ":"))
         data = data.replace("</", r"<\/")  # no text in them may end the script element
@@ -109,7 +109,7 @@ def _programs(drawn: Sequence[Picture], library: str) -> Iterator[str]:
     yield f"<script>\n{_own('page.js')}</script>\n</body>\n</html>\n"
 
 
-def _figure(place: str, picture: Picture) -> str:
+def _figure(place: str, picture: PlotlyPicture) -> str:
     note = f"<figcaption>{escape(picture.note)}</figcaption>" if picture.note else ""
     head = f"<figure><h3>{escape(picture.title)}</h3>"
     return f'{head}<div class="picture" id="{place}"></div>{note}</figure>\n'
@@ -126,7 +126,7 @@ def _table(results: Results, table: Table[Any], number: str, limit: int | None) 
     yield from (f'<p class="note">{escape(text)}</p>\n' for text in notes if text)
 
 
-def _part(results: Results, part: Shown) -> Iterator[str]:
+def _part(results: Results, part: ReportTable) -> Iterator[str]:
     """Yield the HTML of a part of a table."""
     columns, heads, cells, blocks = formatted(results.units, part.table, part.rows)
     if not columns:

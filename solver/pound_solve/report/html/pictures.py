@@ -50,7 +50,7 @@ COLOURS: Final = (
 Trace: TypeAlias = dict[str, Any]
 
 
-class Picture(NamedTuple):
+class PlotlyPicture(NamedTuple):
     """One picture.
 
     Attributes
@@ -77,15 +77,15 @@ class Picture(NamedTuple):
         return {"x": _plain(self.x), "y": _plain(self.y), "traces": self.traces, "equal": self.equal}
 
 
-def pictures(results: Results) -> list[Picture]:
+def pictures(results: Results) -> list[PlotlyPicture]:
     """Return all pictures for which the results have data."""
-    makers: tuple[Callable[[Results], Iterator[Picture]], ...] = (
+    makers: tuple[Callable[[Results], Iterator[PlotlyPicture]], ...] = (
         _structure, _profiles, _courses, _loops, _capacity,
     )  # fmt: skip
     return [picture for make in makers for picture in make(results) if picture.traces]
 
 
-def _structure(results: Results) -> Iterator[Picture]:
+def _structure(results: Results) -> Iterator[PlotlyPicture]:
     """Picture of the structure, undeformed and at the instant of its largest displacement."""
     if not results.holds("nodes"):
         return
@@ -116,7 +116,7 @@ def _structure(results: Results) -> Iterator[Picture]:
     )  # fmt: skip
     length = s.units.length
     kept = [t for t in traces if t["x"]]
-    yield Picture("Structure", note, f"X [{length}]", f"Y [{length}]", kept, equal=True)
+    yield PlotlyPicture("Structure", note, f"X [{length}]", f"Y [{length}]", kept, equal=True)
 
 
 def _line(name: str, points: Array, colour: str) -> Trace:
@@ -125,7 +125,7 @@ def _line(name: str, points: Array, colour: str) -> Trace:
     return {"name": name, "mode": "lines", "line": {"color": colour}, "x": x, "y": y, "hoverinfo": "skip"}
 
 
-def _profiles(results: Results) -> Iterator[Picture]:
+def _profiles(results: Results) -> Iterator[PlotlyPicture]:
     """Pictures of the largest and smallest values of the storeys over the height of each building."""
     if not (results.holds("storey_envelope") and results.holds("storey_extremes")):
         return
@@ -144,10 +144,10 @@ def _profiles(results: Results) -> Iterator[Picture]:
                 curve = {"name": label, "mode": "lines+markers", "line": line, "y": y}
                 traces.append(curve | {"x": _numbers(storeys[column])})
         unit = rows["unit"][0] if len(rows) else ""
-        yield Picture(title, "", f"{name} [{unit}]", f"level [{length}]", traces)
+        yield PlotlyPicture(title, "", f"{name} [{unit}]", f"level [{length}]", traces)
 
 
-def _courses(results: Results) -> Iterator[Picture]:
+def _courses(results: Results) -> Iterator[PlotlyPicture]:
     """Pictures of histories over time."""
     for name, component, title, axis in COURSES:
         if not results.holds(name) or name not in results.histories:
@@ -163,7 +163,7 @@ def _courses(results: Results) -> Iterator[Picture]:
             traces += _peaks(results)
             note = f"The marks are the peaks in the table of collisions. {note}".strip()
         unit = results.history_units(name)[chosen[0]]
-        yield Picture(title, note, f"time [{results.units.time}]", f"{axis} [{unit}]", traces)
+        yield PlotlyPicture(title, note, f"time [{results.units.time}]", f"{axis} [{unit}]", traces)
 
 
 def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
@@ -183,7 +183,7 @@ def _peaks(results: Results) -> Iterator[Trace]:
         }  # fmt: skip
 
 
-def _loops(results: Results) -> Iterator[Picture]:
+def _loops(results: Results) -> Iterator[PlotlyPicture]:
     """Pictures of force against deformation of springs and hinges, one for each unit of force."""
     if not (results.holds("spring/force") and results.holds("spring/deformation")):
         return
@@ -197,7 +197,7 @@ def _loops(results: Results) -> Iterator[Picture]:
         kind = "Moment" if along[shown[0]] == "rad" else "Force"
         note = "At first the one with the most work is shown. " if len(shown) > 1 else ""
         note += "The corners are those of the stored instants."
-        yield Picture(
+        yield PlotlyPicture(
             f"{kind}s of springs and hinges",
             note,
             f"deformation [{along[shown[0]]}]",
@@ -206,13 +206,13 @@ def _loops(results: Results) -> Iterator[Picture]:
         )
 
 
-def _capacity(results: Results) -> Iterator[Picture]:
+def _capacity(results: Results) -> Iterator[PlotlyPicture]:
     """Picture of the capacity curve of a pushover."""
     if results.holds("capacity_curve"):
         table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
         curve = _curve("base shear", table["displacement"], table["base_shear"], True)
         x, y = f"control displacement [{units['displacement']}]", f"base shear [{units['base_shear']}]"
-        yield Picture("Capacity curve", "", x, y, [curve])
+        yield PlotlyPicture("Capacity curve", "", x, y, [curve])
 
 
 def thinned(t: Array, values: Array) -> tuple[Array, Array]:

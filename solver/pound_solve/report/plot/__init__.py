@@ -9,14 +9,14 @@ from typing import Any
 from pound_solve.report.plot import labels, style
 from pound_solve.report.plot.catalog import PICTURES
 from pound_solve.report.plot.loop import loop
-from pound_solve.report.plot.schema import ALL, MOVING, STILL, Choice, ChoiceError, Nothing, Picture
+from pound_solve.report.plot.schema import ALL, Choice, ChoiceError, Nothing, Picture
 from pound_solve.report.plot.spectrum import spectra
 from pound_solve.report.plot.style import ready, sheet
 from pound_solve.results import Results
 from pound_solve.results.contents import TABLES
 
 __all__ = (
-    "ALL", "MOVING", "PICTURES", "STILL", "Choice", "ChoiceError", "Nothing", "draw", "draw_into", "loop",
+    "ALL", "PICTURES", "Choice", "ChoiceError", "Nothing", "draw", "draw_into", "loop",
     "picture", "possible", "ready", "sheet", "spectra",
 )  # fmt: skip
 

@@ -15,14 +15,14 @@ from pound_solve.report.plot.neighbours import Contact, moves, reach
 from pound_solve.results import Results
 from pound_solve.structure.elements.base import axes as own_axes
 
-SHARE = 0.08  #: largest drawn displacement as a share of the structure's size
+SHARE = 0.08  #: largest drawn displacement as a fraction of the structure's size
 APART = 0.03  #: distance of neighbours in pictures without displacements, likewise
 PLATE = 0.012  #: half the length of the plate at the end of a contact's reach, likewise
-WALL = 0.035  #: half the length of a wall, and about its distance, as a share of that size
+WALL = 0.035  #: half the length of a wall, and about its distance, as a fraction of that size
 HATCHES = 6
-SLENDER = 0.15  #: least half of a picture's side, as a share of that size
+SLENDER = 0.15  #: least half of a picture's side, as a fraction of that size
 NOWHERE = np.zeros(2)
-STILL: Mapping[int, Array] = MappingProxyType({})  #: no displacements
+UNDISPLACED: Mapping[int, Array] = MappingProxyType({})  #: no displacements
 
 
 class DrawnStructure:
@@ -90,7 +90,7 @@ class DrawnStructure:
         """Ends of all elements between two nodes but contacts."""
         return [(int(e["i"]), int(e["j"])) for e in self.elements if e["j"] and e["kind"] != "CONTACT"]
 
-    def path(self, shift: Mapping[int, Array] = STILL) -> Array:
+    def path(self, shift: Mapping[int, Array] = UNDISPLACED) -> Array:
         """All elements between two nodes but contacts as one line with gaps, displaced by `shift` of every
         node, shape (2, 3 n) [L].
         """
@@ -103,14 +103,16 @@ class DrawnStructure:
         """Reach of a contact from node I, shape (2,) [L]."""
         return reach(contact, self.place, self.distances.get(contact.name, 0.0))
 
-    def ends(self, contact: Contact, shift: Mapping[int, Array] = STILL) -> tuple[Array, Array, Array]:
+    def ends(
+        self, contact: Contact, shift: Mapping[int, Array] = UNDISPLACED
+    ) -> tuple[Array, Array, Array]:
         """Node I, the end of the contact's reach, and node J, displaced; a wall's J is its front."""
         start = self.place[contact.i] + shift.get(contact.i, NOWHERE)
         if not contact.j:
             return start, start, self.front(contact)
         return start, start + self.arm(contact), self.place[contact.j] + shift.get(contact.j, NOWHERE)
 
-    def draw(self, axes: Any, shift: Mapping[int, Array] = STILL, **look: Any) -> Any:
+    def draw(self, axes: Any, shift: Mapping[int, Array] = UNDISPLACED, **look: Any) -> Any:
         """Draw the members, displaced by `shift` of every node; return the line."""
         look.setdefault("linestyle", "-")
         return axes.plot(*self.path(shift=shift), **look)[0]
@@ -119,7 +121,7 @@ class DrawnStructure:
         """Point of a wall that node I meets."""
         return np.asarray(self.place[wall.i] + self.distances.get(wall.name, WALL * self.size) * wall.along)
 
-    def draw_contacts(self, axes: Any, shift: Mapping[int, Array] = STILL) -> None:
+    def draw_contacts(self, axes: Any, shift: Mapping[int, Array] = UNDISPLACED) -> None:
         """Draw the contacts, displaced: the reach of node I with a plate at its end, a thin line over the
         gap, and a plate at node J, or a wall.
         """
@@ -158,7 +160,7 @@ class DrawnStructure:
                 axes.plot(*self.place[node], "o", color="0.2", markersize=size, zorder=4)
 
     def view(self, room: float = 0.06) -> tuple[Array, Array]:
-        """Corners of what a picture shows: `room` around the structure as a share of its size; a slender
+        """Corners of what a picture shows: `room` around the structure as a fraction of its size; a slender
         structure gets more.
         """
         half = np.maximum(0.5 * (self.high - self.low) + room * self.size, SLENDER * self.size)
@@ -166,7 +168,7 @@ class DrawnStructure:
         return middle - half, middle + half
 
     def frame(self, axes: Any, room: float = 0.06) -> None:
-        """Set equal scales and limits with `room` around the structure, a share of its size."""
+        """Set equal scales and limits with `room` around the structure, a fraction of its size."""
         (x0, y0), (x1, y1) = self.view(room)
         axes.set_xlim(x0, x1)
         axes.set_ylim(y0, y1)
@@ -218,9 +220,9 @@ def contact_name(element: Any) -> str:
     return str(element["name"] or element["element"])
 
 
-def apart(share: float = APART) -> Callable[[float, float], float]:
-    """Distance of neighbours as a share of the structure's size, for pictures without displacements."""
-    return lambda gap, size: share * size
+def apart(fraction: float = APART) -> Callable[[float, float], float]:
+    """Distance of neighbours as a fraction of the structure's size, for pictures without displacements."""
+    return lambda gap, size: fraction * size
 
 
 class Displacements(NamedTuple):
@@ -279,7 +281,7 @@ def draw_wall(axes: Any, front: Array, across: Array, half: float) -> None:
     ends = front + half * np.array([along, -along])
     look = {"color": style.RED, "linestyle": "-"}
     axes.plot(*ends.T, **look, linewidth=1.4)
-    for share in np.linspace(0.0, 1.0, HATCHES):
-        foot = ends[0] + share * (ends[1] - ends[0])
+    for fraction in np.linspace(0.0, 1.0, HATCHES):
+        foot = ends[0] + fraction * (ends[1] - ends[0])
         back = foot + 0.4 * half * (across + along)
         axes.plot(*zip(foot, back), **look, linewidth=0.7)

@@ -116,7 +116,7 @@ def chosen_contacts(results: Results, choice: Choice, refused: bool = True) -> l
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class MemberForces:
     """Forces along one member.
 
     Attributes
@@ -125,7 +125,7 @@ class Line:
     i, j : ndarray, shape (2,)
         Ends of the flexible length [L].
     x : ndarray, shape (n,)
-        Places between them, as shares of that length.
+        Places between them, as fractions of that length.
     low, high : dict of str to ndarray, shape (n,)
         Smallest and largest ``M`` (positive where the member sags: tension on the right of the line from I
         to J) [F L], ``V`` (positive where it turns the member clockwise) and ``N`` (tension) [F].
@@ -139,7 +139,7 @@ class Line:
     high: dict[str, Array]
 
 
-def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[Line]:
+def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[MemberForces]:
     """Forces along the chosen members, or all: at an instant, or their extremes over the history (of the
     static state where there is none).
 
@@ -165,12 +165,12 @@ def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Itera
         low = {q: v.min(axis=0) for q, v in forces.items()}
         high = {q: v.max(axis=0) for q, v in forces.items()}
         for q, (_, *ends) in ((q, QUANTITIES[q]) for q in forces):
-            for end, name, sign, share in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
+            for end, name, sign, fraction in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
                 if (number, name) in extremes:
                     least, most = sorted(sign * v for v in extremes[number, name])
-                    low[q] += share * (least - low[q][end])
-                    high[q] += share * (most - high[q][end])
-        yield Line(number, i, j, x, low, high)
+                    low[q] += fraction * (least - low[q][end])
+                    high[q] += fraction * (most - high[q][end])
+        yield MemberForces(number, i, j, x, low, high)
 
 
 _SIGN: Final = {"M": (-1.0, 1.0), "V": (1.0, -1.0), "N": (1.0, 1.0)}  #: of the end forces at I and J
@@ -195,14 +195,14 @@ def along_member(
     along : ndarray, shape (2,)
         Direction from I to J.
     points : sequence of (place, force)
-        Point loads: share of the length from I, and force along global x and y [F].
+        Point loads: fraction of the length from I, and force along global x and y [F].
 
     Returns
     -------
     x : ndarray, shape (n,)
         Places as shares of the length: `STATIONS`, and both sides of each point load.
     forces : dict of str to ndarray, shape (nt, n)
-        ``M``, ``V``, ``N`` as `Line` defines them.
+        ``M``, ``V``, ``N`` as `MemberForces` defines them.
     """
     jumps = [a for a, _ in points for _ in range(2)]
     x = np.sort(np.concatenate([np.linspace(0.0, 1.0, STATIONS), jumps]))

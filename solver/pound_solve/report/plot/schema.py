@@ -10,11 +10,9 @@ from typing import Any, Final
 import numpy as np
 
 from pound_solve.numerics.types import Array
+from pound_solve.report.formats import IMAGE_FORMATS
 from pound_solve.results import Results
 from pound_solve.user_error import UserError
-
-STILL: Final = ("svg", "png", "pdf")  #: endings of a picture that stands still
-MOVING: Final = ("html", "gif", "mp4")  #: endings of one that moves
 
 
 class Nothing(Exception):
@@ -120,5 +118,5 @@ class Picture:
     needs: tuple[str, ...]
     draw: Callable[[Results, Choice], Any]
     options: tuple[str, ...] = ()
-    endings: tuple[str, ...] = STILL
+    endings: tuple[str, ...] = IMAGE_FORMATS
     write: Callable[[Results, Choice, Path], None] | None = None

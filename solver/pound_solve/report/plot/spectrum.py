@@ -8,12 +8,12 @@ from typing import Any, Final
 
 from pound_deck.model import Units
 from pound_solve.report.plot import style
-from pound_solve.report.spectrum import Curve
+from pound_solve.report.spectrum import SpectrumCurve
 
 STROKES: Final = ("-", "--", ":", "-.")  #: one for each damping
 
 
-def spectra(curves: Sequence[Curve], units: Units, path: Path) -> None:
+def spectra(curves: Sequence[SpectrumCurve], units: Units, path: Path) -> None:
     """Draw all curves into a file, whose ending names the format: a colour for each motion, a stroke for
     each damping.
 
@@ -38,7 +38,7 @@ def spectra(curves: Sequence[Curve], units: Units, path: Path) -> None:
         style.save(figure, path)
 
 
-def _panel(axes: Any, curves: Sequence[Curve], quantity: str) -> None:
+def _panel(axes: Any, curves: Sequence[SpectrumCurve], quantity: str) -> None:
     """Draw one quantity of all curves; a single damping leaves the strokes to the motions."""
     several = any(len(curve.spectrum.damping) > 1 for curve in curves)
     for k, curve in enumerate(curves):

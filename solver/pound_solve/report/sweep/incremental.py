@@ -17,7 +17,7 @@ from pound_solve.results.sweep_file import Sweep
 from pound_solve.statistics.curves import (
     FRACTILES,
     Asked,
-    Curve,
+    IdaCurve,
     by_case,
     curves,
     measure,
@@ -88,7 +88,7 @@ def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
     return cases
 
 
-def _line(curve: Curve, rules: Rules) -> tuple[Array, Array]:
+def _line(curve: IdaCurve, rules: Rules) -> tuple[Array, Array]:
     """Demands and levels of a record from the origin up to the highest level without collapse."""
     levels, demands = np.array(standing(curve.points, rules)).T
     return demands, levels

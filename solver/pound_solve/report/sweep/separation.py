@@ -14,14 +14,14 @@ from pound_solve.results.columns import CONTACT
 from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.statistics.curves import FRACTILES, fractiles_of, measure, units_of
-from pound_solve.statistics.needed_gaps import ANY, Group, Options
+from pound_solve.statistics.needed_gaps import ANY, NeededGaps, Options
 from pound_solve.statistics.separation import RULES, share
 
 STEPS: Final = 8  #: number of gaps in the table if none are given
 POINTS: Final = 400  #: points of a drawn curve
 
 
-def needs(groups: Sequence[Group]) -> Iterator[Row]:
+def needs(groups: Sequence[NeededGaps]) -> Iterator[Row]:
     """One row for each group: fractiles and lognormal fit of the gaps that its runs needed."""
     for g in groups:
         row: list[float] = [math.nan] * 3
@@ -38,7 +38,7 @@ def _finite(x: float) -> float:
     return x if math.isfinite(x) else math.nan
 
 
-def _remark(g: Group) -> str:
+def _remark(g: NeededGaps) -> str:
     """Remark on missing runs of a group, and on runs with collisions, which need an unknown wider gap."""
     remarks = []
     if len(g.met):
@@ -48,24 +48,24 @@ def _remark(g: Group) -> str:
     return "; ".join(remarks)
 
 
-def probabilities(groups: Sequence[Group], options: Options) -> Iterator[Row]:
+def probabilities(groups: Sequence[NeededGaps], options: Options) -> Iterator[Row]:
     """Rows of the probability of contact in each group: at gaps of the rules, then at requested ones."""
     for g in groups:
         asked = [("", "", gap) for gap in options.gaps or _steps(g)]
         for name, source, gap in (*((r.name, r.source, x) for r, x in zip(RULES, g.rules)), *asked):
             count, total = g.contacts(gap)
             if math.isfinite(gap):
-                told = share(count, total, options.level)
-                yield g.case, g.level, g.contact, name, source, gap, count, total, *told, g.by_fit(gap)
+                estimate = share(count, total, options.level)
+                yield g.case, g.level, g.contact, name, source, gap, count, total, *estimate, g.by_fit(gap)
 
 
-def _steps(g: Group) -> list[float]:
+def _steps(g: NeededGaps) -> list[float]:
     """Gaps in equal steps up to the widest needed gap or, if runs collided, the widest known one."""
     most = float(g.met.min()) if len(g.met) else float(g.needed.max(initial=0.0))
     return np.linspace(0.0, most, STEPS + 1)[1:].tolist() if most > 0.0 else []
 
 
-def report(sweep: Sweep, groups: Sequence[Group], options: Options) -> Iterator[str]:
+def report(sweep: Sweep, groups: Sequence[NeededGaps], options: Options) -> Iterator[str]:
     """Lines of both tables; probabilities are those of all contacts together."""
     units, level = units_of(sweep), measure(sweep)
     yield from printed(units, needed_table(level, options.level), needs(groups))
@@ -74,13 +74,13 @@ def report(sweep: Sweep, groups: Sequence[Group], options: Options) -> Iterator[
     yield from printed(units, probability_table(level, options.level), rows)
 
 
-def _together(groups: Sequence[Group]) -> list[Group]:
+def _together(groups: Sequence[NeededGaps]) -> list[NeededGaps]:
     """One group for every case and level: that of all its contacts."""
     several = {(g.case, g.level) for g in groups if g.contact == ANY}
     return [g for g in groups if g.contact == ANY or (g.case, g.level) not in several]
 
 
-def variables(sweep: Sweep, groups: Sequence[Group], options: Options) -> dict[str, Variable]:
+def variables(sweep: Sweep, groups: Sequence[NeededGaps], options: Options) -> dict[str, Variable]:
     """Columns of the table of probabilities as variables of a file."""
     table, units = probability_table(measure(sweep), options.level), units_of(sweep)
     columns = zip(*probabilities(groups, options))
@@ -90,7 +90,7 @@ def variables(sweep: Sweep, groups: Sequence[Group], options: Options) -> dict[s
     }
 
 
-def drawn(sweep: Sweep, groups: Sequence[Group], options: Options) -> list[suites.Contacts]:
+def drawn(sweep: Sweep, groups: Sequence[NeededGaps], options: Options) -> list[suites.Contacts]:
     """Data of the picture of every case and level, all its contacts together."""
     panels = []
     for g in _together(groups):

@@ -106,9 +106,9 @@ def _run(sweep: Sweep) -> Iterator[str]:
             yield from _line(word, _values(sweep[name].tolist()))
 
 
-def _line(word: str, told: str) -> list[str]:
+def _line(word: str, text: str) -> list[str]:
     return textwrap.wrap(
-        told, WIDTH, initial_indent=f"  {word:<12}  ", subsequent_indent=" " * 16, break_long_words=False
+        text, WIDTH, initial_indent=f"  {word:<12}  ", subsequent_indent=" " * 16, break_long_words=False
     )
 
 
@@ -139,7 +139,7 @@ def _titles(sweep: Sweep) -> list[str]:
     """Title of each run: its case, record and level."""
     names = [name for name in ("record", *_levels(sweep)) if name in sweep.variables]
     return [
-        ", ".join(filter(None, [case, *(_told(sweep[n][i], n) for n in names)]))
+        ", ".join(filter(None, [case, *(_level_text(sweep[n][i], n) for n in names)]))
         for i, case in enumerate(cases(sweep))
     ]
 
@@ -149,7 +149,7 @@ def _levels(sweep: Sweep) -> list[str]:
     return [name for name in LEVELS if name in sweep.variables][:1]
 
 
-def _told(value: Any, name: str) -> str:
+def _level_text(value: Any, name: str) -> str:
     return f"{name} {value:.6g}" if isinstance(value, float) else str(value)
 
 

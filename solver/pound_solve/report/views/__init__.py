@@ -12,10 +12,10 @@ from types import MappingProxyType
 from typing import Final
 
 from pound_solve.report.views import echo, members, nodes, side_by_side
-from pound_solve.report.views.part import Part
+from pound_solve.report.views.part import TablePart
 from pound_solve.results import Results
 
-View = Callable[[Results], list[Part]]
+View = Callable[[Results], list[TablePart]]
 
 SHAPED: Final[Mapping[str, View]] = MappingProxyType(
     {

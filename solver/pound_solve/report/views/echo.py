@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from pound_solve.report.views.part import Part, part
+from pound_solve.report.views.part import TablePart, part
 from pound_solve.report.views.ranges import between, numbers, stepping
 from pound_solve.results import Results
 from pound_solve.results.contents import TABLES
 from pound_solve.results.schema import Column
 
-FEW: Final = 1e-12  #: share of a range that a coordinate which does not change may still differ by
+FEW: Final = 1e-12  #: fraction of a range that a coordinate which does not change may still differ by
 
 
-def properties(results: Results) -> list[Part]:
+def properties(results: Results) -> list[TablePart]:
     """One row for each property set and kind: the items that are given, then those of default value."""
     sets: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
     for r in results.table("properties"):
@@ -25,7 +25,7 @@ def properties(results: Results) -> list[Part]:
     return [part(columns, rows)]
 
 
-def ranges(name: str, results: Results) -> list[Part]:
+def ranges(name: str, results: Results) -> list[TablePart]:
     """Table of the deck with rows that step evenly merged into one."""
     columns, rows = _stored(results, name)
     merged = []
@@ -56,7 +56,7 @@ def _cell(column: Column, first: Any, last: Any, count: int) -> str:
     return a if a == b else f"{a} to {b}"
 
 
-def equal(name: str, results: Results) -> list[Part]:
+def equal(name: str, results: Results) -> list[TablePart]:
     """Table of the deck with rows of equal values merged into one that lists their numbers."""
     (key, *columns), rows = _stored(results, name)
     groups: dict[tuple[Any, ...], list[int]] = {}

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 from pound_solve.report.views.instants import decimals
-from pound_solve.report.views.part import Part, part
+from pound_solve.report.views.part import TablePart, part
 from pound_solve.results import Results
 from pound_solve.results.columns import ELEMENT, time_column
 from pound_solve.results.contents import TABLES
@@ -40,7 +40,7 @@ END_COLUMNS: Final = (
 )
 
 
-def envelopes(results: Results) -> list[Part]:
+def envelopes(results: Results) -> list[TablePart]:
     """One row for each end of a member, with what happened to its hinge; then all other forces."""
     rows = results.table("member_envelope")
     envelope = {(r["element"], r["quantity"]): extremes(r) for r in rows}
@@ -56,10 +56,10 @@ def envelopes(results: Results) -> list[Part]:
         lines.append((element, end, *forces, *hinges.get((element, end), NONE[:3])))
     rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in listed]
     stored = TABLES["member_envelope"].columns
-    return [part(END_COLUMNS, lines)] * bool(lines) + [Part(stored, rows[rest])] * bool(rest)
+    return [part(END_COLUMNS, lines)] * bool(lines) + [TablePart(stored, rows[rest])] * bool(rest)
 
 
-def static_forces(results: Results) -> list[Part]:
+def static_forces(results: Results) -> list[TablePart]:
     """One row for each end of a member; then all other forces."""
     rows = results.table("static_force")
     forces = {(r["element"], r["quantity"]): float(r["value"]) for r in rows}
@@ -72,7 +72,7 @@ def static_forces(results: Results) -> list[Part]:
         lines.append((element, end, axial, shear, moment))
     rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in listed]
     stored = TABLES["static_force"].columns
-    return [part(STATIC_COLUMNS, lines)] * bool(lines) + [Part(stored, rows[rest])] * bool(rest)
+    return [part(STATIC_COLUMNS, lines)] * bool(lines) + [TablePart(stored, rows[rest])] * bool(rest)
 
 
 def ends(rows: Any) -> Iterator[tuple[int, str, tuple[str, ...]]]:

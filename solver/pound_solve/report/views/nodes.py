@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from pound_solve.report.views.instants import decimals
 from pound_solve.report.views.members import NONE, extremes
-from pound_solve.report.views.part import Part, part
+from pound_solve.report.views.part import TablePart, part
 from pound_solve.results import Results
 from pound_solve.results.columns import NODE, time_column
 from pound_solve.results.schema import Column
@@ -22,7 +22,7 @@ MOTION: Final[Mapping[str, tuple[str, ...]]] = {
 REACTION: Final = (("force X", "F"), ("force Y", "F"), ("moment", "F*L"))
 
 
-def motion(results: Results) -> list[Part]:
+def motion(results: Results) -> list[TablePart]:
     """For each quantity: one row for each node, its directions side by side."""
     rows = results.table("node_envelope")
     parts = []
@@ -34,12 +34,12 @@ def motion(results: Results) -> list[Part]:
     return parts
 
 
-def reactions(results: Results) -> list[Part]:
+def reactions(results: Results) -> list[TablePart]:
     """One row for each support, its forces and its moment side by side."""
     return [_beside(results.table("reaction_envelope"), "quantity", REACTION, "")]
 
 
-def _beside(rows: Any, by: str, quantities: Sequence[tuple[str, str]], title: str) -> Part:
+def _beside(rows: Any, by: str, quantities: Sequence[tuple[str, str]], title: str) -> TablePart:
     """Part with one row for each node: the extremes of its quantities side by side."""
     present = [(name, unit) for name, unit in quantities if (rows[by] == name).any()]
     columns, digits = [NODE], decimals(rows)

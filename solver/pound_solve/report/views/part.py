@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pound_solve.results.schema import FORMATS, Column
 
 
-class Part(NamedTuple):
+class TablePart(NamedTuple):
     """Columns, rows as a structured array whose fields are the columns, and a title line."""
 
     columns: tuple[Column, ...]
@@ -19,8 +19,8 @@ class Part(NamedTuple):
     title: str = ""
 
 
-def part(columns: Sequence[Column], rows: Iterable[Sequence[Any]]) -> Part:
+def part(columns: Sequence[Column], rows: Iterable[Sequence[Any]]) -> TablePart:
     """Make a part from rows with one value for each column."""
     kinds = [object if FORMATS[c.fmt] == "text" else FORMATS[c.fmt] for c in columns]
     kind = np.dtype([(c.name, k) for c, k in zip(columns, kinds)])
-    return Part(tuple(columns), np.array([tuple(row) for row in rows], kind))
+    return TablePart(tuple(columns), np.array([tuple(row) for row in rows], kind))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 Cell = str | int | float
-CLOSE = 1e-9  #: share of the larger of two numbers by which steps of one range may differ
+CLOSE = 1e-9  #: fraction of the larger of two numbers by which steps of one range may differ
 
 
 def numbers(values: Sequence[int]) -> str:

@@ -7,24 +7,24 @@ import math
 import numpy as np
 
 from pound_solve.report.views.instants import digits, latest
-from pound_solve.report.views.part import Part, part
+from pound_solve.report.views.part import TablePart, part
 from pound_solve.results import Results
 from pound_solve.results.columns import NODE
 from pound_solve.results.contents import TABLES
 from pound_solve.results.schema import Column
 
 
-def storeys(results: Results) -> list[Part]:
+def storeys(results: Results) -> list[TablePart]:
     """Table of storeys as stored, with instants rounded to leave room for all columns."""
     stored, rows = TABLES["storey_envelope"].columns, results.table("storey_envelope").copy()
     instants = [c.name for c in stored if c.fmt == "time" and c.name in (rows.dtype.names or ())]
     last = max((latest(rows, name) for name in instants), default=0.0)
     for name in instants:
         rows[name] = np.round(rows[name], digits(last))
-    return [Part(stored, rows)]
+    return [TablePart(stored, rows)]
 
 
-def shapes(results: Results) -> list[Part]:
+def shapes(results: Results) -> list[TablePart]:
     """Modes side by side, one row for each node: X, Y and R one below the other."""
     rows, stored = results.table("mode_shapes"), TABLES["mode_shapes"].columns
     modes = dict.fromkeys(rows["mode"].tolist())

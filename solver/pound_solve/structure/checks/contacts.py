@@ -18,7 +18,7 @@ from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.structure import Structure
 
-SAME: Final = 1e-9  #: distance that counts as zero, as a share of that of the nodes
+SAME: Final = 1e-9  #: distance that counts as zero, as a fraction of that of the nodes
 #: largest gap over the distance of the nodes.  The bodies lie between the nodes, so this ratio is below
 #: one, but a parameter study may vary the gap and keep the coordinates
 WIDEST: Final = 3.0

@@ -13,7 +13,7 @@ from pound_solve.numerics.graph import components
 from pound_solve.structure.buildings import SAME_LEVEL, parts
 from pound_solve.structure.structure import Structure
 
-SAME_PLACE = 1e-6  #: tolerance for coincident nodes, as a share of the structure's size
+SAME_PLACE = 1e-6  #: tolerance for coincident nodes, as a fraction of the structure's size
 
 
 def loose_ends(structure: Structure) -> list[Diagnostic]:

@@ -192,15 +192,20 @@ def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
     """Yield warnings for dashpots along X alone between nodes on a slope, as in a brace, once per property
     set.
     """
-    told = set[str]()
+    reported = set[str]()
     for e in model.elements.values():
         card = model.props[e.prop]
-        if e.j is None or card.spec.name != "DASHPOT" or e.prop in told or card["ANGLE"] not in (None, 0.0):
+        if (
+            e.j is None
+            or card.spec.name != "DASHPOT"
+            or e.prop in reported
+            or card["ANGLE"] not in (None, 0.0)
+        ):
             continue
         i, j = model.nodes[e.i], model.nodes[e.j]
         slope = math.degrees(math.atan2(abs(j.y - i.y), abs(j.x - i.x)))
         if card["CX"] and not card["CY"] and GENTLE < slope < STEEP:
-            told.add(e.prop)
+            reported.add(e.prop)
             message = f"dashpot {e.id} acts along X, but its nodes lie on a slope of {slope:.3g} degrees"
             hint = "ANGLE=MEMBER lets it act along the line between them"
             yield _warn("P378", message, card.place("CX"), hint)

@@ -15,7 +15,7 @@ from pound_solve.structure.structure import Structure
 
 EQUAL: Final = 1e-6  #: relative difference up to which two strengths count as equal
 BEYOND: Final = 1.01  #: deformation over that at yield at which the hardening of a rule is examined
-FLAT: Final = 1e-9  #: stiffness that counts as no hardening, as a share of the initial one
+FLAT: Final = 1e-9  #: stiffness that counts as no hardening, as a fraction of the initial one
 
 
 def facing(structure: Structure) -> list[Diagnostic]:
@@ -39,7 +39,7 @@ def facing(structure: Structure) -> list[Diagnostic]:
         (one, a), (other, b) = joined
         moment = _common(one, other, -a / b)
         if moment and one.element != other.element:
-            problems.append(_told(structure, column, one, other, moment))
+            problems.append(_warning(structure, column, one, other, moment))
     return problems
 
 
@@ -70,10 +70,13 @@ def _flat_strength(spring: LawSpring, side: int) -> float:
     return abs(strength) if stiffness <= FLAT * law.p[K] else 0.0
 
 
-def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:
+def _warning(
+    structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float
+) -> Diagnostic:
     """Return the warning for two hinges.
 
-    The cure names a rule with R, since ELASTO_PLASTIC has none.  A member without hinges may have no rule.
+    The remedy names a rule with R, since ELASTO_PLASTIC has none.  A member without hinges may have no
+    rule.
     """
     model, end = structure.model, other.component.rpartition(" ")[2]
     joint = label(structure.dofs.free[column]).removesuffix(" rz")

@@ -89,8 +89,8 @@ def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
     if not 0.0 <= press < PART * weight or not shaken(model) or any(load.y > 0.0 for load in loads):
         return []
     unit, kind = model.units.force, model.geometry
-    told = f"loads press {b.name!r}, which weighs {weight:.4g} {unit}, by {press:.4g} {unit}"
-    message = f"GEOMETRY {kind}, but {told}"
+    finding = f"loads press {b.name!r}, which weighs {weight:.4g} {unit}, by {press:.4g} {unit}"
+    message = f"GEOMETRY {kind}, but {finding}"
     hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS of their size"
     place = model.analyses[0].span
     return [Diagnostic("P340", message, place, hint, "warning")]
@@ -112,7 +112,7 @@ def misloaded(structure: Structure) -> list[Diagnostic]:
 
 
 def _lifted(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
-    """Report upward loads that exceed a share of the downward ones."""
+    """Report upward loads that exceed a fraction of the downward ones."""
     unit = structure.model.units.force
     up = sum(load.y for load in loads if load.y > 0.0)
     press = -sum(load.y for load in loads if load.y < 0.0)
@@ -144,12 +144,12 @@ def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnos
     if not press or not weight:
         return []
     load = min(loads, key=lambda load: load.y)
-    told = f"loads press {b.name!r} by {press:.4g} {unit}"
+    finding = f"loads press {b.name!r} by {press:.4g} {unit}"
     if gravity_acts(model) and TWICE[0] <= press / weight <= TWICE[1]:
-        message = f"{told}, and STATIC GRAVITY=YES by its weight, {weight:.4g} {unit}, once more"
+        message = f"{finding}, and STATIC GRAVITY=YES by its weight, {weight:.4g} {unit}, once more"
         hint = "leave one of them out: GRAVITY=YES turns WEIGHTS into loads"
     elif not LIGHTEST <= press / weight <= HEAVIEST and not gravity_acts(model):
-        message = f"{told}, {press / weight:.2g} of its weight, {weight:.4g} {unit}"
+        message = f"{finding}, {press / weight:.2g} of its weight, {weight:.4g} {unit}"
         hint = f"loads are in {model.units.text('F')}, loads by length in {model.units.text('F/L')}"
     else:
         return []

@@ -18,7 +18,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
 
     A part without height, such as a bumper's spring, may be massless.
     """
-    model, cure = structure.model, "give the nodes of its floors WEIGHTS"
+    model, remedy = structure.model, "give the nodes of its floors WEIGHTS"
     asked = next((c for c in model.analyses if c.spec.name == "MODAL"), None)
     asked = next(iter(shaken(model).values()), asked)
     if asked is None:
@@ -26,7 +26,9 @@ def massless(structure: Structure) -> list[Diagnostic]:
     movable = {*structure.dofs.free, *structure.dofs.moved}
     heavy = {n for (n, d), mass in structure.nodal_mass.items() if mass > 0.0 and (n, d) in movable}
     if not heavy:
-        return [Diagnostic("P347", "nothing has mass, so that nothing swings", asked.span, cure, "warning")]
+        return [
+            Diagnostic("P347", "nothing has mass, so that nothing swings", asked.span, remedy, "warning")
+        ]
     names = {n: card.label for card in model.buildings for n in card["NODES"]}
     free = {owner for owner, _ in structure.dofs.free}
     problems = []
@@ -35,7 +37,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
             name = next((names[n] for n in nodes if n in names), "")
             who = repr(name) if name else f"the building of nodes {some(nodes)}"
             message = f"{who} has no mass, so that the ground does not shake it"
-            problems.append(Diagnostic("P347", message, model.nodes[nodes[0]].span, cure, "warning"))
+            problems.append(Diagnostic("P347", message, model.nodes[nodes[0]].span, remedy, "warning"))
     return problems
 
 
@@ -57,8 +59,8 @@ def roof_without_mass(structure: Structure) -> list[Diagnostic]:
             message = (
                 f"the highest beams of {b.name!r} have no mass at their nodes, {some(sorted(highest))}"
             )
-            cure, place = "give the nodes of each floor WEIGHTS", model.nodes[min(highest)].span
-            problems.append(Diagnostic("P347", message, place, cure, "warning"))
+            remedy, place = "give the nodes of each floor WEIGHTS", model.nodes[min(highest)].span
+            problems.append(Diagnostic("P347", message, place, remedy, "warning"))
     return problems
 
 

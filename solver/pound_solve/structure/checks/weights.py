@@ -60,20 +60,20 @@ def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
         bare = _bare_weight(model, b, force * metre**2, metre)
         strain = _strain(model, b, weight / force)
         if bare > BARE * weight and beams & set(b.nodes):
-            told = (
+            finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
                 f"{bare / force:.3g} {model.units.force} by A and E"
             )
-            yield b.name, _weights(model, b, told, "; leave it if the frame bears no slab")
+            yield b.name, _weights(model, b, finding, "; leave it if the frame bears no slab")
         elif strain > SQUASHED:
-            told = (
+            finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, which shortens its columns by "
                 f"{1e3 * strain:.2g} per mille: columns bear less than one"
             )
-            yield b.name, _weights(model, b, told)
+            yield b.name, _weights(model, b, finding)
 
 
-def _weights(model: Model, b: Building, told: str, unless: str = "") -> Diagnostic:
+def _weights(model: Model, b: Building, finding: str, unless: str = "") -> Diagnostic:
     heavy = {n for f in b.floors for n in f.nodes}
     card = next((c for c in model.weights if heavy & set(c["NODES"])), None)
     place = card.place("WX") if card else model.nodes[b.nodes[0]].span
@@ -81,7 +81,7 @@ def _weights(model: Model, b: Building, told: str, unless: str = "") -> Diagnost
         f"WEIGHTS are forces in {model.units.force}, mass times gravity; "
         f"gravity is {model.gravity:g} here, A is in {model.units.text('L^2')}{unless}"
     )
-    return Diagnostic("P361", f"{b.name!r} {told}", place, hint, "warning")
+    return Diagnostic("P361", f"{b.name!r} {finding}", place, hint, "warning")
 
 
 def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> float:

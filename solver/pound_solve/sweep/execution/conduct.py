@@ -11,9 +11,9 @@ from typing import Final, Self
 
 from pound_solve.results.sweep_file import FAILED
 from pound_solve.sweep.execution.executors import Engine
-from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.execution.work import Settings, carry_out
-from pound_solve.sweep.study.run import Case, Run
+from pound_solve.sweep.study.run import ParameterCase, StudyRun
 
 INTERVAL: Final = 0.1  #: between two looks at the time [s]
 DEATHS: Final = 2  #: process deaths after which a run executed alone counts as failed
@@ -61,14 +61,14 @@ class Lane:
     Attributes
     ----------
     executor : Executor
-    flying : dict of Future to Run
-    case : Case or None
+    flying : dict of Future to StudyRun
+    case : ParameterCase or None
         Case of its latest run, whose structure its process keeps.
     """
 
     executor: Executor
-    flying: dict[Future[Entry], Run] = field(default_factory=dict)
-    case: Case | None = None
+    flying: dict[Future[JournalEntry], StudyRun] = field(default_factory=dict)
+    case: ParameterCase | None = None
 
 
 class Conductor:
@@ -91,9 +91,9 @@ class Conductor:
         self, engine: Engine, settings: Settings, journal: Journal, report: Callable[[State], None]
     ) -> None:
         self.engine, self.settings, self.journal, self.report = engine, settings, journal, report
-        self._waiting: dict[Case, deque[Run]] = {}
+        self._waiting: dict[ParameterCase, deque[StudyRun]] = {}
         self._lanes = list[Lane]()
-        self._suspects = deque[Run]()
+        self._suspects = deque[StudyRun]()
         self._deaths = dict[str, int]()
         self._begun = False  # whether a run has ended, and kernels are compiled
         self._since = time.time()
@@ -106,7 +106,7 @@ class Conductor:
             lane.executor.shutdown(wait=not lane.flying, cancel_futures=True)
         self._lanes.clear()
 
-    def run(self, runs: Iterable[Run]) -> State:
+    def run(self, runs: Iterable[StudyRun]) -> State:
         """Execute runs; after an interruption, complete those in progress.
 
         Raises
@@ -130,7 +130,7 @@ class Conductor:
         return state
 
     @property
-    def _flying(self) -> dict[Future[Entry], Lane]:
+    def _flying(self) -> dict[Future[JournalEntry], Lane]:
         """Submitted runs without a result yet: the lane of each future."""
         return {future: lane for lane in self._lanes for future in lane.flying}
 
@@ -183,7 +183,7 @@ class Conductor:
         lane.executor.shutdown(wait=False, cancel_futures=True)
         lane.executor = self.engine.start()
 
-    def _next(self, lane: Lane) -> Run:
+    def _next(self, lane: Lane) -> StudyRun:
         """Next run of the lane's case, else of one that no other lane has, else of that with most runs."""
         held = {other.case for other in self._lanes if other is not lane}
         case = lane.case
@@ -196,7 +196,7 @@ class Conductor:
             del self._waiting[case]
         return run
 
-    def _take(self, future: Future[Entry], run: Run, lone: bool, state: State) -> bool:
+    def _take(self, future: Future[JournalEntry], run: StudyRun, lone: bool, state: State) -> bool:
         """Collect the result of a run; return False if its process died."""
         try:
             entry = future.result()
@@ -216,24 +216,24 @@ class Conductor:
             if deaths < DEATHS:
                 self._suspects.append(run)
             else:
-                self._note(Entry(run.identity, FAILED, DIED), state)
+                self._note(JournalEntry(run.identity, FAILED, DIED), state)
             return False
         except OSError:  # the journal of the process cannot be written
             raise
         except Exception as err:  # what the executor says of a worker that died
-            self._note(Entry(run.identity, FAILED, f"{type(err).__name__}: {err}"), state)
+            self._note(JournalEntry(run.identity, FAILED, f"{type(err).__name__}: {err}"), state)
             return True
         if not self.engine.notes:
             self.journal.add(entry)
         self._count(entry, state)
         return True
 
-    def _note(self, entry: Entry, state: State) -> None:
+    def _note(self, entry: JournalEntry, state: State) -> None:
         """Record a failure in the journal on behalf of a process that could not."""
         self.journal.add(entry)
         self._count(entry, state)
 
-    def _count(self, entry: Entry, state: State) -> None:
+    def _count(self, entry: JournalEntry, state: State) -> None:
         """Count a run that has ended."""
         self._begun = True
         state.done += 1

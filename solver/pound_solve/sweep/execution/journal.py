@@ -29,7 +29,7 @@ ENDING: Final = ".jsonl"
 
 
 @dataclass(frozen=True)
-class Entry:
+class JournalEntry:
     """Result of one run.
 
     Attributes
@@ -76,7 +76,7 @@ class Journal:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def add(self, entry: Entry) -> None:
+    def add(self, entry: JournalEntry) -> None:
         """Append the result of a run to this process's own file.
 
         Raises
@@ -102,7 +102,7 @@ class Journal:
                 file.truncate(size)
                 raise
 
-    def _keep(self, entry: Entry) -> None:
+    def _keep(self, entry: JournalEntry) -> None:
         """Write the histories of a run beside the journal, atomically."""
         path = self.histories(entry.identity)
         memory = BytesIO()  # a failed write of an archive may raise errors other than OSError
@@ -113,32 +113,32 @@ class Journal:
         """Path of the file with the histories of a run."""
         return self.folder / f"{identity}.npz"
 
-    def entries(self) -> dict[str, Entry]:
+    def entries(self) -> dict[str, JournalEntry]:
         """Result of each run by identity: the one with status done if any, else the latest.
 
         Their values, which may be many, stay in the journal, see `values`.
         """
-        latest: dict[str, Entry] = {}
+        latest: dict[str, JournalEntry] = {}
         for entry in self._all():
             old = latest.get(entry.identity)
             if old is None or (entry.status == DONE, entry.at) > (old.status == DONE, old.at):
                 latest[entry.identity] = replace(entry, values={})
         return latest
 
-    def values(self, entries: Mapping[str, Entry]) -> Iterator[tuple[str, Values]]:
+    def values(self, entries: Mapping[str, JournalEntry]) -> Iterator[tuple[str, Values]]:
         """Identity and values of each of some entries, in the order of the journal."""
         for entry in self._all():
             wanted = entries.get(entry.identity)
             if wanted is not None and (wanted.status, wanted.at) == (entry.status, entry.at):
                 yield entry.identity, entry.values
 
-    def _all(self) -> Iterator[Entry]:
+    def _all(self) -> Iterator[JournalEntry]:
         for path in sorted(self.folder.glob(f"*{ENDING}")):
             with opened(path) as file:
                 for line in file:
                     try:
                         fields: dict[str, Any] = json.loads(line)
-                        yield Entry(**fields)
+                        yield JournalEntry(**fields)
                     except (ValueError, TypeError):  # a truncated line
                         continue
 

@@ -16,7 +16,7 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 
-class BusyError(UserError):
+class FolderBusyError(UserError):
     """Raised if another sweep writes the folder."""
 
     status = 3
@@ -30,7 +30,7 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
 
     Raises
     ------
-    BusyError
+    FolderBusyError
     OSError
         The folder cannot be made or written.
     """
@@ -44,7 +44,7 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
                 if piece_lock is not None:
                     fcntl.flock(piece_lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                raise BusyError(
+                raise FolderBusyError(
                     f"{folder}: another sweep writes it; wait for it, or give another -o"
                 ) from None
             except OSError:  # a file system without locks

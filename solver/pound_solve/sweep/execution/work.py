@@ -30,12 +30,12 @@ from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Layout, Stage
 from pound_solve.results.sweep_file import DONE, FAILED, STOPPED
 from pound_solve.structure.structure import Structure
-from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.execution.limits import Clock, TooLongError, within
 from pound_solve.sweep.study import pairs
 from pound_solve.sweep.study.quantities import Fields, doubts, rows_at, taken
 from pound_solve.sweep.study.records import UnreadableError, scaled
-from pound_solve.sweep.study.run import Case, RecordFile, Run, Shaking, digest_of
+from pound_solve.sweep.study.run import ParameterCase, RecordFile, Shaking, StudyRun, digest_of
 from pound_solve.sweep.study.study import request_of
 
 #: runs of a process from one collection of garbage to the next: the histories of a run lie in cycles of
@@ -102,7 +102,7 @@ class Kept:
         """Do nothing: no run is restarted from a run of a sweep."""
 
 
-def carry_out(run: Run, settings: Settings) -> Entry:
+def carry_out(run: StudyRun, settings: Settings) -> JournalEntry:
     """Execute a run, write its result to the journal, and return it.
 
     Raises
@@ -131,26 +131,28 @@ def numbers() -> count[int]:
     return count(1)
 
 
-def _carried_out(run: Run, settings: Settings) -> Entry:
+def _carried_out(run: StudyRun, settings: Settings) -> JournalEntry:
     """Execute a run within its limits; any failure becomes part of the entry, see `carry_out`."""
     began = time.process_time()
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             with within(settings.seconds, settings.memory) as clock:
                 entry = _analysed(run, settings, clock)
         except (DeckError, UnreadableError, ChangedError) as err:
-            entry = Entry(run.identity, FAILED, str(err))
+            entry = JournalEntry(run.identity, FAILED, str(err))
         except TooLongError:
-            entry = Entry(run.identity, FAILED, f"it takes more than {settings.seconds:g} s of CPU time")
+            entry = JournalEntry(
+                run.identity, FAILED, f"it takes more than {settings.seconds:g} s of CPU time"
+            )
         except MemoryError:
             most = f"{settings.memory:g} MB" if settings.memory else "the machine has"
-            entry = Entry(run.identity, FAILED, f"it takes more memory than {most}")
+            entry = JournalEntry(run.identity, FAILED, f"it takes more memory than {most}")
         except Exception as err:
             text = f"a fault of the program, not of the deck: {type(err).__name__}: {err}"
-            entry = Entry(run.identity, FAILED, text)
-    if told:
-        text = f"arithmetic at the limits of floating point ({told[0].message})"
+            entry = JournalEntry(run.identity, FAILED, text)
+    if caught:
+        text = f"arithmetic at the limits of floating point ({caught[0].message})"
         entry = replace(entry, doubt="; ".join(filter(None, [entry.doubt, text])))
     entry = replace(entry, cpu=time.process_time() - began)
     if settings.journal is not None:
@@ -159,7 +161,7 @@ def _carried_out(run: Run, settings: Settings) -> Entry:
     return entry
 
 
-def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
+def _analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
     """Run the analyses."""
     motion = scaled(run.shaking) if run.shaking else None
     request = request_of(run.case, motion)
@@ -174,7 +176,7 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
     record = sequence.record
     history = getattr(record, "history", None)
     started = history is not None and history.recorder.started
-    return Entry(
+    return JournalEntry(
         run.identity,
         STOPPED if message else DONE,
         message,
@@ -187,7 +189,9 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
 
 
 @lru_cache(maxsize=2)
-def prepared(case: Case, first: RecordFile | None, histories: tuple[str, ...]) -> tuple[Prepared, Settled]:
+def prepared(
+    case: ParameterCase, first: RecordFile | None, histories: tuple[str, ...]
+) -> tuple[Prepared, Settled]:
     """Prepare a case under the study's first record; also return the store of what its runs share."""
     motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
     ready = prepare(request_of(case, motion))

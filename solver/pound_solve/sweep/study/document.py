@@ -170,11 +170,13 @@ class Document:
             value = _number(value)
         if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
             self.mistake(
-                "S603", f"{path[-1]} is {_WORDS.get(kind, 'true or false')}, not {_told(value)}", path
+                "S603", f"{path[-1]} is {_WORDS.get(kind, 'true or false')}, not {_value_text(value)}", path
             )
             return default
         if isinstance(value, int | float) and not abs(_number(value)) <= GREAT:
-            self.mistake("S603", f"{path[-1]} is a finite number {OF_MAGNITUDE}, not {_told(value)}", path)
+            self.mistake(
+                "S603", f"{path[-1]} is a finite number {OF_MAGNITUDE}, not {_value_text(value)}", path
+            )
             return default
         return default if self._has_zero(value, path) else value
 
@@ -201,10 +203,10 @@ class Document:
         for element in values:
             if not isinstance(element, kinds) or isinstance(element, bool):
                 kind = " or ".join(_WORDS[k] for k in kinds if k is not int or float not in kinds)
-                self.mistake("S603", f"{path[-1]} takes {kind}, not {_told(element)}", path)
+                self.mistake("S603", f"{path[-1]} takes {kind}, not {_value_text(element)}", path)
                 return []
             if isinstance(element, int | float) and not abs(_number(element)) <= GREAT:
-                message = f"{path[-1]} takes finite numbers {OF_MAGNITUDE}, not {_told(element)}"
+                message = f"{path[-1]} takes finite numbers {OF_MAGNITUDE}, not {_value_text(element)}"
                 self.mistake("S603", message, path)
                 return []
             if self._has_zero(element, path):
@@ -224,12 +226,14 @@ class Document:
         if value is None:
             return []
         if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            self.mistake("S603", f"{name} is a table, not {_told(value)}", (name,), f"write [[{name}]]")
+            self.mistake(
+                "S603", f"{name} is a table, not {_value_text(value)}", (name,), f"write [[{name}]]"
+            )
             return []
         return value
 
 
-def _told(value: object) -> str:
+def _value_text(value: object) -> str:
     """Text of a value for a message."""
     if isinstance(value, bool):
         return str(value).lower()

@@ -143,9 +143,9 @@ class Suite:
         except UnreadableError as err:
             self.document.diagnostics += [replace(d, span=place) for d in err.diagnostics]
             return
-        unit, told = card.values["UNIT"], motion.raw.unit
-        if unit is not None and told and told != {"GAL": "CM/S2"}.get(unit, unit):
-            message = f"{name} says that it is in {told}, not in {unit}"
+        unit, file_unit = card.values["UNIT"], motion.raw.unit
+        if unit is not None and file_unit and file_unit != {"GAL": "CM/S2"}.get(unit, unit):
+            message = f"{name} says that it is in {file_unit}, not in {unit}"
             hint = "leave unit out where files tell theirs, or give this one a [[motions]] of its own"
             self.document.mistake("S606", message, (*self.path, "unit"), hint)
         yield replace(record_file, sha256=digest)

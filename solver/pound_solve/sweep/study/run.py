@@ -57,7 +57,7 @@ class Shaking:
 
 
 @dataclass(frozen=True)
-class Case:
+class ParameterCase:
     """A deck with its PARAMs, common to all runs that differ only in their shaking.
 
     Attributes
@@ -83,14 +83,14 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Run:
+class StudyRun:
     """One run of a study.
 
     Attributes
     ----------
     number : int
         From 1.
-    case : Case
+    case : ParameterCase
     shaking : Shaking or None
         None where the deck's own motion acts.
     first : RecordFile or None
@@ -100,7 +100,7 @@ class Run:
     """
 
     number: int
-    case: Case
+    case: ParameterCase
     shaking: Shaking | None
     first: RecordFile | None
     inputs: str
@@ -118,7 +118,7 @@ class Run:
         }
         return blake2b(json.dumps(content).encode(), digest_size=12).hexdigest()
 
-    def at(self, level: float) -> Run:
+    def at(self, level: float) -> StudyRun:
         """The same run at another level of its record."""
         if self.shaking is None:
             raise ValueError("a run without a record has no level")

@@ -30,7 +30,7 @@ from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, load
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.records import Suite, scaled
-from pound_solve.sweep.study.run import Case, Run, Shaking, digest_of
+from pound_solve.sweep.study.run import ParameterCase, Shaking, StudyRun, digest_of
 from pound_solve.user_error import UserError
 
 MOST: Final = 10**6  #: runs
@@ -66,7 +66,7 @@ class Study:
     name : str
     out : Path
         Folder of its results.
-    runs : tuple of Run
+    runs : tuple of StudyRun
     units : tuple of str
         Force, length and time of all its decks.
     measure : str
@@ -83,7 +83,7 @@ class Study:
 
     name: str
     out: Path
-    runs: tuple[Run, ...]
+    runs: tuple[StudyRun, ...]
     units: tuple[str, str, str]
     measure: str
     workers: int
@@ -142,7 +142,7 @@ class _Reader:
                 f"the tables [[motions]] give {' and '.join(sorted(measures))}: give all the same measure"
             )
             document.mistake("S605", message, ("motions",))
-        base = Case("", (), self.folders, texts["method"] or None, dt, tol)
+        base = ParameterCase("", (), self.folders, texts["method"] or None, dt, tol)
         self._names(decks, combinations)
         for deck in decks:
             self._tried(replace(base, deck=deck), combinations)
@@ -233,8 +233,8 @@ class _Reader:
         side = {n: self._values(("zip", n)) for n in self._table("zip")}
         lengths = {n: len(v) for n, v in side.items()}
         if len(set(lengths.values())) > 1:
-            told = ", ".join(f"{n} has {k}" for n, k in lengths.items())
-            document.mistake("S605", f"lists under zip are of one length: {told}", ("zip",))
+            counts = ", ".join(f"{n} has {k}" for n, k in lengths.items())
+            document.mistake("S605", f"lists under zip are of one length: {counts}", ("zip",))
         rows = self._cases()
         parts = [*grid]
         if side:
@@ -295,11 +295,11 @@ class _Reader:
             return
         for deck in decks:
             read = read_deck(Request(deck, dict(combinations[0])))
-            self._told(read.diagnostics, read.files)
+            self._take_diagnostics(read.diagnostics, read.files)
             if read.model is not None:
                 self.models[deck] = read.model
 
-    def _told(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
+    def _take_diagnostics(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         """Add the mistakes of a deck to the study's; that of a value is placed at the item that sets it."""
         for d in map(self._here, diagnostics):
             if d.severity == "error" and d not in self.document.diagnostics:
@@ -317,7 +317,7 @@ class _Reader:
         path = self._options().get(diagnostic.span.file) if diagnostic.span else None
         return replace(diagnostic, span=self.document.place(path)) if path else diagnostic
 
-    def _tried(self, case: Case, combinations: Sequence[Params]) -> None:
+    def _tried(self, case: ParameterCase, combinations: Sequence[Params]) -> None:
         """Prepare the first run of a deck, and check that every PARAM has an effect."""
         if case.deck not in self.models:
             return
@@ -328,7 +328,7 @@ class _Reader:
         try:
             ready = prepare(request_of(replace(case, params=combinations[0]), motion))
         except DeckError as err:
-            self._told(err.diagnostics, err.files)
+            self._take_diagnostics(err.diagnostics, err.files)
             return
         self.models[case.deck] = ready.model
         self.warned += map(self._here, ready.warnings)
@@ -340,7 +340,9 @@ class _Reader:
         for name, path in self._sources():
             self._effective(name, path, case, combinations)
 
-    def _effective(self, name: str, path: Path_, case: Case, combinations: Sequence[Params]) -> None:
+    def _effective(
+        self, name: str, path: Path_, case: ParameterCase, combinations: Sequence[Params]
+    ) -> None:
         """Add a diagnostic if a PARAM affects only the motion, which the study replaces."""
         first = dict(combinations[0])
         other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
@@ -352,7 +354,9 @@ class _Reader:
             message = f"{name} changes nothing in {deck} but the motion, which [[motions]] replaces"
             self.document.mistake("S607", message, path, "leave it out, or leave out [[motions]]")
 
-    def _runs(self, base: Case, decks: Sequence[str], combinations: Sequence[Params]) -> Iterator[Run]:
+    def _runs(
+        self, base: ParameterCase, decks: Sequence[str], combinations: Sequence[Params]
+    ) -> Iterator[StudyRun]:
         """All runs; those of one case follow one another."""
         document = self.document
         first = next((r for s in self.suites for r in s.records), None)
@@ -372,7 +376,7 @@ class _Reader:
                 inputs, own_texts = read[texts]
                 case = replace(base, deck=deck, params=params, texts=own_texts)
                 for shaking in shakings or [None]:
-                    run = Run(next(numbers), case, shaking, first, inputs)
+                    run = StudyRun(next(numbers), case, shaking, first, inputs)
                     other = seen.setdefault(run.identity, run.number)
                     if other != run.number:
                         document.mistake("S605", f"runs {other} and {run.number} are the same")
@@ -382,14 +386,14 @@ class _Reader:
     def _context(self, deck: str) -> LoadingContext:
         return loading.context(self.models[deck], Request(deck))
 
-    def _inputs(self, case: Case) -> tuple[dict[str, str], str]:
+    def _inputs(self, case: ParameterCase) -> tuple[dict[str, str], str]:
         """Inputs that the results of a deck depend on: texts of the deck and of included files, digests of
         other files that it reads, and the histories to keep; also return the digest of the texts alone.
         """
         deck = read_deck(request_of(case))
         model = deck.model
         if model is None:
-            self._told(deck.diagnostics, deck.files)
+            self._take_diagnostics(deck.diagnostics, deck.files)
             return {}, ""
         sources = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
         context = loading.context(model, request_of(case))
@@ -408,7 +412,7 @@ class _Reader:
         return sources, digest_of(model.files)
 
 
-def request_of(case: Case, motion: Any = None) -> Request:
+def request_of(case: ParameterCase, motion: Any = None) -> Request:
     """Make the request for a run of a case."""
     return Request(
         case.deck,

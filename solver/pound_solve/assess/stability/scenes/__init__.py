@@ -6,14 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_solve.assess.stability.scenes.case import Case
+from pound_solve.assess.stability.scenes.case import StabilityCase
 from pound_solve.assess.stability.scenes.contact import contact_scenes
 from pound_solve.assess.stability.scenes.hysteresis import hysteresis_scenes
 from pound_solve.assess.stability.scenes.linear import linear_scenes
 from pound_solve.catalog import catalog
 
 
-def cases(families: tuple[str, ...] = ("linear", "contact", "hysteresis")) -> Iterator[Case]:
+def cases(families: tuple[str, ...] = ("linear", "contact", "hysteresis")) -> Iterator[StabilityCase]:
     """All cases of some families."""
     if "linear" in families:
         yield from linear_scenes()

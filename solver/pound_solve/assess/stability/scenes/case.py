@@ -25,12 +25,12 @@ ZEROS: Final = "EQUAKE\n TABLE POINTS=0,0,10,0\n"
 
 
 def every(t: Array, u: Array) -> Array:
-    """Return all displacements: the default of `Case.compared`."""
+    """Return all displacements: the default of `StabilityCase.compared`."""
     return u
 
 
 @dataclass(frozen=True)
-class Case:
+class StabilityCase:
     """One deck of the matrix.
 
     Attributes
@@ -110,6 +110,6 @@ def items(spec: Spec, length: float = 1.0, force: float = 1.0, **given: float) -
     return " ".join([spec.name, *(f"{name}={value}" for name, value in values.items())])
 
 
-def damped(share: float) -> str:
-    """Text of a section DAMPING with a `share` of critical damping at the storey's period."""
-    return f"DAMPING\n RAYLEIGH ALPHA={2.0 * share * OMEGA!r} BETA=0\n"
+def damped(xi: float) -> str:
+    """Text of a section DAMPING with a damping ratio `xi` [-] at the storey's period."""
+    return f"DAMPING\n RAYLEIGH ALPHA={2.0 * xi * OMEGA!r} BETA=0\n"

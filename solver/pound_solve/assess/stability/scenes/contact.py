@@ -17,7 +17,7 @@ from pound_solve.assess.stability.scenes.case import (
     STEP,
     STOREY,
     ZEROS,
-    Case,
+    StabilityCase,
     damped,
     items,
 )
@@ -168,7 +168,7 @@ def last_speed(t: Array, u: Array) -> Array:
     return np.asarray((u[-1] - u[-2]) / (t[-1] - t[-2]))
 
 
-def contact_scenes(spec: Spec) -> Iterator[Case]:
+def contact_scenes(spec: Spec) -> Iterator[StabilityCase]:
     """Yield all scenes with one contact law."""
     scenes = _Contacts(spec)
     yield from scenes.stiffness()
@@ -193,11 +193,11 @@ class _Contacts:
         """Text of the law with a stiffness of `ratio` times that of the storey."""
         return contact(self.spec, ratio * STOREY, 1.0, bodies, **given)
 
-    def case(self, scene: str, variant: str, deck: str, **given: Any) -> Case:
+    def case(self, scene: str, variant: str, deck: str, **given: Any) -> StabilityCase:
         """Make a case of this law."""
-        return Case("contact", scene, variant, self.spec.name, deck, **given)
+        return StabilityCase("contact", scene, variant, self.spec.name, deck, **given)
 
-    def stiffness(self) -> Iterator[Case]:
+    def stiffness(self) -> Iterator[StabilityCase]:
         """Contacts from soft to rigid."""
         for ratio in (1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e12):
             yield self.case("contact stiffness over the storey's", f"{ratio:g}", pair(self.law(ratio)))
@@ -205,7 +205,7 @@ class _Contacts:
             deck = pair(self.law(ratio), gap=0.1 * span, end=span, every=span / 20)
             yield self.case("the same, steps that resolve the impact", f"{ratio:g}", deck, step=span / 800)
 
-    def masses_and_gaps(self) -> Iterator[Case]:
+    def masses_and_gaps(self) -> Iterator[StabilityCase]:
         """Unequal masses, massless nodes, gaps of zero."""
         for mass in (1e-8, 1e-4, 1e4, 1e8):
             deck = pair(self.plain, mass=mass, k2=STOREY * mass)
@@ -215,7 +215,7 @@ class _Contacts:
         for gap in (0.0, 1e-12, -0.002):
             yield self.case("gap", f"{gap:g}", pair(self.plain, gap=gap))
 
-    def restitution(self) -> Iterator[Case]:
+    def restitution(self) -> Iterator[StabilityCase]:
         """Speeds after a free impact, and dashpots of any strength."""
         for e in (1.0, 0.5, 0.05) if self.spec.field("E") is not None else (1.0,):
             rebound = None if self.spec.name in OWN_LOSS else np.array([0.5 - 0.5 * e, 0.5 + 0.5 * e])
@@ -241,15 +241,15 @@ class _Contacts:
                         step=STEP / (32 if name == "E" and value < 0.01 else 8),
                     )  # fmt: skip
 
-    def damping_and_symmetry(self) -> Iterator[Case]:
+    def damping_and_symmetry(self) -> Iterator[StabilityCase]:
         """Damped storeys, and two contacts that close at one instant."""
-        for share in (0.0, 1.0, 10.0):
-            deck = pair(self.plain, damping=damped(share))
-            yield self.case("damping of the storeys over critical", f"{share:g}", deck)
+        for xi in (0.0, 1.0, 10.0):
+            deck = pair(self.plain, damping=damped(xi))
+            yield self.case("damping of the storeys over critical", f"{xi:g}", deck)
         deck = TWICE.format(law=self.plain)
         yield self.case("two contacts at the same instant", "symmetric", deck, step=STEP / 2)
 
-    def grazing(self) -> Iterator[Case]:
+    def grazing(self) -> Iterator[StabilityCase]:
         """Contacts that just close, or just stay open."""
         swing = 1.0 / OMEGA
         for gap in (1.0 - 1e-3, 1.0 - 1e-9, 1.0, 1.0 + 1e-9):
@@ -257,7 +257,7 @@ class _Contacts:
                 "a contact that grazes", f"{gap:.9f} of the swing", pair(self.plain, gap=gap * swing)
             )
 
-    def friction(self) -> Iterator[Case]:
+    def friction(self) -> Iterator[StabilityCase]:
         """An oblique impact with friction."""
         restitution = re.search(r"\bE=(\S+)", self.plain)
         lost, wall = 0.2 * (1.0 + (float(restitution[1]) if restitution else 1.0)), self.law(bodies=1)
@@ -268,7 +268,7 @@ class _Contacts:
             "friction", "oblique impact", text, step=1e-4, right=right, inexact=2e-3, compared=last_speed
         )
 
-    def bouncing(self) -> Iterator[Case]:
+    def bouncing(self) -> Iterator[StabilityCase]:
         """A bouncing ball until it is at rest, and a ball at rest."""
         for ratio, end in ((250.0, 6.0), (1e6, 3.0)):
             deck = BALL.format(gap=0.05, law=self.law(ratio, bodies=1), end=end)
@@ -277,7 +277,7 @@ class _Contacts:
         deck = BALL.format(gap=0, law=self.law(25.0, bodies=1), end=1.0)
         yield self.case("a ball that lies there", "gap 0", deck, step=STEP / 2)
 
-    def crowds(self) -> Iterator[Case]:
+    def crowds(self) -> Iterator[StabilityCase]:
         """Many contacts at once."""
         crowd = {"law": self.law(bodies=1), "k": STOREY}
         yield self.case("many contacts at once", "30", CROWD.format(n=30, end=0.3, **crowd))
@@ -287,14 +287,14 @@ class _Contacts:
             decks = [CROWD.format(n=n, end=0.1, **crowd) for n in (10_000, 2)]
             yield self.case("many contacts at once", "10000", decks[0], like=(decks[1], 1.0), heavy=True)
 
-    def steps(self) -> Iterator[Case]:
+    def steps(self) -> Iterator[StabilityCase]:
         """Steps far too short and far too long."""
         for step in (1e-9, 1e-5, 0.05, 1.0):
             end = min(0.6, 200 * step) if step < 1e-4 else max(0.6, 2 * step)
             deck = pair(self.plain, gap=min(0.05, 0.1 * end), end=end, every=end / 10)
             yield self.case("steps", f"{step:g}", deck, step=step)
 
-    def units_and_records(self) -> Iterator[Case]:
+    def units_and_records(self) -> Iterator[StabilityCase]:
         """Other units of length; records that are a spike, a step, or zero."""
         for length, scale in (("mm", 1e3), ("km", 1e-3)):
             law = contact(self.spec, 1e3 * STOREY / scale, mass=scale)

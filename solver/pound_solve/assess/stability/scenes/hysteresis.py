@@ -12,7 +12,7 @@ from pound_solve.assess.stability.scenes.case import (
     STEP,
     STOREY,
     ZEROS,
-    Case,
+    StabilityCase,
     damped,
     every,
     items,
@@ -58,7 +58,7 @@ def top(t: Array, u: Array) -> Array:
     return u[:, -1:]
 
 
-def hysteresis_scenes(spec: Spec) -> Iterator[Case]:
+def hysteresis_scenes(spec: Spec) -> Iterator[StabilityCase]:
     """Yield all scenes with one hysteresis rule."""
     scenes = _Springs(spec)
     yield from scenes.strength_and_stiffness()
@@ -77,11 +77,11 @@ class _Springs:
         """Text of the rule, the lengths and forces of its sample items scaled by those at yield."""
         return items(self.spec, fy / k, fy, **given)
 
-    def case(self, scene: str, variant: str, deck: str, **given: Any) -> Case:
+    def case(self, scene: str, variant: str, deck: str, **given: Any) -> StabilityCase:
         """Make a case of this rule."""
-        return Case("hysteresis", scene, variant, self.spec.name, deck, **given)
+        return StabilityCase("hysteresis", scene, variant, self.spec.name, deck, **given)
 
-    def strength_and_stiffness(self) -> Iterator[Case]:
+    def strength_and_stiffness(self) -> Iterator[StabilityCase]:
         """Springs without strength, without yield, soft and rigid."""
         for force in (0.0, 1e-9, 1e12):
             elastic = storeys("ELASTIC").replace("FX=4.0 RULE=ELASTIC", "") if force > 1.0 else ""
@@ -95,7 +95,7 @@ class _Springs:
             step = STEP / 32 if ratio == 1e3 else STEP  # resolves the stiffer springs, or does not
             yield self.case("stiffness of the springs", f"{ratio:g}", deck, step=step, heavy=ratio > 1e5)
 
-    def masses_and_motions(self) -> Iterator[Case]:
+    def masses_and_motions(self) -> Iterator[StabilityCase]:
         """Unequal masses, softening branches, resonance, damping, extreme records."""
         for ratio in (0.0, 1e-8, 1e8):
             yield self.case(
@@ -111,14 +111,12 @@ class _Springs:
             yield self.case("softening branch to collapse", "capped", deck)
         deck = storeys(self.plain, end=20.0, every=0.5)
         yield self.case("resonance", "20 periods", deck, step=STEP / 8)  # the errors of the periods add up
-        for share in (1.0, 10.0):
-            yield self.case(
-                "damping over critical", f"{share:g}", storeys(self.plain, damping=damped(share))
-            )
+        for xi in (1.0, 10.0):
+            yield self.case("damping over critical", f"{xi:g}", storeys(self.plain, damping=damped(xi)))
         for name, motion in (("a spike", SPIKE), ("a step", JUMP), ("zeros", ZEROS)):
             yield self.case("records", name, storeys(self.plain, motion=motion.split("\n")[1]))
 
-    def steps_and_units(self) -> Iterator[Case]:
+    def steps_and_units(self) -> Iterator[StabilityCase]:
         """Steps far too short and far too long; other units of length."""
         for step in (1e-9, 1e-5, 0.1, 1.0):
             end = 200 * step if step < 1e-4 else max(2.0, 2 * step)

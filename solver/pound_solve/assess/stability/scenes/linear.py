@@ -8,7 +8,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from pound_solve.assess.stability.scenes.case import JUMP, OMEGA, SPIKE, STOREY, ZEROS, Case, damped
+from pound_solve.assess.stability.scenes.case import (
+    JUMP,
+    OMEGA,
+    SPIKE,
+    STOREY,
+    ZEROS,
+    StabilityCase,
+    damped,
+)
 from pound_solve.numerics.types import Array
 
 ONE: Final = """UNITS kN m s
@@ -36,14 +44,14 @@ def one(
     return ONE.format(more=more, end=end, every=every, k=k, mass=mass)
 
 
-def swing(share: float, omega: float = OMEGA) -> Callable[[Array], Array]:
-    """Closed form of the free vibration after a unit velocity with a `share` of critical damping."""
+def swing(xi: float, omega: float = OMEGA) -> Callable[[Array], Array]:
+    """Closed form of the free vibration after a unit velocity with a damping ratio `xi` [-]."""
 
     def motion(t: Array) -> Array:
-        decay, w = share * omega, omega * math.sqrt(abs(1.0 - share * share))
-        if share < 1.0:
+        decay, w = xi * omega, omega * math.sqrt(abs(1.0 - xi * xi))
+        if xi < 1.0:
             return np.asarray(np.exp(-decay * t) * np.sin(w * t) / w)[:, None]
-        if share == 1.0:
+        if xi == 1.0:
             return np.asarray(np.exp(-decay * t) * t)[:, None]
         slow = -omega * omega / (decay + w)
         return np.asarray(np.exp(slow * t) * -np.expm1(-2 * w * t) / (2 * w))[:, None]
@@ -93,7 +101,7 @@ OUTPUT
 """
 
 
-def linear_scenes() -> Iterator[Case]:
+def linear_scenes() -> Iterator[StabilityCase]:
     """Yield all linear scenes."""
     yield from _one_storey()
     yield from _several_masses()
@@ -101,16 +109,16 @@ def linear_scenes() -> Iterator[Case]:
     yield from _axial_loads()
 
 
-def _case(scene: str, variant: str, deck: str, **given: Any) -> Case:
-    return Case("linear", scene, variant, "", deck, **given)
+def _case(scene: str, variant: str, deck: str, **given: Any) -> StabilityCase:
+    return StabilityCase("linear", scene, variant, "", deck, **given)
 
 
-def _one_storey() -> Iterator[Case]:
+def _one_storey() -> Iterator[StabilityCase]:
     """One storey: damping, steps, stiffness, units."""
-    for share in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
-        deck = one(damped(share) + KICK)
-        ratio = f"{share:.9g}"
-        yield _case("damping over critical", ratio, deck, right=swing(share), heavy=share > 1e5)
+    for xi in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
+        deck = one(damped(xi) + KICK)
+        ratio = f"{xi:.9g}"
+        yield _case("damping over critical", ratio, deck, right=swing(xi), heavy=xi > 1e5)
     for step in (1e-9, 1e-6, 1e-4, 0.01, 0.2, 1.0):
         end = 500 * step if step < 1e-5 else max(3.0, 3 * step)
         within = min(2.0 * (OMEGA * step) ** 2 * OMEGA * end / 12 + 1e-9, 0.05)
@@ -130,7 +138,7 @@ def _one_storey() -> Iterator[Case]:
         yield _case("units", length, deck, right=lambda t, x=scale: x * swing(0.0)(t))
 
 
-def _several_masses() -> Iterator[Case]:
+def _several_masses() -> Iterator[StabilityCase]:
     """Two masses: unequal, massless, free, with repeated eigenvalues."""
     for ratio in (1e-8, 1e-4, 1e4, 1e8):
         deck = TWO.format(low=STOREY, high=STOREY, middle=ratio, top=1.0, end=1.0, every=0.05)
@@ -144,18 +152,18 @@ def _several_masses() -> Iterator[Case]:
     yield _case("rigid-body modes", "moving on", free, right=lambda t: t[:, None])
     pushed = free.replace("ANALYSIS", "LOADS\n 2,3 FX=2\nANALYSIS").replace("METHOD=", "FROM=REST METHOD=")
     yield _case("rigid-body modes", "pushed", pushed, right=lambda t: (t + t * t)[:, None])
-    for share in (0.0, 1.0):
-        deck = one(damped(share) + "INITIAL\n 2,3 VX=1\n").replace(
+    for xi in (0.0, 1.0):
+        deck = one(damped(xi) + "INITIAL\n 2,3 VX=1\n").replace(
             "ELEMENTS", " 3 1 1 FIX=YR\nELEMENTS\n 2 SPR 1 3"
         )
         deck = deck.replace(" 2 1.0\n", " 2,3 1.0\n").replace("NODES=2\n", "NODES=2,3\n")
         yield _case(
-            "repeated eigenvalues", "defective" if share else "undamped", deck,
-            right=lambda t, s=share: np.tile(swing(s)(t), 2),
+            "repeated eigenvalues", "defective" if xi else "undamped", deck,
+            right=lambda t, s=xi: np.tile(swing(s)(t), 2),
         )  # fmt: skip
 
 
-def _motions() -> Iterator[Case]:
+def _motions() -> Iterator[StabilityCase]:
     """Resonance and extreme records."""
     sine = f"EQUAKE\n SINE AMPLITUDE=1 OMEGA={OMEGA!r} DURATION=1000\n"
     yield _case(
@@ -185,13 +193,13 @@ def _motions() -> Iterator[Case]:
     )  # fmt: skip
 
 
-def _axial_loads() -> Iterator[Case]:
+def _axial_loads() -> Iterator[StabilityCase]:
     """Columns below and beyond Euler's load."""
     for form in ("PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"):
-        for share in (0.999, 1.001, 50.0):
+        for load_ratio in (0.999, 1.001, 50.0):
             euler = math.pi**2 / 4 * 100
             yield _case(
                 "axial load over Euler's",
-                f"{form} {share:g}",
-                LEANING.format(form=form, push=-share * euler),
+                f"{form} {load_ratio:g}",
+                LEANING.format(form=form, push=-load_ratio * euler),
             )

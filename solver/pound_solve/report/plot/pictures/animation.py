@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from pound_solve.numerics.types import Array, Flags
+from pound_solve.report.formats import ANIMATION_FORMATS
 from pound_solve.report.plot import style
 from pound_solve.report.plot.geometry import (
     SHARE,
@@ -20,7 +21,7 @@ from pound_solve.report.plot.geometry import (
     displacements,
     draw_wall,
 )
-from pound_solve.report.plot.schema import MOVING, Choice, Picture
+from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 from pound_solve.results.whole_file import write_text
 
@@ -81,7 +82,7 @@ def _closed(results: Results, name: str, time: Array) -> Flags:
     return closed
 
 
-class Stage:
+class AnimationFigure:
     """A figure in which the frames of a film are shown.
 
     Parameters
@@ -133,7 +134,7 @@ def caption(scene: Film, k: int) -> str:
 
 def animation(results: Results, choice: Choice) -> Any:
     """Draw the first frame."""
-    stage = Stage(film(results, choice))
+    stage = AnimationFigure(film(results, choice))
     stage.show(0)
     return stage.figure
 
@@ -144,7 +145,7 @@ def write(results: Results, choice: Choice, path: Path) -> None:
     if path.suffix == ".html":
         write_text(path, page(animation))
         return
-    stage = Stage(animation)
+    stage = AnimationFigure(animation)
     stage.show(0)
     style.arrange(stage.figure)
     style.film(stage.figure, stage.show, len(animation.time), path, RATE)
@@ -183,6 +184,6 @@ SPEC = Picture(
     needs=("node/u", "nodes", "elements"),
     draw=animation,
     options=("between",),
-    endings=MOVING,
+    endings=ANIMATION_FORMATS,
     write=write,
 )

@@ -46,8 +46,8 @@ def curve(axes: Any, results: Results) -> None:
         text = f"{named(results, event)}: {words[k]}"
         labels.label(axes, (event["displacement"], event["base_shear"]), text, far=True)
     style.legend(axes, title="events (number)")
-    told = [said[item] for item in ("pattern", "control", "end") if item in said]
-    axes.set_title("; ".join(told))
+    remarks = [said[item] for item in ("pattern", "control", "end") if item in said]
+    axes.set_title("; ".join(remarks))
 
 
 def kinds(results: Results, events: NDArray[Any]) -> list[str]:

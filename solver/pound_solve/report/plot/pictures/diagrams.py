@@ -9,13 +9,13 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import geometry, labels, style
-from pound_solve.report.plot.members import QUANTITIES, Line, lines
+from pound_solve.report.plot.members import QUANTITIES, MemberForces, lines
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
-SHARE = 0.11  #: largest value as a share of the structure's size
+SHARE = 0.11  #: largest value as a fraction of the structure's size
 MOST = 60  #: members whose values are written, those with the largest
-WIDEST = 0.35  #: and no more than this share of a middling member's length
+WIDEST = 0.35  #: and no more than this fraction of a middling member's length
 UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 
@@ -37,7 +37,7 @@ def diagrams(results: Results, choice: Choice) -> Any:
     return figure
 
 
-def spread(results: Results, choice: Choice) -> tuple[geometry.DrawnStructure, list[Line]]:
+def spread(results: Results, choice: Choice) -> tuple[geometry.DrawnStructure, list[MemberForces]]:
     """The structure and the forces along the chosen members, with neighbours so far apart that their
     diagrams do not overlap.
     """
@@ -48,7 +48,7 @@ def spread(results: Results, choice: Choice) -> tuple[geometry.DrawnStructure, l
     return s, [replace(x, i=x.i + moves[x.element], j=x.j + moves[x.element]) for x in members]
 
 
-def _largest_drawn(s: geometry.DrawnStructure, members: list[Line]) -> float:
+def _largest_drawn(s: geometry.DrawnStructure, members: list[MemberForces]) -> float:
     """Length that the largest value is drawn with [L]."""
     lengths = [float(np.hypot(*(line.j - line.i))) for line in members]
     return min(SHARE * s.size, WIDEST * float(np.median(lengths))) if lengths else SHARE * s.size
@@ -68,7 +68,7 @@ def _title(results: Results, choice: Choice) -> str:
     return "Envelopes of the member forces"
 
 
-def panel(axes: Any, s: geometry.DrawnStructure, members: list[Line], quantity: str) -> None:
+def panel(axes: Any, s: geometry.DrawnStructure, members: list[MemberForces], quantity: str) -> None:
     """Draw one force along some members, with the largest and smallest values of each as text."""
     s.frame(axes, 0.06 + SHARE)
     s.draw(axes, color="0.6", linewidth=0.8)
@@ -88,13 +88,13 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[Line], quantity: 
     for line in order[:MOST]:
         _values(axes, line, quantity, factor, 0.02 * top)
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
-    told = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
+    remarks = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
         not one
     )
-    axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(told)}")
+    axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(remarks)}")
 
 
-def _outline(line: Line, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
+def _outline(line: MemberForces, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
     """Points of a member's axis, and the points offset from them by the values, shape (2, n) each."""
     along = (line.j - line.i) / max(float(np.hypot(*(line.j - line.i))), 1e-300)
     left = np.array([-along[1], along[0]]) * (-1.0 if quantity == "M" else 1.0)
@@ -102,17 +102,17 @@ def _outline(line: Line, values: Array, quantity: str, factor: float) -> tuple[A
     return base, base + factor * left[:, None] * values
 
 
-def _values(axes: Any, line: Line, quantity: str, factor: float, least: float) -> None:
+def _values(axes: Any, line: MemberForces, quantity: str, factor: float, least: float) -> None:
     """Label the largest and the smallest value of a member, if they differ and are not small."""
-    told: list[float] = []
+    labelled: list[float] = []
     for values, at in (
         (line.high[quantity], int(np.argmax(line.high[quantity]))),
         (line.low[quantity], int(np.argmin(line.low[quantity]))),
     ):
         value = float(values[at])
-        if abs(value) < least or any(abs(value - other) < least for other in told):
+        if abs(value) < least or any(abs(value - other) < least for other in labelled):
             continue
-        told.append(value)
+        labelled.append(value)
         _, edge = _outline(line, values, quantity, factor)
         labels.label(axes, edge[:, at], _text(value), fontsize=6)
 

@@ -24,7 +24,7 @@ DUCTILITY = (
     (1.0, "1 to 2"),
     (-math.inf, "not yielded"),
 )
-INWARDS = 0.07  #: of a hinge from the end of its member, as a share of its length
+INWARDS = 0.07  #: of a hinge from the end of its member, as a fraction of its length
 
 
 def hinges(results: Results, choice: Choice) -> Any:
@@ -83,8 +83,8 @@ def place(s: DrawnStructure, element: int, component: str) -> Array:
     if not e["j"]:
         return i
     j = s.place[int(e["j"])]
-    share = {"I": INWARDS, "J": 1.0 - INWARDS}.get(component.split()[-1], 0.5)
-    at: Array = i + share * (j - i)
+    fraction = {"I": INWARDS, "J": 1.0 - INWARDS}.get(component.split()[-1], 0.5)
+    at: Array = i + fraction * (j - i)
     return at
 
 

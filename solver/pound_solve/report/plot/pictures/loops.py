@@ -11,7 +11,7 @@ from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 MOST = 16  #: panels
-LEAST = 1e-6  #: plastic work of a panel, as a share of the largest
+LEAST = 1e-6  #: plastic work of a panel, as a fraction of the largest
 
 
 def loops(results: Results, choice: Choice) -> Any:

@@ -11,7 +11,7 @@ from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
 MARKS = "os^Dvx"
-ROOM = 0.05  #: left beside the curves, as a share of a decade
+ROOM = 0.05  #: left beside the curves, as a fraction of a decade
 
 
 def study(results: Results, choice: Choice) -> Any:

@@ -25,9 +25,9 @@ def summary(results: Results, choice: Choice) -> Any:
     figure = style.figure(*PAGE, title=results.title)
     rows = _rows(results)
     profiles = all(results.holds(name) for name in storeys.SPEC.needs)
-    told = _figures(results)
+    figures_text = _figures(results)
     heights = [
-        max(2.6, 0.5 + len(told) * SIZE * SPACING / 72.0),
+        max(2.6, 0.5 + len(figures_text) * SIZE * SPACING / 72.0),
         (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01,
         2.3 * profiles + 0.01,
         0.35,
@@ -37,7 +37,13 @@ def summary(results: Results, choice: Choice) -> Any:
     _structure(axes, results)
     text.set_axis_off()
     text.text(
-        0.0, 1.0, "\n".join(told), va="top", fontsize=SIZE, transform=text.transAxes, linespacing=SPACING
+        0.0,
+        1.0,
+        "\n".join(figures_text),
+        va="top",
+        fontsize=SIZE,
+        transform=text.transAxes,
+        linespacing=SPACING,
     )
     if rows:
         for draw, panel in zip(rows, middle.subplots(len(rows), 1, squeeze=False, sharex=True).ravel()):
@@ -83,10 +89,10 @@ def _figures(results: Results) -> list[str]:
         lines += [(str(item), str(value)) for item, value in results.table("overview").tolist()]
     if results.status != "done":
         lines.insert(0, ("this run", f"{results.status}: {results.message}".rstrip(": ")))
-    looks = [("look at", f"{check.name}: {check.told}") for check in looked(results.checks)]
-    told, last = _wrapped(lines), _wrapped(looks)[: MOST_LINES // 2]
+    looks = [("look at", f"{check.name}: {check.value_text}") for check in looked(results.checks)]
+    first, last = _wrapped(lines), _wrapped(looks)[: MOST_LINES // 2]
     room = MOST_LINES - len(last)
-    return [*told[: room - 1], "…", *last] if len(told) > room else told + last
+    return [*first[: room - 1], "…", *last] if len(first) > room else first + last
 
 
 def _wrapped(lines: list[tuple[str, str]]) -> list[str]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import Study
+from pound_solve.results.study_record import MethodStudy
 
 
-def rows(study: Study) -> list[Row]:
+def rows(study: MethodStudy) -> list[Row]:
     """One row for each trial."""
     return [
         (
@@ -26,7 +26,7 @@ def rows(study: Study) -> list[Row]:
     ]
 
 
-def remark(study: Study) -> str:
+def remark(study: MethodStudy) -> str:
     """Remark on the reference of the errors, and on whether the times can be trusted."""
     own_errors = ", ".join(
         f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e)

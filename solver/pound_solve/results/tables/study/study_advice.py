@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from operator import attrgetter
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import Study
+from pound_solve.results.study_record import MethodStudy
 
 
-def rows(study: Study) -> Iterator[Row]:
+def rows(study: MethodStudy) -> Iterator[Row]:
     """One row for each target."""
     for a in study.advice:
         if a.trial is None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import Study
+from pound_solve.results.study_record import MethodStudy
 
 
-def rows(study: Study) -> list[Row]:
+def rows(study: MethodStudy) -> list[Row]:
     """One row for each trial that stopped early."""
     return [(t.method, t.setting, t.stopped) for t in study.trials if t.stopped]
 

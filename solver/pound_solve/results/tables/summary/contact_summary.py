@@ -11,7 +11,7 @@ from pound_solve.results.remarks import how_found
 from pound_solve.results.schema import Column, Row, Stage, Table
 from pound_solve.results.words import contact_name
 
-ROUNDING = 1e-9  #: share of the displacements that the overlap of rigid bodies may be, which have none
+ROUNDING = 1e-9  #: fraction of the displacements that the overlap of rigid bodies may be, which have none
 
 
 def rows(run: RunRecord) -> Iterator[Row]:

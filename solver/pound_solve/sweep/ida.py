@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from pound_deck.diagnostics import suggest
-from pound_solve.statistics.curves import COLLAPSE, Asked, Curve, CurveError, demand
+from pound_solve.statistics.curves import COLLAPSE, Asked, CurveError, IdaCurve, demand
 from pound_solve.statistics.incremental import Rules, next_level
 from pound_solve.sweep.execution.conduct import State
 from pound_solve.sweep.session import Session
 from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.quantities import QUANTITIES
-from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.study.run import StudyRun
 
 TABLE: Final = "ida"  #: of a study
 DEMAND: Final = "storey_drift"
@@ -72,7 +72,7 @@ def aim(document: Document) -> Aim:
     )
 
 
-class Hunt:
+class IncrementalAnalysis:
     """Incremental dynamic analysis as rounds of runs, in each the next level of every record.
 
     Parameters
@@ -98,7 +98,7 @@ class Hunt:
 
     def carry_out(self, report: Callable[[State], None]) -> None:
         """Execute rounds until every record is done, or until an interruption."""
-        ahead: Sequence[Run] = self.session.agenda.ahead
+        ahead: Sequence[StudyRun] = self.session.agenda.ahead
         with self.session.conductor(report) as conductor:
             while True:
                 done = self.session.carry_on(conductor, ahead)
@@ -111,13 +111,13 @@ class Hunt:
                 ahead = [r for r in fresh if r.identity not in self.session.entries]
         self._settle()
 
-    def _groups(self) -> Iterator[list[Run]]:
+    def _groups(self) -> Iterator[list[StudyRun]]:
         """Runs of every record of every case, in the order of their levels."""
 
-        def level(run: Run) -> float:
+        def level(run: StudyRun) -> float:
             return run.shaking.level if run.shaking else 0.0
 
-        groups: dict[object, list[Run]] = {}
+        groups: dict[object, list[StudyRun]] = {}
         for run in self.runs:
             groups.setdefault((run.case, run.shaking and run.shaking.record), []).append(run)
         return (sorted(group, key=level) for group in groups.values())
@@ -127,7 +127,7 @@ class Hunt:
         runs = itertools.chain.from_iterable(self._groups())
         self.session.extend(tuple(replace(run, number=n) for n, run in enumerate(runs, 1)))
 
-    def _next(self) -> Iterator[Run]:
+    def _next(self) -> Iterator[StudyRun]:
         """The next level of every record that is not done."""
         self._learn()
         for group in self._groups():
@@ -138,10 +138,10 @@ class Hunt:
             if level is not None:
                 yield group[0].at(level)
 
-    def _curve(self, runs: Sequence[Run]) -> Curve:
+    def _curve(self, runs: Sequence[StudyRun]) -> IdaCurve:
         """Curve of one record: the levels of its runs and their demands."""
         levels = [run.shaking.level if run.shaking else 0.0 for run in runs]
-        return Curve.of("", "", levels, [self._demands[run.identity] for run in runs])
+        return IdaCurve.of("", "", levels, [self._demands[run.identity] for run in runs])
 
     def _learn(self) -> None:
         """Read the demands of the runs that have ended since the last call from the journal."""
