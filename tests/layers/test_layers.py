@@ -396,6 +396,18 @@ def test_fields_of_the_engines_have_names_with_one_meaning():
                 assert not fields & AMBIGUOUS, f"{place(path)}: {record.name}"
 
 
+def test_no_two_classes_have_one_name():
+    names = [
+        (x.name, place(path))
+        for path in modules()
+        for x in ast.parse(path.read_text("utf-8")).body
+        if isinstance(x, ast.ClassDef)
+    ]
+    first = dict(reversed(names))
+    twice = [(name, where, first[name]) for name, where in names if where != first[name]]
+    assert not twice
+
+
 def test_numerics_open_no_file_and_print_nothing():
     for path in SOLVER.rglob("*.py"):
         if place(path).startswith(NUMERICS) and path.name != "jit.py":

@@ -51,25 +51,6 @@ class Diaphragm:
         return math.sqrt(self.stiffness * self.mass)
 
 
-def mean_speed(first: Diaphragm, second: Diaphragm, v1: float, v2: float) -> float:
-    """Speed of the ends in contact while the first waves run, Eq 6 [L/T]."""
-    return v1 - (v1 - v2) / (1.0 + first.impedance / second.impedance)
-
-
-def strain(v: float, v_c: float, wave_speed: float) -> float:
-    """Compression of a diaphragm behind the wave front, Eq 10 [-]."""
-    return (v - v_c) / wave_speed
-
-
-def velocity_after(v1: float, v2: float, alpha1: float, e: float = 1.0) -> float:
-    """Velocity of a diaphragm after the collision, Eqs 12, 13 and 19 [L/T].
-
-    `alpha1` is its influence coefficient: of the theory chosen with ``e = 1``, or the lumped one with a
-    coefficient of restitution.
-    """
-    return v1 - (1.0 + e) * alpha1 * (v1 - v2)
-
-
 @dataclass(frozen=True)
 class Pair:
     """Two diaphragms that collide; forces and impulses are for an approach speed of one.

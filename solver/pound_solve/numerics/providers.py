@@ -48,15 +48,15 @@ class Interpreter:
 
     Parameters
     ----------
-    told : str
+    notice : str
         What a user has to know of it.
     """
 
     fast, loading = False, 0.0
 
-    def __init__(self, told: str) -> None:
-        self._told = told
-        self.name = f"as Python; {told}" if told else "as Python, which was asked for"
+    def __init__(self, notice: str) -> None:
+        self._notice = notice
+        self.name = f"as Python; {notice}" if notice else "as Python, which was asked for"
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """See `Provider`."""
@@ -64,7 +64,7 @@ class Interpreter:
 
     def notice(self, kernel: Function) -> str:
         """See `Provider`."""
-        return self._told
+        return self._notice
 
 
 @cache
@@ -75,8 +75,10 @@ def provider() -> Provider:
     loaded = library.load(library.FOLDER)
     if loaded is not None:
         return loaded
-    told = library.REFUSED if library.present(library.FOLDER) else ""
-    return Numba(told) if find_spec("numba") else Interpreter("; ".join(filter(None, [told, INTERPRETED])))
+    refused = library.REFUSED if library.present(library.FOLDER) else ""
+    if find_spec("numba"):
+        return Numba(refused)
+    return Interpreter("; ".join(filter(None, [refused, INTERPRETED])))
 
 
 @contextmanager

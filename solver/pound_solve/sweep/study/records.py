@@ -86,7 +86,9 @@ class Suite:
                 continue
             path = (*self.path, name)
             if name.upper() in NOT_OF_A_STUDY:
-                message = f"{name} is told by the deck's line under EQUAKE, whose record the sweep replaces"
+                message = (
+                    f"{name} is given in the deck's line under EQUAKE, whose record the sweep replaces"
+                )
                 self.document.mistake("S602", message, path, "leave it out")
             elif name.lower() not in allowed:
                 hint = hints(suggest(name, words), "items of a RECORD line tell how its records are read")

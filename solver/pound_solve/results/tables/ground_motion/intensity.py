@@ -12,7 +12,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 if TYPE_CHECKING:
     from pound_solve.loading.motions.base import GroundMotion
 
-TAKES_PART: Final = 1.0  #: fraction of the mass by which a mode moves with a direction [%]
+TAKES_PART: Final = 1.0  #: percentage of the mass with which a mode moves with a direction [%]
 
 
 def rows(run: RunRecord) -> Iterator[Row] | None:

@@ -36,7 +36,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     yield "mass of members", model.mass, default("mass"), ""
     yield "geometry", model.geometry, default("geometry"), GEOMETRY[model.geometry]
     if model.meant:
-        yield "MEANT", ", ".join(sorted(model.meant)), "", "codes of warnings that are not told"
+        yield "MEANT", ", ".join(sorted(model.meant)), "", "codes of warnings that are not reported"
     for name, value in model.params.items():
         remark = "set on the command line" if name.lower() in run.overridden else ""
         yield f"PARAM {name}", text_of(value), "", remark
