@@ -25,6 +25,7 @@ pytest.importorskip("matplotlib")
 from pound_solve.report import plot
 from pound_solve.report.html.pictures import pictures as html_pictures
 from pound_solve.report.plot import PICTURES, Choice, ChoiceError, labels, members, style
+from pound_solve.report.plot.moments import moment
 from pound_solve.report.plot.pictures import hinges, summary
 from pound_solve.results import Results
 
@@ -355,12 +356,42 @@ def test_diagrams_show_the_true_extremes_and_the_values_at_an_instant(pair: Resu
         assert own.high["M"][0] == -rows[element, "moment I"]["min"]
         assert own.low["N"][0] == rows[element, "axial I"]["min"]
         assert own.low["V"][-1] == -rows[element, "shear J"]["max"]
-    at = int(np.argmin(np.abs(pair.time - 0.5)))
+    t, rows = pair.course("member/force")
+    at = int(np.argmin(np.abs(t - 0.52)))
     names = pair.attributes("member/force")
     column = list(zip(names["element"], names["quantity"])).index((11, "moment J"))
-    (beam,) = members.lines(pair, place, Choice(("11",), time=0.5))
-    assert beam.high["M"][-1] == beam.low["M"][-1] == pair.history("member/force")[at, column]
-    assert "0.518" in plot.picture(pair, "diagrams", Choice(("beam B",), time=0.5)).get_suptitle()
+    row = moment(pair, "member/force", Choice(time=0.52)).row
+    (beam,) = members.lines(pair, place, Choice(("11",)), row)
+    assert beam.high["M"][-1] == beam.low["M"][-1] == rows[at, column]
+    assert f"{t[at]:.6g}" in plot.picture(pair, "diagrams", Choice(("beam B",), time=0.52)).get_suptitle()
+
+
+@pytest.mark.parametrize("word", ["floor 1", "90", "largest"])
+def test_the_force_peak_of_a_contact_is_an_instant(pair: Results, word: str) -> None:
+    """Samples lie 0.037 s apart, steps 0.001 s; the close-up has the peak itself."""
+    table = pair.table("collisions")
+    peak = table[int(np.argmax(table["peak_force"]))]
+    for name in ("contact/force", "member/force", "node/u"):
+        m = moment(pair, name, Choice(at_peak=word))
+        assert m.t == pytest.approx(peak["t_peak"], abs=0.5e-3)
+        assert np.abs(pair.time - m.t).min() > 2e-3
+        assert m.title.endswith(f"the force peak of contact floor 1: {peak['peak_force']:.6g} kN")
+    assert moment(pair, "contact/force", Choice(at_peak=word)).row[0] == pytest.approx(
+        peak["peak_force"], rel=1e-3
+    )
+    assert pair.history("contact/force").max() < 0.9 * peak["peak_force"]  # samples miss it
+    for name in ("diagrams", "deformed"):
+        title = plot.picture(pair, name, Choice(at_peak=word)).get_suptitle()
+        assert f"{peak['peak_force']:.6g} kN" in title
+
+
+def test_a_force_peak_between_the_samples_is_named_where_it_is_not_stored(tmp_path: Path) -> None:
+    deck = tmp_path / "pair.inp"
+    deck.write_text(PAIR.replace("EVERY=0.037", "EVERY=0.037\n CLOSEUPS=0"))
+    with pound_solve.run(deck) as results:
+        m = moment(results, "member/force", Choice(at_peak="floor 1"))
+        assert m.t in results.time
+        assert "the stored instant nearest to the force peak of contact floor 1" in m.title
 
 
 def test_the_map_of_hinges_counts_them(pair: Results) -> None:
@@ -405,6 +436,9 @@ def test_wrong_times_and_options_are_told(pair: Results, capsys: Any) -> None:
     for words, said in (
         (["diagrams", "--time", "9"], "from 0 to 1.1 s"),
         (["contact_force", "--between", "3", "4"], "fewer than two instants"),
+        (["diagrams", "--at-peak", "floor 9"], "there are: contacts floor 1"),
+        (["diagrams", "--at-peak", "90", "--time", "1"], "both name an instant"),
+        (["energy", "--at-peak", "90"], "--at-peak belongs to the pictures deformed, diagrams"),
         (["energy", "--between", "1", "0.5"], "the first time, then the last"),
         (["energy", "--time", "0.5"], "--time belongs to the pictures deformed, diagrams"),
         (["--member", "11"], "--member belongs to"),

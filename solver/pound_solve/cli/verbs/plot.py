@@ -33,6 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="this member, spring, hinge or contact only, by number, name or label; may be repeated",
     )
     parser.add_argument("--time", type=_time, metavar="T", help="at this time")
+    text = "at the largest force of this contact; 'largest': of the contact with the largest force"
+    parser.add_argument("--at-peak", metavar="CONTACT", help=text)
     parser.add_argument("--between", type=_time, nargs=2, metavar=("T1", "T2"), help="these times only")
     parser.add_argument(
         "--style", type=Path, metavar="FILE", help="style sheet of matplotlib, laid over the program's"
@@ -56,7 +58,7 @@ def execute(args: argparse.Namespace) -> int:
             print(f"{picture.name:<14} {picture.shows}")
         return common.DONE
     between = tuple(args.between) if args.between else None
-    choice = plot.Choice(tuple(args.member), args.time, between, args.style)
+    choice = plot.Choice(tuple(args.member), args.time, args.at_peak, between, args.style)
     if wrong := _wrong(args, choice):
         return common.complain(wrong, common.MISTAKES)
     if args.style:
@@ -79,9 +81,12 @@ def _wrong(args: argparse.Namespace, choice: Choice) -> str:
             return f"the picture {name} is written as {', '.join(PICTURES[name].endings)}"
     if choice.between and not choice.between[0] < choice.between[1]:
         return "--between takes the first time, then the last"
+    if choice.time is not None and choice.at_peak is not None:
+        return "--time and --at-peak both name an instant: give one of them"
     for option in sorted(choice.stated):
         users = [p.name for p in PICTURES.values() if option in p.options]
         if not set(users) & set(args.pictures):
+            option = option.replace("_", "-")
             return f"--{option} belongs to the pictures {', '.join(users)}: name one of them"
     return ""
 

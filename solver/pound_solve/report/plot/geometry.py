@@ -255,6 +255,10 @@ class Displacements(NamedTuple):
         """Drawn displacements of the recorded nodes in a row, by node number [L]."""
         return dict(zip(self.nodes, self.drawn[row]))
 
+    def magnified(self, u: Array) -> dict[int, Array]:
+        """Drawn displacements at an instant, from those of the recorded nodes, shape (n_nodes, 3) [L]."""
+        return dict(zip(self.nodes, self.factor * u[:, :2]))
+
 
 def displacements(results: Results, rows: slice = slice(None)) -> Displacements:
     """Magnify the displacements in some rows of the history, and the gaps with them."""

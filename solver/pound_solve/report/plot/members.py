@@ -139,9 +139,11 @@ class MemberForces:
     high: dict[str, Array]
 
 
-def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[MemberForces]:
-    """Forces along the chosen members, or all: at an instant, or their extremes over the history (of the
-    static state where there is none).
+def lines(
+    results: Results, place: Mapping[int, Array], choice: Choice, row: Array | None = None
+) -> Iterator[MemberForces]:
+    """Forces along the chosen members, or all: of a `row` of the history, or their extremes over it
+    (of the static state where there is none).
 
     The extremes at the ends are the true ones; between the ends they are those at the stored instants, and
     what these lack at the ends is added in proportion.
@@ -150,7 +152,11 @@ def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Itera
     if not members(results):
         return
     chosen = {members(results)[k] for k in _columns(results, choice, "member")} or set(members(results))
-    values, extremes = _values(results, choice), _extremes(results, choice)
+    extremes: Mapping[tuple[int, str], tuple[float, float]] = {}
+    if row is not None:
+        values = dict(zip(_ends(results), row[:, None]))
+    else:
+        values, extremes = _values(results, choice), _extremes(results, choice)
     blocks, points = _blocks(results), _point_loads(results)
     for e in results.table("elements"):
         number = int(e["element"])
@@ -229,20 +235,14 @@ def along_member(
 def _values(results: Results, choice: Choice) -> dict[tuple[int, str], Array]:
     """End forces by element and quantity, shape (nt,) each."""
     if not ("member/force" in results.histories and len(results.time)):
-        if choice.time is not None:
-            choice.instant(results)
         table = results.table("static_force")
         return {(int(r["element"]), str(r["quantity"])): np.array([r["value"]]) for r in table}
-    rows = choice.span(results)
-    if choice.time is not None:
-        at = choice.instant(results)
-        rows = slice(at, at + 1)
-    return dict(zip(_ends(results), results.history("member/force")[rows].T))
+    return dict(zip(_ends(results), results.history("member/force")[choice.span(results)].T))
 
 
 def _extremes(results: Results, choice: Choice) -> dict[tuple[int, str], tuple[float, float]]:
     """True extremes of the end forces where the whole history is drawn; else empty."""
-    if choice.stated & {"time", "between"} or "member_envelope" not in results.tables:
+    if choice.between or "member_envelope" not in results.tables:
         return {}
     table = results.table("member_envelope")
     return {(int(r["element"]), str(r["quantity"])): (float(r["min"]), float(r["max"])) for r in table}

@@ -33,6 +33,8 @@ class Choice:
         Numbers, names or labels of elements; empty for all, or those that matter most.
     time : float, optional
         An instant [T].
+    at_peak : str, optional
+        The instant of the largest force of this contact, in place of `time` (see `moments`).
     between : tuple of float, optional
         First and last time [T].
     style : Path, optional
@@ -41,23 +43,30 @@ class Choice:
 
     member: tuple[str, ...] = ()
     time: float | None = None
+    at_peak: str | None = None
     between: tuple[float, float] | None = None
     style: Path | None = None
 
     @property
     def stated(self) -> set[str]:
         """Names of the options that are stated."""
-        return {name for name in ("member", "time", "between") if getattr(self, name) not in (None, ())}
+        names = ("member", "time", "at_peak", "between")
+        return {name for name in names if getattr(self, name) not in (None, ())}
 
-    def instant(self, results: Results) -> int:
-        """Index of the stored instant nearest to `time`.
+    @property
+    def at_instant(self) -> bool:
+        """Whether an instant is chosen."""
+        return self.time is not None or self.at_peak is not None
+
+    def instant(self, results: Results, t: Array) -> int:
+        """Index of the instant out of `t` that is nearest to `time`.
 
         Raises
         ------
         ChoiceError
             The history does not reach so far.
         """
-        t, unit = results.time, results.units.time
+        unit = results.units.time
         if self.time is None or not len(t) or not t[0] <= self.time <= t[-1]:
             reach = f"reaches from {t[0]:g} to {t[-1]:g} {unit}" if len(t) else "is empty"
             raise ChoiceError(f"the history has no time {self.time:g} {unit}: it {reach}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pound_solve.report.plot import geometry, style
+from pound_solve.report.plot.moments import moment
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
@@ -12,12 +13,15 @@ from pound_solve.results import Results
 def deformed(results: Results, choice: Choice) -> Any:
     """Draw the displacements at an instant, by default that of the largest one."""
     displaced = geometry.displacements(results)
-    s, at = displaced.structure, displaced.row if choice.time is None else choice.instant(results)
-    when = f"{results.time[at]:.4g} {s.units.time}"
-    what = f"at {when}" if choice.time is not None else f"when they are largest, at {when}"
-    figure = style.figure(*s.shape(), title=f"Displacements {what}")
+    s = displaced.structure
+    if choice.at_instant:
+        chosen = moment(results, "node/u", choice)
+        when, moved = chosen.title, displaced.magnified(chosen.row)
+    else:
+        when = f"when they are largest, at {results.time[displaced.row]:.4g} {s.units.time}"
+        moved = displaced.shift(displaced.row)
+    figure = style.figure(*s.shape(), title=f"Displacements {when}")
     axes = figure.add_subplot()
-    moved = displaced.shift(at)
     s.frame(axes, 0.06 + geometry.SHARE)
     s.draw(axes, color="0.8", linewidth=0.8)
     s.draw(axes, moved, color=style.BLUE, linewidth=1.3)
@@ -34,5 +38,5 @@ SPEC = Picture(
     shows="the displaced structure at an instant (the largest displacements), magnified",
     needs=("node/u", "nodes", "elements"),
     draw=deformed,
-    options=("time",),
+    options=("time", "at_peak"),
 )

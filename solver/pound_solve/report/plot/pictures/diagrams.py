@@ -10,6 +10,7 @@ import numpy as np
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import geometry, labels, style
 from pound_solve.report.plot.members import QUANTITIES, MemberForces, lines
+from pound_solve.report.plot.moments import moment
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
@@ -21,7 +22,8 @@ UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 def diagrams(results: Results, choice: Choice) -> Any:
     """Draw the three beside or below each other, at an instant or as envelopes."""
-    s, chosen = spread(results, choice)
+    at = moment(results, "member/force", choice) if choice.at_instant else None
+    s, chosen = spread(results, choice, at.row if at else None)
     shown = [q for q in QUANTITIES if any(q in line.low for line in chosen)]
     if not shown:
         raise Nothing("members with forces at both ends")
@@ -30,19 +32,21 @@ def diagrams(results: Results, choice: Choice) -> Any:
     scale = min(1.0, 5.0 / width) if upright else min(1.0, 8.0 / width)
     width, height = max(4.0, width * scale), max(2.4, height * scale) + 0.3
     size = (width * len(shown), height + 0.4) if upright else (width, height * len(shown) + 0.4)
-    figure = style.figure(*size, title=_title(results, choice))
+    figure = style.figure(*size, title=f"Member forces {at.title}" if at else _title(results, choice))
     for n, quantity in enumerate(shown):
         axes = figure.add_subplot(*((1, len(shown)) if upright else (len(shown), 1)), n + 1)
         panel(axes, s, [line for line in chosen if quantity in line.low], quantity)
     return figure
 
 
-def spread(results: Results, choice: Choice) -> tuple[geometry.DrawnStructure, list[MemberForces]]:
+def spread(
+    results: Results, choice: Choice, row: Array | None = None
+) -> tuple[geometry.DrawnStructure, list[MemberForces]]:
     """The structure and the forces along the chosen members, with neighbours so far apart that their
     diagrams do not overlap.
     """
     s = geometry.DrawnStructure(results)
-    members = list(lines(results, s.place, choice))
+    members = list(lines(results, s.place, choice, row))
     s = geometry.DrawnStructure(results, geometry.apart(2.0 * _largest_drawn(s, members) / s.size))
     moves = {int(e["element"]): s.place[int(e["i"])] - s.true[int(e["i"])] for e in s.elements}
     return s, [replace(x, i=x.i + moves[x.element], j=x.j + moves[x.element]) for x in members]
@@ -55,9 +59,6 @@ def _largest_drawn(s: geometry.DrawnStructure, members: list[MemberForces]) -> f
 
 
 def _title(results: Results, choice: Choice) -> str:
-    if choice.time is not None:
-        at = results.time[choice.instant(results)]
-        return f"Member forces at {at:.6g} {results.units.time}"
     if not len(results.time):
         return "Member forces of the static state"
     if choice.between:
@@ -72,6 +73,7 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[MemberForces], qu
     """Draw one force along some members, with the largest and smallest values of each as text."""
     s.frame(axes, 0.06 + SHARE)
     s.draw(axes, color="0.6", linewidth=0.8)
+    s.draw_contacts(axes)
     low = min(float(line.low[quantity].min()) for line in members)
     high = max(float(line.high[quantity].max()) for line in members)
     top = max(abs(low), abs(high)) or 1.0
@@ -128,5 +130,5 @@ SPEC = Picture(
     shows="bending moments, shear and axial forces along the members, at an instant or as envelopes",
     needs=("nodes", "elements", "properties"),
     draw=diagrams,
-    options=("member", "time", "between"),
+    options=("member", "time", "at_peak", "between"),
 )
