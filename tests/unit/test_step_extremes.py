@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pound_solve.integrate.protocol import MotionRows, RowPeaks
-from pound_solve.integrate.series.course import ShownSteps
+from pound_solve.integrate.series.course import StepCourse
 from pound_solve.integrate.series.state import EnvelopeBuffers
 from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics.types import Array
@@ -13,7 +13,7 @@ SIZE, LAWS, STEPS, INPUTS = 3, 2, 12, 2
 SHARES = np.linspace(0.0, 1.0, 2001)
 
 
-def steps(terms: int, rng: np.random.Generator) -> ShownSteps:
+def steps(terms: int, rng: np.random.Generator) -> StepCourse:
     """Steps with random series whose powers fall, of unknowns in another order than that of elimination."""
     length = rng.uniform(0.01, 0.1, STEPS)
     coefs = rng.normal(size=(STEPS, SIZE + LAWS, terms + 1)) / 1.5 ** np.arange(terms + 1)
@@ -22,8 +22,8 @@ def steps(terms: int, rng: np.random.Generator) -> ShownSteps:
     nothing = np.zeros((1, 0, 0))
     shown = EnvelopeBuffers(
         is_needed=np.array([True]),
-        which=np.arange(SIZE),
-        acting=np.arange(LAWS),
+        unknowns=np.arange(SIZE),
+        laws=np.arange(LAWS),
         kept=np.array([STEPS, 0]),
         coefs=coefs,
         terms=used,
@@ -35,7 +35,7 @@ def steps(terms: int, rng: np.random.Generator) -> ShownSteps:
         start=np.zeros(1),
     )
     breaks = np.array([0.0, 0.2, 0.3, 5.0])
-    return ShownSteps(shown, np.array([2, 0, 1]), Excitation(breaks, rng.normal(size=(3, 3, INPUTS))))
+    return StepCourse(shown, np.array([2, 0, 1]), Excitation(breaks, rng.normal(size=(3, 3, INPUTS))))
 
 
 @pytest.mark.parametrize("terms", [6, 32])
@@ -61,7 +61,7 @@ def test_extremes_are_those_of_dense_samples(terms: int, seed: int) -> None:
     motion = course.within(np.arange(len(course.motion.t)), SHARES)
     cells = len(course.motion.t) // STEPS
     # the inputs of the piece at the start of the step, up to its end
-    pieces = np.repeat(own.excitation.pieces_after(own.shown.begin[:STEPS]), cells * len(SHARES))
+    pieces = np.repeat(own.excitation.pieces_after(own.envelope.begin[:STEPS]), cells * len(SHARES))
     since = motion.t - own.excitation.breaks[pieces]
     c = own.excitation.coefs[pieces]
     s = [_derivative(c, since, order) for order in range(3)]
@@ -79,8 +79,8 @@ def test_extremes_are_those_of_dense_samples(terms: int, seed: int) -> None:
 
 def test_a_force_between_supports_has_extremes() -> None:
     own = steps(6, np.random.default_rng(0))
-    held = own.shown._replace(which=np.zeros(0, int), coefs=own.shown.coefs[:, SIZE:].copy())
-    course = ShownSteps(held, np.zeros(0, int), own.excitation).course()
+    held = own.envelope._replace(unknowns=np.zeros(0, int), coefs=own.envelope.coefs[:, SIZE:].copy())
+    course = StepCourse(held, np.zeros(0, int), own.excitation).course()
     assert course.within is not None
     assert course.extremes is not None
     rows = MotionRows(np.zeros(1, int), np.ones(1, int), np.ones(1))

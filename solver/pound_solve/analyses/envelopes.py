@@ -109,9 +109,9 @@ class ResponseEnvelopes:
     output : Envelope
     sums : dict of Envelope
         Of the sums, by their names.
-    shown : ndarray of bool, shape (n,)
+    enveloped_unknowns : ndarray of bool, shape (n,)
         Unknowns that the envelopes depend on.
-    acting : ndarray of int, shape (n_acting,)
+    enveloped_laws : ndarray of int, shape (n_enveloped,)
         Laws whose forces the envelopes depend on.
     seen, apart : int, float
         Number of instants between the samples, and the longest interval between two instants [T].
@@ -133,16 +133,19 @@ class ResponseEnvelopes:
         self.units, laws = [o.unit for o in outputs], system.structure.laws
         acting = np.any([np.zeros(len(laws), bool), *(x.acting for x in sums.values())], axis=0)
         contacts = np.array([s.role.collides and room > 0 for s in laws], bool)
-        self.acting = np.flatnonzero(acting | contacts)
-        self.closeups = Closeups(np.flatnonzero(contacts[self.acting]), room)
-        self.quantities = Quantities(system, nodes, outputs, sums, self.acting)
+        self.enveloped_laws = np.flatnonzero(acting | contacts)
+        self.closeups = Closeups(np.flatnonzero(contacts[self.enveloped_laws]), room)
+        self.quantities = Quantities(system, nodes, outputs, sums, self.enveloped_laws)
         count = self.quantities.count
         self.extremes = IntervalExtremes(intervals(times, count, bytes_of_extremes), count)
-        self.shown = self.quantities.shown | used_columns(system.law_rows[self.acting])
+        held_by_laws = used_columns(system.law_rows[self.enveloped_laws])
+        self.enveloped_unknowns = self.quantities.enveloped_unknowns | held_by_laws
         if contacts.any():
-            self.shown |= followed
+            self.enveloped_unknowns |= followed
         # corotational members and closed rigid contacts depend on all unknowns
-        self.shown |= bool(system.corotational) or any(laws[i].law.rigid for i in self.acting)
+        self.enveloped_unknowns |= bool(system.corotational) or any(
+            laws[i].law.rigid for i in self.enveloped_laws
+        )
         self._clear()
 
     def _clear(self) -> None:

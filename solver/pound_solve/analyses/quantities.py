@@ -31,7 +31,7 @@ class Quantities:
     outputs : sequence of Output
     sums : mapping of str to LinearSums
         Sums of forces or displacements, by name.
-    acting : ndarray of int, shape (n_acting,)
+    enveloped_laws : ndarray of int, shape (n_enveloped,)
         Laws whose forces are part of the motion.
 
     Attributes
@@ -50,9 +50,9 @@ class Quantities:
         nodes: Sequence[int],
         outputs: Sequence[Output],
         sums: Mapping[str, LinearSums],
-        acting: Index,
+        enveloped_laws: Index,
     ) -> None:
-        self.system, self.sums, self._width = system, sums, len(acting)
+        self.system, self.sums, self._width = system, sums, len(enveloped_laws)
         self.parts: dict[str, slice] = {}
         self.count, self.place = 0, np.zeros(0, np.int64)
         self._inputs = np.zeros((0, 3 * system.inputs.shape[1] + 1))  # the last column is of ones
@@ -60,7 +60,7 @@ class Quantities:
         self._add_nodes(nodes)
         self._add_outputs(outputs)
         for name, x in sums.items():
-            motion = {**dict(enumerate(x.motion)), 3: x.of_laws[:, acting]}
+            motion = {**dict(enumerate(x.motion)), 3: x.of_laws[:, enveloped_laws]}
             self._add(name, motion, dict(enumerate(x.inputs)), x.constant)
         order = np.lexsort((self._rows.columns, self._rows.row))
         self._rows = self._rows.some(order)
@@ -214,9 +214,9 @@ class Quantities:
         return self._rows.some(at)._replace(row=number)
 
     @property
-    def shown(self) -> Flags:
+    def enveloped_unknowns(self) -> Flags:
         """Which unknowns the rows involve, shape (n,)."""
-        shown = np.zeros(self.system.size, bool)
+        enveloped_unknowns = np.zeros(self.system.size, bool)
         for used in self._used[:3]:
-            shown[used] = True
-        return shown
+            enveloped_unknowns[used] = True
+        return enveloped_unknowns

@@ -340,14 +340,14 @@ class HistoryRecorder:
         self.envelopes.between(course)
 
     @property
-    def shown(self) -> Flags:
+    def enveloped_unknowns(self) -> Flags:
         """Which unknowns `between` needs (see `integrate.protocol.Recorder`)."""
-        return self.envelopes.shown
+        return self.envelopes.enveloped_unknowns
 
     @property
-    def acting(self) -> Index:
+    def enveloped_laws(self) -> Index:
         """Laws whose forces `between` needs (see `integrate.protocol.Recorder`)."""
-        return self.envelopes.acting
+        return self.envelopes.enveloped_laws
 
     def report_progress(self, t: float, doing: str = "") -> None:
         """Report the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
@@ -372,7 +372,7 @@ class HistoryRecorder:
         energy = energies(system, t, u.T, v.T, stored.T, lost.T, works.T)
         residual = self.energy.take(energy)
         self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
-        law_forces = (force + dashpot)[self.acting]
+        law_forces = (force + dashpot)[self.enveloped_laws]
         before = inputs_before(system, t)
         nodes, members, sums = self.envelopes.take(Motion(t, u, v, a, law_forces), before)
         whole = np.column_stack([energy, residual])
@@ -387,7 +387,7 @@ class HistoryRecorder:
             s = system.excitation.values(motion.t).T
             d = system.law_rows @ motion.u + system.law_inputs @ s
             force = np.zeros((len(d), len(motion.t)))
-            force[self.acting] = motion.law_forces
+            force[self.enveloped_laws] = motion.law_forces
             values = self.envelopes.values(motion)
             yield SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))
 

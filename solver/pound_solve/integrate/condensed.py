@@ -48,14 +48,14 @@ class ExpandingRecorder:
         self.recorder.sample(t, u, v, a, laws, works)
 
     @property
-    def shown(self) -> Flags:
+    def enveloped_unknowns(self) -> Flags:
         """Which unknowns `between` needs (see `Recorder`)."""
-        return np.asarray(self.condensed.expand[self.recorder.shown].any(axis=0))
+        return np.asarray(self.condensed.expand[self.recorder.enveloped_unknowns].any(axis=0))
 
     @property
-    def acting(self) -> Index:
+    def enveloped_laws(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.acting
+        return self.recorder.enveloped_laws
 
     def between(self, course: Course) -> None:
         """Take the motion between samples (see `Recorder`)."""

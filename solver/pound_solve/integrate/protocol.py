@@ -73,8 +73,9 @@ class LawValues(NamedTuple):
 
 class Motion(NamedTuple):
     """The motion at some instants: their times, shape (n_times,), the unknowns, their velocities and
-    accelerations, shape (n, n_times) each, of which only those in `Recorder.shown` need be right, and the
-    forces of the laws in `Recorder.acting`, all dashpots included, shape (n_acting, n_times).
+    accelerations, shape (n, n_times) each, and the forces of the laws, all dashpots included,
+    shape (n_enveloped, n_times).  Only the rows of `Recorder.enveloped_unknowns` need be right, and only
+    the forces of `Recorder.enveloped_laws` are there.
     """
 
     t: Array
@@ -179,12 +180,12 @@ class Recorder(Protocol):
     """Takes the samples of a history."""
 
     @property
-    def shown(self) -> Flags:
-        """Which unknowns `between` needs, shape (n,): those of the laws in `acting` are among them."""
+    def enveloped_unknowns(self) -> Flags:
+        """Which unknowns `between` needs, shape (n,), those of `enveloped_laws` among them."""
 
     @property
-    def acting(self) -> Index:
-        """Laws whose forces `between` needs, ascending, shape (n_acting,)."""
+    def enveloped_laws(self) -> Index:
+        """Laws whose forces `between` needs, ascending, shape (n_enveloped,)."""
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take the motion (n, n_times) and the laws' forces and energies at some output times.

@@ -81,7 +81,7 @@ class Exact(EventDrivenRun):
             options.get("TRIAL"),
             options.get("DECOMPOSITIONS", np.inf),
         )
-        self.subsystems = Subsystems(system, self.rows, self.recorder.shown)
+        self.subsystems = Subsystems(system, self.rows, self.recorder.enveloped_unknowns)
         self.largest = np.zeros((2, len(self.subsystems.rows.rows)))
         if (parts := self.subsystems.parts) > 1:
             system.decisions.append(

@@ -197,11 +197,11 @@ class Laplace(EventDrivenRun):
 
     def _with_forces(self, t: Array, u: Array, v: Array, a: Array) -> Motion:
         """The motion at some times with the forces of the laws in `Recorder.acting`."""
-        system, acting = self.system, self.recorder.acting
+        system, enveloped_laws = self.system, self.recorder.enveloped_laws
         s, ds = (system.excitation.values(t, order).T for order in (0, 1))
-        d = system.law_rows[acting] @ u + system.law_inputs[acting] @ s
-        rate = system.law_rows[acting] @ v + system.law_inputs[acting] @ ds
-        return Motion(t, u, v, a, linear_forces([self.branches[i] for i in acting])(d, rate))
+        d = system.law_rows[enveloped_laws] @ u + system.law_inputs[enveloped_laws] @ s
+        rate = system.law_rows[enveloped_laws] @ v + system.law_inputs[enveloped_laws] @ ds
+        return Motion(t, u, v, a, linear_forces([self.branches[i] for i in enveloped_laws])(d, rate))
 
     def _work(self, begin: float, end: float, motion: SampledMotion) -> Array:
         """Work put in and lost in dashpots between two local times, shape (3,), by Simpson's rule

@@ -109,7 +109,8 @@ class EnvelopeSamples:
     def _motion(self, dense: DenseOutput, t: Array, motion: Kinematics) -> Motion:
         """The motion of a window at some times, with the forces of the laws."""
         system, rigid = dense.subsystems.system, dense.subsystems.rigid
-        return Motion(t, *motion, forces_of(system, rigid, self.recorder.acting, dense.branches, t, motion))
+        laws = self.recorder.enveloped_laws
+        return Motion(t, *motion, forces_of(system, rigid, laws, dense.branches, t, motion))
 
     def release(self) -> None:
         """Pass all that waits to the recorder."""

@@ -44,14 +44,14 @@ class Witness:
         """Ignore the motion between samples (see `Recorder`)."""
 
     @property
-    def shown(self) -> Flags:
+    def enveloped_unknowns(self) -> Flags:
         """Which unknowns `between` needs (see `Recorder`)."""
-        return np.zeros_like(self.recorder.shown)
+        return np.zeros_like(self.recorder.enveloped_unknowns)
 
     @property
-    def acting(self) -> Index:
+    def enveloped_laws(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.acting[:0]
+        return self.recorder.enveloped_laws[:0]
 
     def report_progress(self, t: float, doing: str = "") -> None:
         """Pass the progress of a trial on."""
@@ -82,14 +82,14 @@ class Watch(Witness):
         self.recorder.between(course)
 
     @property
-    def shown(self) -> Flags:
+    def enveloped_unknowns(self) -> Flags:
         """Which unknowns `between` needs (see `Recorder`)."""
-        return self.recorder.shown
+        return self.recorder.enveloped_unknowns
 
     @property
-    def acting(self) -> Index:
+    def enveloped_laws(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.acting
+        return self.recorder.enveloped_laws
 
 
 class Replay(Witness):
@@ -115,21 +115,21 @@ class Replay(Witness):
             self.envelopes.between(course)
 
     @property
-    def shown(self) -> Flags:
+    def enveloped_unknowns(self) -> Flags:
         """Which unknowns `between` needs (see `Recorder`)."""
-        return self.recorder.shown & self.enveloped
+        return self.recorder.enveloped_unknowns & self.enveloped
 
     @property
-    def acting(self) -> Index:
+    def enveloped_laws(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.acting if self.enveloped else self.recorder.acting[:0]
+        return self.recorder.enveloped_laws if self.enveloped else self.recorder.enveloped_laws[:0]
 
     def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
         """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
         envelopes = self.recorder.envelopes.blank()
         envelopes.widen(self.envelopes)
         for t, u, v, a, laws, _ in self.samples:
-            law_forces = (laws.force + laws.dashpot)[self.acting]
+            law_forces = (laws.force + laws.dashpot)[self.enveloped_laws]
             s = [system.excitation.values(t, order, before=True).T for order in range(3)]
             envelopes.take(Motion(t, u, v, a, law_forces), s)
         return envelopes.peaks()

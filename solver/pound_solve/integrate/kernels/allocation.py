@@ -28,7 +28,7 @@ from pound_solve.structure.reduction import ReducedSystem
 SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
 MAX_HELD = 2**20  #: numbers of one kind in those samples at most, except that two samples always fit
 #: motions of one step, and of whole steps between two visits, that envelopes see at least
-MIN_SHOWN = 64
+MIN_MOTIONS = 64
 SOLUTION_ROUNDING = 16.0 * float(np.finfo(float).eps)  #: fraction of a force that solving for it loses
 MAX_DELAY = 1e-6  #: longest time e by which massless velocities are found, as a share of the longest step
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
@@ -379,14 +379,14 @@ def step_arrays(
     return step
 
 
-def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
-    """Room for samples and transitions; `which` unknowns, and the forces of the laws `acting`, are shown
-    between the samples.
+def buffers(n: int, n_laws: int, unknowns: Index, laws: Index) -> state.Buffers:
+    """Allocate room for samples and transitions, and for the motion of some `unknowns` and the forces of
+    some `laws` between the samples, which the envelopes need.
     """
     samples = min(SAMPLES, max(MAX_HELD // (3 * max(n, n_laws, 1)), 2))
     log = TRANSITIONS + 16 * n_laws
     # half of it is for the parts of one step, which events cut
-    shown = 2 * max(min(16 * SAMPLES, MAX_HELD // max(3 * len(which) + len(acting), 3)), MIN_SHOWN)
+    motions = 2 * max(min(16 * SAMPLES, MAX_HELD // max(3 * len(unknowns) + len(laws), 3)), MIN_MOTIONS)
     u, v, a = np.zeros((3, samples, n))
     force, stored, lost, dashpot = np.zeros((4, samples, n_laws))
     return state.Buffers(
@@ -403,11 +403,11 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
         ties=np.zeros((TIES, 3, n_laws)),
         tie_time=np.zeros(TIES),
         rests=np.zeros((TIES, 4)),
-        which=which,
-        shown=np.zeros((shown, 3, len(which))),
-        shown_time=np.zeros(shown),
-        acting=acting,
-        law_forces=np.zeros((shown, len(acting))),
+        enveloped_unknowns=unknowns,
+        motion=np.zeros((motions, 3, len(unknowns))),
+        motion_time=np.zeros(motions),
+        enveloped_laws=laws,
+        law_forces=np.zeros((motions, len(laws))),
     )
 
 
@@ -417,5 +417,5 @@ def run_record(t: float, initial_energy: float) -> state.Run:
     run.time, run.factor_length, run.initial_energy = t, -1.0, initial_energy
     run.longest_part = np.inf
     run.fault = run.lost_force = -1
-    run.remaining_step = run.jumped = -1.0
+    run.remaining_step = run.load_jump_time = -1.0
     return run

@@ -60,7 +60,7 @@ class KernelEngine(ABC):
     """
 
     exact = False  #: whether there is no error but rounding
-    shows_steps = True  #: whether envelopes see the motion at the ends of steps
+    keeps_steps = True  #: whether the motion at the ends of steps is kept for the envelopes
 
     def __init__(self, problem: Problem[Recorder], scheme: Scheme, dt: float, name: str) -> None:
         system, start, recorder = problem.system, problem.start, problem.recorder
@@ -78,9 +78,11 @@ class KernelEngine(ABC):
         self.members = allocation.member_arrays(system, layout, scheme)
         self.step = allocation.step_arrays(system, start, layout, self.linear, self.tracker.extremes)
         self.inverse_order = layout.inverse_order
-        seen = layout.inverse_order[np.flatnonzero(recorder.shown)], recorder.acting
-        which, acting = seen if self.shows_steps else np.zeros((2, 0), np.int64)
-        self.buffers = allocation.buffers(system.size, len(self.law_springs), which, acting)
+        unknowns, laws = np.zeros((2, 0), np.int64)
+        if self.keeps_steps:
+            unknowns = layout.inverse_order[np.flatnonzero(recorder.enveloped_unknowns)]
+            laws = recorder.enveloped_laws
+        self.buffers = allocation.buffers(system.size, len(self.law_springs), unknowns, laws)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         works = self.accumulator.works
         self.sim = Simulation(
@@ -160,20 +162,20 @@ class KernelEngine(ABC):
     def fetch(self) -> None:
         """Fetch transitions, the motion between samples, and samples from the buffers."""
         self.fetch_transitions()
-        self.fetch_shown()
+        self.fetch_motions()
         self._fetch_samples()
-        if not self.state.kept:  # a signal that has come is answered at each return of a kernel
+        if not self.state.n_samples:  # a signal that has come is answered at each return of a kernel
             self.recorder.report_progress(float(self.state.time))
-        self.state.kept = self.state.shown = 0
+        self.state.n_samples = self.state.n_motions = 0
 
     def fetch_transitions(self) -> None:
         """Fetch the transitions from the buffers, and which laws came to theirs together."""
-        for k in range(int(self.state.tied)):
+        for k in range(int(self.state.n_ties)):
             self.uniqueness.examine_tie(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
-        for t, law, other, branch in self.buffers.rests[: self.state.rests].tolist():
+        for t, law, other, branch in self.buffers.rests[: self.state.n_rests].tolist():
             self.uniqueness.record_rest(t, int(law), int(other), int(branch))
-        self.state.tied = self.state.rests = 0
-        self.latest = self.buffers.log[: self.state.logged].tolist()
+        self.state.n_ties = self.state.n_rests = 0
+        self.latest = self.buffers.log[: self.state.n_transitions].tolist()
         for row in self.latest:
             law, before, after = (int(x) for x in row[:3])
             branches = self.law_springs[law].law.rule.branches
@@ -181,24 +183,24 @@ class KernelEngine(ABC):
                 self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
             self.uniqueness.record_change(row[3], law, after)
-        self.state.logged = 0
+        self.state.n_transitions = 0
 
-    def fetch_shown(self) -> None:
+    def fetch_motions(self) -> None:
         """Pass the motion between the samples from the buffers to the recorder."""
-        buffers, shown = self.buffers, self.state.shown
-        if not shown:
+        buffers, count = self.buffers, self.state.n_motions
+        if not count:
             return
         # at the end of a step a load has not jumped yet
-        times = self.system.excitation.before_jumps(buffers.shown_time[:shown])
-        u, v, a = motion = np.zeros((3, len(self.order), shown))
-        motion[:, self.order[buffers.which]] = buffers.shown[:shown].transpose(1, 2, 0)
-        law_forces = buffers.law_forces[:shown].T.copy()
+        times = self.system.excitation.before_jumps(buffers.motion_time[:count])
+        u, v, a = motion = np.zeros((3, len(self.order), count))
+        motion[:, self.order[buffers.enveloped_unknowns]] = buffers.motion[:count].transpose(1, 2, 0)
+        law_forces = buffers.law_forces[:count].T.copy()
         lengths = np.diff(times, prepend=self.seen)
         self.seen = float(times[-1])
         self.recorder.between(Course(Motion(times, u, v, a, law_forces), lengths, None))
 
     def _fetch_samples(self) -> None:
-        buffers, kept, back = self.buffers, self.state.kept, np.argsort(self.order)
+        buffers, kept, back = self.buffers, self.state.n_samples, np.argsort(self.order)
         if not kept:
             return
         motions = buffers.displacement, buffers.velocity, buffers.acceleration

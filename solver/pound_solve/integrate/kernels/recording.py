@@ -81,11 +81,11 @@ def log_transition(sim: Simulation, i: int, before: int, t: float, force: float)
     """Put a change of branch into the log; a contact begins to count its force anew."""
     laws = sim.laws
     collision = laws.collision
-    row = sim.buffers.log[sim.run.logged]
+    row = sim.buffers.log[sim.run.n_transitions]
     row[0], row[1], row[2], row[3] = i, before, laws.state.branch[i], t
     row[4], row[5], row[6] = laws.now.deformation[i], laws.now.rate[i], force
     row[7], row[8], row[9] = collision.peak_force[i], collision.peak_time[i], collision.impulse[i]
-    sim.run.logged += 1
+    sim.run.n_transitions += 1
     if laws.definition.contact[i]:
         collision.peak_force[i], collision.peak_time[i], collision.impulse[i] = force, t, 0.0
 
@@ -94,7 +94,7 @@ def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
     """Keep the motion, the laws' forces and energies, and the works."""
     laws, buffers, works = sim.laws, sim.buffers, sim.works
     definition, state = laws.definition, laws.state
-    at, now = sim.run.kept, sim.step.now
+    at, now = sim.run.n_samples, sim.step.now
     buffers.time[at] = t
     for i in range(len(sim.step.residual)):
         buffers.displacement[at, i] = now.displacement[i]
@@ -121,7 +121,7 @@ def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
         buffers.lost[at, i] = lost if abs(lost) > 1e-14 * definition.parameters[i, 0] * size * size else 0.0
     kept = buffers.works[at]
     kept[0], kept[1], kept[2] = works.input, works.damping, works.contact
-    sim.run.kept += 1
+    sim.run.n_samples += 1
 
 
 def take_first_sample(sim: Simulation, rules: Tables) -> None:
@@ -139,18 +139,19 @@ def store_motion(sim: Simulation, rules: Tables, t: float) -> None:
     If a step is cut into more parts than there is room for, the rest is not kept.
     """
     laws, buffers, run = sim.laws, sim.buffers, sim.run
-    if len(buffers.which) + len(buffers.acting) == 0 or run.shown == len(buffers.shown_time):
+    nothing = len(buffers.enveloped_unknowns) + len(buffers.enveloped_laws) == 0
+    if nothing or run.n_motions == len(buffers.motion_time):
         return
-    at, now = run.shown, sim.step.now
-    buffers.shown_time[at] = t
-    for i in range(len(buffers.which)):
-        which = buffers.which[i]
-        buffers.shown[at, 0, i] = now.displacement[which]
-        buffers.shown[at, 1, i] = now.velocity[which]
-        buffers.shown[at, 2, i] = now.acceleration[which]
-    for i in range(len(buffers.acting)):
-        law = buffers.acting[i]
+    at, now = run.n_motions, sim.step.now
+    buffers.motion_time[at] = t
+    for i in range(len(buffers.enveloped_unknowns)):
+        unknown = buffers.enveloped_unknowns[i]
+        buffers.motion[at, 0, i] = now.displacement[unknown]
+        buffers.motion[at, 1, i] = now.velocity[unknown]
+        buffers.motion[at, 2, i] = now.acceleration[unknown]
+    for i in range(len(buffers.enveloped_laws)):
+        law = buffers.enveloped_laws[i]
         buffers.law_forces[at, i] = law_force(
             laws, rules, law, laws.now.deformation[law], laws.now.rate[law]
         )
-    run.shown += 1
+    run.n_motions += 1

@@ -40,19 +40,19 @@ class Run(Protocol):
     started: int  #: whether the first sample is taken
     goal: int  #: the time that is integrated to, by its number
     step: int  #: steps taken towards the goal
-    kept: int  #: samples in the buffers
-    logged: int  #: transitions in the buffers
-    shown: int  #: motions between samples in the buffers
+    n_samples: int  #: samples in the buffers
+    n_transitions: int  #: transitions in the buffers
+    n_motions: int  #: motions between samples in the buffers
     steps: int
     events: int
-    same_instant: int  #: transitions at one instant
+    changes_at_instant: int  #: transitions at one instant
     lost_force: int  #: law that held a joint without mass and lost its force, -1 for none
-    driven: int  #: branches left in a step that is not cut at events
+    branches_passed: int  #: branches left in a step that is not cut at events
     updates: int  #: of rank one since the factor was made
     stale: int  #: whether quantities that depend on the branches, such as factors, must be recomputed
     softening: int  #: steps that are too long for a softening branch
-    tied: int  #: instants at which laws give way together in the buffers
-    rests: int  #: laws that rest where a branch begins in the buffers
+    n_ties: int  #: instants at which laws give way together in the buffers
+    n_rests: int  #: laws that rest where a branch begins in the buffers
     fault: int  #: law or unknown at fault, -1 for none
     time: float
     factor_length: float  #: step that the factor at hand is for
@@ -60,7 +60,7 @@ class Run(Protocol):
     longest_part: float  #: that a step may take at once for now
     remaining_step: float  #: of a step that stopped where a force lost_force, negative for none
     last_event: float  #: time of the last transition
-    jumped: float  #: time at which a load has jumped, negative for none
+    load_jump_time: float  #: time at which a load has jumped, negative for none
 
 
 class LinearSystem(NamedTuple):
@@ -275,14 +275,14 @@ class Buffers(NamedTuple):
     rests : ndarray, shape (n_rests, 4)
         Of laws that rest where a branch begins as a law turns: the time, that law, the one that rests, and
         the number of its branch (see `ties.note_rests`).
-    which : ndarray, shape (n_which,)
-        Unknowns that the envelopes look at.
-    shown : ndarray, shape (n_shown, 3, n_which)
+    enveloped_unknowns : ndarray, shape (n_unknowns,)
+        Unknowns that the envelopes need.
+    motion : ndarray, shape (n_motions, 3, n_unknowns)
         Their motion between the samples.
-    shown_time : ndarray, shape (n_shown,)
-    acting : ndarray, shape (n_acting,)
-        Laws that the envelopes look at.
-    law_forces : ndarray, shape (n_shown, n_acting)
+    motion_time : ndarray, shape (n_motions,)
+    enveloped_laws : ndarray, shape (n_laws,)
+        Laws whose forces the envelopes need.
+    law_forces : ndarray, shape (n_motions, n_laws)
         Their forces between the samples, all dashpots included.
     """
 
@@ -299,10 +299,10 @@ class Buffers(NamedTuple):
     ties: Array
     tie_time: Array
     rests: Array
-    which: Index
-    shown: Array
-    shown_time: Array
-    acting: Index
+    enveloped_unknowns: Index
+    motion: Array
+    motion_time: Array
+    enveloped_laws: Index
     law_forces: Array
 
 

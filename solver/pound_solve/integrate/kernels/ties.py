@@ -122,10 +122,10 @@ def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
         return
     for i in range(len(definition.rule)):
         branch = branch_begun(sim.linear, laws, rules, i, i == law)
-        if branch >= 0 and run.rests < len(buffers.rests):
-            row = buffers.rests[run.rests]
+        if branch >= 0 and run.n_rests < len(buffers.rests):
+            row = buffers.rests[run.n_rests]
             row[0], row[1], row[2], row[3] = run.time, law, i, branch
-            run.rests += 1
+            run.n_rests += 1
 
 
 def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset: float) -> None:
@@ -141,9 +141,9 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
     plain = not definition.contact[law] and not definition.curved[law]
     lost_force = loses_force(linear, laws, law, stiffness, offset, laws.now.deformation[law])
     softer = plain and tangent.stiffness[law] < stiffness and touches_massless(linear, definition.rows, law)
-    if not (lost_force or softer) or run.tied == len(buffers.ties):
+    if not (lost_force or softer) or run.n_ties == len(buffers.ties):
         return
-    row, count = buffers.ties[run.tied], 0
+    row, count = buffers.ties[run.n_ties], 0
     rate = laws.now.rate
     for i in range(len(definition.rule)):
         row[0, i], row[1, i], row[2, i] = tangent.stiffness[i], tangent.damping[i], 0.0
@@ -162,5 +162,5 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
         restore_state(laws, rules, i)
     if count > 0:
         row[2, law] = rate[law]
-        buffers.tie_time[run.tied] = run.time
-        run.tied += 1
+        buffers.tie_time[run.n_ties] = run.time
+        run.n_ties += 1

@@ -81,7 +81,7 @@ def change_branches(
 def count_instant(run: Run, h: float) -> None:
     """Count the events at one instant."""
     same = run.time - run.last_event <= SAME_INSTANT * max(run.time, h)
-    run.same_instant = run.same_instant + 1 if same else 0
+    run.changes_at_instant = run.changes_at_instant + 1 if same else 0
     run.last_event = run.time
 
 

@@ -21,8 +21,8 @@ import numpy as np
 
 from pound_solve.integrate.events.polynomial_roots import room
 from pound_solve.integrate.protocol import Course, Motion, RowPeaks
+from pound_solve.integrate.series.envelope_buffers import INTERVALS, STEPS
 from pound_solve.integrate.series.extremes import RowExtremes, find_extremes
-from pound_solve.integrate.series.shown import INTERVALS, STEPS
 from pound_solve.integrate.series.state import EnvelopeBuffers, Modal
 from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics.providers import provider
@@ -31,22 +31,22 @@ from pound_solve.numerics.types import Array, Complex, Index
 TERMS_OF_CELL = 16  #: of the series of a step for each of its cells, which have some 2.5 radians each
 
 
-class ShownSteps:
+class StepCourse:
     """Steps kept for the envelopes; `order` holds the unknowns in the order of elimination."""
 
-    def __init__(self, shown: EnvelopeBuffers, order: Index, excitation: Excitation) -> None:
-        self.shown, self.size, self.excitation = shown, len(order), excitation
-        self.cells = max(shown.coefs.shape[2] // TERMS_OF_CELL, 1)  # of a step
-        self.unknowns = order[shown.which]
-        self.rows = np.zeros(3 * self.size + len(shown.acting), np.int64)  # in the coefficients
+    def __init__(self, envelope: EnvelopeBuffers, order: Index, excitation: Excitation) -> None:
+        self.envelope, self.size, self.excitation = envelope, len(order), excitation
+        self.cells = max(envelope.coefs.shape[2] // TERMS_OF_CELL, 1)  # of a step
+        self.unknowns = order[envelope.unknowns]
+        self.rows = np.zeros(3 * self.size + len(envelope.laws), np.int64)  # in the coefficients
         for derivative in range(3):
-            self.rows[derivative * self.size + self.unknowns] = np.arange(len(shown.which))
-        self.rows[3 * self.size :] = len(shown.which) + np.arange(len(shown.acting))
-        self.derivatives = np.append(np.repeat(np.arange(3), self.size), 0 * shown.acting)
+            self.rows[derivative * self.size + self.unknowns] = np.arange(len(envelope.unknowns))
+        self.rows[3 * self.size :] = len(envelope.unknowns) + np.arange(len(envelope.laws))
+        self.derivatives = np.append(np.repeat(np.arange(3), self.size), 0 * envelope.laws)
 
     def _motion(self, steps: Index, places: Array) -> Motion:
         """The motion at places between 0 and 1 in some steps."""
-        x, n, count = self.shown, len(self.unknowns), len(places)
+        x, n, count = self.envelope, len(self.unknowns), len(places)
         first, last = (int(steps[0]), int(steps[-1]) + 1) if len(steps) else (0, 0)
         coefs = x.coefs[first:last] if last - first == len(steps) else x.coefs[steps]
         h, table = x.length[steps, None], _powers(places, coefs.shape[2])
@@ -72,7 +72,7 @@ class ShownSteps:
 
     def _extremes(self, peaks: RowPeaks) -> None:
         """Count the steps into the extremes of rows (see `protocol.Course`)."""
-        x, count = self.shown, int(self.shown.kept[STEPS])
+        x, count = self.envelope, int(self.envelope.kept[STEPS])
         about = self.excitation.about(x.begin[:count])
         _, top, n_inputs = about.shape
         inputs = np.zeros((count, n_inputs, max(top, x.coefs.shape[2])))
@@ -104,9 +104,9 @@ class ShownSteps:
 
     def course(self) -> Course:
         """The motion over all steps that were kept."""
-        steps, shares = np.arange(self.shown.kept[STEPS]), np.arange(self.cells) / self.cells
+        steps, shares = np.arange(self.envelope.kept[STEPS]), np.arange(self.cells) / self.cells
         motion = self._motion(steps, shares)
-        lengths = np.repeat(self.shown.length[steps] / self.cells, self.cells)
+        lengths = np.repeat(self.envelope.length[steps] / self.cells, self.cells)
         return Course(motion, lengths, self._within, self._extremes)
 
 
@@ -126,12 +126,12 @@ def _of_cells(x: Array, chosen: Index, count: int) -> Array:
     return np.asarray(cells[..., chosen, :].reshape(*x.shape[:-1], len(chosen) * count))
 
 
-class ShownIntervals:
+class IntervalCourse:
     """Intervals in modes kept for the envelopes, part by part of the structure."""
 
-    def __init__(self, shown: EnvelopeBuffers, modal: Modal, order: Index) -> None:
-        self.shown, self.modal, self.size = shown, modal, len(order)
-        self.unknowns = order[shown.which]
+    def __init__(self, envelope: EnvelopeBuffers, modal: Modal, order: Index) -> None:
+        self.envelope, self.modal, self.size = envelope, modal, len(order)
+        self.unknowns = order[envelope.unknowns]
         self.cells = modal.growth.shape[1] - 1
         self.rows = [self._rows(b) for b in range(len(modal.counts))]
 
@@ -139,10 +139,10 @@ class ShownIntervals:
         """Rows that give displacements, velocities, accelerations and forces of laws of a part from its
         x.
         """
-        modal, acting, (_, q, _, seen) = self.modal, self.shown.acting, self.modal.counts[b]
-        place = modal.index_of[b, acting]
+        modal, laws, (_, q, _, seen) = self.modal, self.envelope.laws, self.modal.counts[b]
+        place = modal.index_of[b, laws]
         force = np.where(
-            place[:, None] >= 0, modal.stiffness[acting, None] * modal.rows[b, np.maximum(place, 0)], 0.0
+            place[:, None] >= 0, modal.stiffness[laws, None] * modal.rows[b, np.maximum(place, 0)], 0.0
         )
         return np.vstack([*modal.motion[b, :, :seen], force])[:, : 2 * q + modal.steady.shape[2]]
 
@@ -163,7 +163,7 @@ class ShownIntervals:
         whole = np.broadcast_to(start, (self.cells, *start.shape))
         parts = g.real * re + g.imag * im, g.real * im - g.imag * re, whole, slope + s * start
         table = np.concatenate(parts, axis=2)
-        moved = self.shown.x[:count, b, : table.shape[2]] @ table.reshape(-1, table.shape[2]).T
+        moved = self.envelope.x[:count, b, : table.shape[2]] @ table.reshape(-1, table.shape[2]).T
         return np.asarray(moved.reshape(count, self.cells, -1).transpose(2, 0, 1))
 
     def _at(self, b: int, intervals: Index, places: Array) -> Array:
@@ -171,7 +171,7 @@ class ShownIntervals:
         modes evaluated there.
         """
         rate, q, n_inputs = self._rates(b)
-        x = self.shown.x[intervals, b, None]
+        x = self.envelope.x[intervals, b, None]
         free = (x[..., :q] + 1j * x[..., q : 2 * q]) * np.exp(rate * places[..., None])
         slope = np.broadcast_to(x[..., 2 * q + n_inputs : 2 * (q + n_inputs)], (*places.shape, n_inputs))
         start = x[..., 2 * q : 2 * q + n_inputs] + slope * places[..., None]
@@ -180,22 +180,22 @@ class ShownIntervals:
 
     def _motion(self, intervals: Index, places: Array, parts: Sequence[Array]) -> Motion:
         """The motion from the rows of all parts."""
-        shown, modal = self.shown, self.modal
-        t = shown.start[intervals, None] + places * modal.length[0]
+        envelope, modal = self.envelope, self.modal
+        t = envelope.start[intervals, None] + places * modal.length[0]
         u, v, a = motions = np.zeros((3, self.size, t.size))
-        forces = np.repeat(shown.constant_forces[intervals].T, t.shape[1], axis=1)
+        forces = np.repeat(envelope.constant_forces[intervals].T, t.shape[1], axis=1)
         for b, (moved, (_, q, _, seen)) in enumerate(zip(parts, modal.counts.tolist())):
-            unknowns = self.unknowns[modal.shown[b, :seen]]
+            unknowns = self.unknowns[modal.enveloped[b, :seen]]
             for k, motion in enumerate(motions):
                 motion[unknowns] = moved[k * seen : (k + 1) * seen].reshape(seen, t.size)
-            still = self.rows[b][:seen, : 2 * q] @ shown.equilibrium[intervals, b, : 2 * q].T
+            still = self.rows[b][:seen, : 2 * q] @ envelope.equilibrium[intervals, b, : 2 * q].T
             u[unknowns] += np.repeat(still, t.shape[1], axis=1)
             forces += moved[3 * seen :].reshape(len(forces), t.size)
         return Motion(t.ravel(), u, v, a, forces)
 
     def course(self) -> Course:
         """The motion over all intervals that were kept."""
-        count, parts = int(self.shown.kept[INTERVALS]), range(len(self.rows))
+        count, parts = int(self.envelope.kept[INTERVALS]), range(len(self.rows))
         places = np.arange(self.cells)[None] / self.cells
         motion = self._motion(np.arange(count), places, [self._on_grid(b, count) for b in parts])
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, highest, size
+from pound_solve.integrate.series.envelope_buffers import STEPS
 from pound_solve.integrate.series.expansion import derivative_factor
-from pound_solve.integrate.series.shown import STEPS
 from pound_solve.integrate.series.state import EnvelopeBuffers
 from pound_solve.numerics.ldl import Positions
 from pound_solve.numerics.types import Array, Index
@@ -80,25 +80,25 @@ def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) ->
         p[k] += factor * derivative_factor(k + order, order, 1.0) * c[k + order]
 
 
-def form_row(shown: EnvelopeBuffers, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
+def form_row(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
     """Write row `r` in step `s` as a polynomial into the work space."""
-    p, terms, n = extremes.polynomial[POLYNOMIAL], shown.terms[s], shown.coefs.shape[1]
+    p, terms, n = extremes.polynomial[POLYNOMIAL], envelope.terms[s], envelope.coefs.shape[1]
     for k in range(terms + 1):
         p[k] = 0.0
     p[0] = extremes.constant[r]
     for q in range(extremes.pointers[r], extremes.pointers[r + 1]):
         i, order, factor = extremes.source[q], extremes.derivative[q], extremes.factors[q]
         for _ in range(order):
-            factor /= shown.length[s]
+            factor /= envelope.length[s]
         if i < n:
-            add_derivative(shown.coefs[s, i], terms, order, factor, p)
+            add_derivative(envelope.coefs[s, i], terms, order, factor, p)
         else:
             add_derivative(inputs[s, i - n], terms, order, factor, p)
 
 
-def count_row(shown: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> None:
+def count_row(envelope: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> None:
     """Update the extremes of row `r` with the polynomial in the work space."""
-    p, terms, begin, h = extremes.polynomial, shown.terms[s], shown.begin[s], shown.length[s]
+    p, terms, begin, h = extremes.polynomial, envelope.terms[s], envelope.begin[s], envelope.length[s]
     first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, terms)
     if first + far > extremes.high[r]:
         value, place = highest(p, terms, 1.0, extremes.high[r])
@@ -112,12 +112,12 @@ def count_row(shown: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> 
             extremes.low[r], extremes.t_low[r] = -value, begin + h * place
 
 
-def find_extremes(shown: EnvelopeBuffers, inputs: Array, extremes: RowExtremes) -> int:
+def find_extremes(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtremes) -> int:
     """Update the extremes of all rows with the steps that were kept.
 
     Parameters
     ----------
-    shown : EnvelopeBuffers
+    envelope : EnvelopeBuffers
     inputs : ndarray, shape (n_steps, n_inputs, TERMS + 1)
         Series of the inputs over each step.
     extremes : RowExtremes
@@ -127,14 +127,14 @@ def find_extremes(shown: EnvelopeBuffers, inputs: Array, extremes: RowExtremes) 
     int
         0.
     """
-    for s in range(shown.kept[STEPS]):
-        n, terms, h = shown.coefs.shape[1], shown.terms[s], shown.length[s]
+    for s in range(envelope.kept[STEPS]):
+        n, terms, h = envelope.coefs.shape[1], envelope.terms[s], envelope.length[s]
         for i in range(n):
-            bound_series(extremes, i, shown.coefs[s, i], terms, h)
+            bound_series(extremes, i, envelope.coefs[s, i], terms, h)
         for j in range(inputs.shape[1]):
             bound_series(extremes, n + j, inputs[s, j], terms, h)
         for r in range(len(extremes.high)):
             if may_exceed(extremes, r):
-                form_row(shown, inputs, extremes, s, r)
-                count_row(shown, extremes, s, r)
+                form_row(envelope, inputs, extremes, s, r)
+                count_row(envelope, extremes, s, r)
     return 0

@@ -35,6 +35,7 @@ from pound_solve.integrate.series.branches import (
     settle_state,
 )
 from pound_solve.integrate.series.curved import change_phase
+from pound_solve.integrate.series.envelope_buffers import has_room, is_full, keep_step
 from pound_solve.integrate.series.expansion import (
     MAX_GROWTH,
     MAX_TERMS,
@@ -49,7 +50,6 @@ from pound_solve.integrate.series.forces import count_largest, update_branch_for
 from pound_solve.integrate.series.friction import is_sliding
 from pound_solve.integrate.series.modal import from_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_closed
-from pound_solve.integrate.series.shown import has_room, is_full, keep_step
 from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
 from pound_solve.integrate.series.smooth import shorten_for_bend
 from pound_solve.integrate.series.state import Extent, Lengths, Series
@@ -109,8 +109,9 @@ def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
 
 def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
     """Whether Python must empty the buffers, or may look whether the user wants to stop."""
-    crowded = len(buffers.log) - run.logged < len(buffers.log) // 2 or run.tied > len(buffers.ties) // 2
-    return crowded or run.steps >= pause or is_full(series.shown)
+    log_is_full = len(buffers.log) - run.n_transitions < len(buffers.log) // 2
+    crowded = log_is_full or run.n_ties > len(buffers.ties) // 2
+    return crowded or run.steps >= pause or is_full(series.envelope)
 
 
 def step_length(lengths: Lengths, t: float, goal: float) -> float:
@@ -235,7 +236,7 @@ def step_to_goal(
             continue
         run.time = t + at * h
         count_instant(run, h)
-        if run.same_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule):
+        if run.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule):
             run.fault = event.law
             return CHATTER
         why = answer_event(sim, rules, series, piece, searched, event)
@@ -249,7 +250,7 @@ def reach_goal(
 ) -> int:
     """Advance the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
     step, run = sim.step, sim.run
-    if not has_room(series.shown):
+    if not has_room(series.envelope):
         return BUFFERS_FULL
     if run.steps < pause and take_in_modes(sim, series, piece, goal):
         return DONE
@@ -333,6 +334,6 @@ def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
         if goals.sampled[goal]:
             from_modes(sim.laws, series.modal, sim.step)
             take_sample(sim, rules, series, piece)
-            if run.kept == len(sim.buffers.time):
+            if run.n_samples == len(sim.buffers.time):
                 return BUFFERS_FULL
     return DONE

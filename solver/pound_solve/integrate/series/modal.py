@@ -26,8 +26,8 @@ from pound_solve.integrate.kernels.law_state import BranchEvents, Laws
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
 from pound_solve.integrate.kernels.state import LinearSystem, Piece, Simulation, Step
+from pound_solve.integrate.series.envelope_buffers import keep_interval
 from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, expand_inputs
-from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Extent, Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
 from pound_solve.integrate.tracker import TrackedExtremes

@@ -155,7 +155,7 @@ def parts_of(
 
 def allocate(
     system: ReducedSystem, stiffness: Array, monitored: MonitoredOutputs, times: Array, place: Index,
-    shown: Index,
+    enveloped: Index,
 ) -> Modal:  # fmt: skip
     """Lay out the tables of all parts, one after the other.
 
@@ -169,8 +169,8 @@ def allocate(
         At which the run must arrive.
     place : ndarray of int, shape (n,)
         Of the unknowns in the order of elimination.
-    shown : ndarray of int
-        Unknowns that the envelopes look at, in that order.
+    enveloped : ndarray of int
+        Unknowns that the envelopes need, in that order.
     """
     length, outputs = most_common_length(times), dense(monitored.rows)
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
@@ -178,7 +178,7 @@ def allocate(
     parts = parts_of(system, stiffness, outputs, length)
     if any(np.abs(p.rate).max() * length > MAX_CELLS * MAX_RADIANS for _, p in parts):
         parts = []
-    seen = [np.flatnonzero(np.isin(shown, place[unknowns])) for unknowns, _ in parts]
+    seen = [np.flatnonzero(np.isin(enveloped, place[unknowns])) for unknowns, _ in parts]
     n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
     counts = [(len(u), len(p.rate), len(p.followed), len(s)) for (u, p), s in zip(parts, seen)]
     n, q, r, w = np.max([(0, 0, 0, 0), *counts], axis=0).tolist()
@@ -207,7 +207,7 @@ def allocate(
         damping_work=np.zeros((b, size, size)),
         input_work=np.zeros((b, 2 * n_inputs, size)),
         constant_work=np.zeros((b, size)),
-        shown=np.zeros((b, w), np.int64),
+        enveloped=np.zeros((b, w), np.int64),
         motion=np.zeros((b, 3, w, size)),
         modes=np.zeros((b, 2 * q)),
         equilibrium=np.zeros((b, 2 * q)),
@@ -219,12 +219,16 @@ def allocate(
         apart=np.zeros(n_followed),
     )
     for i, ((unknowns, p), numbers) in enumerate(zip(parts, seen)):
-        fill_tables(modal, i, p, numbers, place[unknowns], shown[numbers])
+        fill_tables(modal, i, p, numbers, place[unknowns], enveloped[numbers])
     return modal
 
 
-def fill_tables(out: Modal, b: int, part: ModalPart, seen: Index, unknowns: Index, shown: Index) -> None:
-    """Fill in the tables of part `b`; `seen` are the numbers of the `shown` of its `unknowns`."""
+def fill_tables(
+    out: Modal, b: int, part: ModalPart, seen: Index, unknowns: Index, enveloped: Index
+) -> None:
+    """Fill in the tables of part `b`; `seen` are the numbers, among all that the envelopes need, of those
+    of its `unknowns` that are `enveloped`.
+    """
     modes, rate = part.modes, part.rate
     h, steady = part.length, part.steady
 
@@ -250,8 +254,8 @@ def fill_tables(out: Modal, b: int, part: ModalPart, seen: Index, unknowns: Inde
     put(out.rows, part.table(part.rows, START)[0])
     for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works):
         put(array, values)
-    put(out.shown, seen)
+    put(out.enveloped, seen)
     order = np.argsort(unknowns)
-    places = order[np.searchsorted(unknowns, shown, sorter=order)]
+    places = order[np.searchsorted(unknowns, enveloped, sorter=order)]
     motion = (modes.u_q[places], 0), (modes.v_q[places], 0), (modes.v_q[places], 1)
     put(out.motion, np.concatenate([part.table(rows, START, order) for rows, order in motion]))

@@ -360,9 +360,9 @@ class Modal(NamedTuple):
         Rows that give the followed quantities from x.
     damping_work, input_work, constant_work : ndarray
         Works over the interval on x, shape (n_parts, n_x, n_x), (n_parts, 2 n_inputs, n_x), (n_parts, n_x).
-    shown : ndarray, shape (n_parts, n_shown)
-        Numbers of the unknowns that envelopes look at.
-    motion : ndarray, shape (n_parts, 3, n_shown, n_x)
+    enveloped : ndarray, shape (n_parts, n_enveloped)
+        Numbers of the unknowns that envelopes need.
+    motion : ndarray, shape (n_parts, 3, n_enveloped, n_x)
         Their displacements, velocities and accelerations on x.
     modes, equilibrium : ndarray, shape (n_parts, 2 n_modes)
         Modal coordinates, and their static position under the present constant loads.
@@ -394,7 +394,7 @@ class Modal(NamedTuple):
     damping_work: Array
     input_work: Array
     constant_work: Array
-    shown: Index
+    enveloped: Index
     motion: Array
     modes: Array
     equilibrium: Array
@@ -407,17 +407,17 @@ class Modal(NamedTuple):
 
 
 class EnvelopeBuffers(NamedTuple):
-    """Motion of steps and of intervals in modes that is kept for the envelopes (see `shown`).
+    """Motion of steps and of intervals in modes that is kept for the envelopes (see `envelope_buffers`).
 
     Attributes
     ----------
     is_needed : ndarray, shape (1,)
         Whether there is anything to see.
-    which, acting : ndarray
+    unknowns, laws : ndarray
         Unknowns, by their places in the order of elimination, and laws.
     kept : ndarray, shape (2,)
         Steps and intervals that were kept.
-    coefs : ndarray, shape (n_steps, n_which + n_acting, TERMS + 1)
+    coefs : ndarray, shape (n_steps, n_unknowns + n_laws, TERMS + 1)
         Series of the unknowns and of the forces of the laws, all dashpots included, over the steps taken.
     terms : ndarray, shape (n_steps,)
         Their highest powers; all others are zero.
@@ -425,15 +425,15 @@ class EnvelopeBuffers(NamedTuple):
         Time of the start, and to where the step was taken.
     x, equilibrium : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
         `Modal.x` and `Modal.equilibrium` at their starts.
-    constant_forces : ndarray, shape (n_intervals, n_acting)
+    constant_forces : ndarray, shape (n_intervals, n_laws)
         Forces of the laws where the modes come to rest.
     start : ndarray, shape (n_intervals,)
         Times.
     """
 
     is_needed: Flags
-    which: Index
-    acting: Index
+    unknowns: Index
+    laws: Index
     kept: Index
     coefs: Array
     terms: Index
@@ -530,7 +530,7 @@ class Series(NamedTuple):
     strings : Strings
     damped : Damped
     modal : Modal
-    shown : EnvelopeBuffers
+    envelope : EnvelopeBuffers
     single_pole : SinglePole
     lengths : Lengths
     """
@@ -554,6 +554,6 @@ class Series(NamedTuple):
     strings: Strings
     damped: Damped
     modal: Modal
-    shown: EnvelopeBuffers
+    envelope: EnvelopeBuffers
     single_pole: SinglePole
     lengths: Lengths

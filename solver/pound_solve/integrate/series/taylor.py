@@ -66,13 +66,13 @@ from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.integrate.series import (
     curved,
+    envelope_buffers,
     expansion,
     friction,
     march,
     massless,
     modal_tables,
     rigid,
-    shown,
     single_pole,
     smooth,
     springs,
@@ -80,7 +80,7 @@ from pound_solve.integrate.series import (
     strings,
     viscous,
 )
-from pound_solve.integrate.series.course import ShownIntervals, ShownSteps
+from pound_solve.integrate.series.course import IntervalCourse, StepCourse
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
@@ -107,7 +107,7 @@ class Taylor(KernelEngine):
     """One run; see the module's head."""
 
     exact = True
-    shows_steps = False
+    keeps_steps = False
     words = "TAYLOR, power series"
     asking = "the fastest mode"  #: cause of short steps, for messages
 
@@ -160,9 +160,9 @@ class Taylor(KernelEngine):
         collides = np.array([s.role.collides for s in self.law_springs], bool)
         is_damper = is_curved & np.array([s.role is Role.DAMPER for s in self.law_springs], bool)
         is_smooth = np.array([s.law.rule.smooth is not None for s in self.law_springs], bool)
-        which, acting = self.inverse_order[np.flatnonzero(self.recorder.shown)], self.recorder.acting
+        enveloped = self.inverse_order[np.flatnonzero(self.recorder.enveloped_unknowns)]
         modal = modal_tables.allocate(
-            system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), which
+            system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), enveloped
         )
         kept = terms if tolerance is None else single_pole.LAST_TERM + 1
         return state.Series(
@@ -189,7 +189,7 @@ class Taylor(KernelEngine):
             strings=strings.allocate(len(self.members.parameters), terms),
             damped=self._damped(terms),
             modal=modal,
-            shown=shown.allocate(which, acting, modal, kept),
+            envelope=envelope_buffers.allocate(enveloped, self.recorder.enveloped_laws, modal, kept),
             single_pole=single_pole.allocate(n, n_inputs, tolerance),
             lengths=self.lengths,
         )
@@ -281,14 +281,14 @@ class Taylor(KernelEngine):
         rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
         x.largest[:] = np.maximum(x.largest, rounding)
 
-    def fetch_shown(self) -> None:
+    def fetch_motions(self) -> None:
         """Show the recorder the series and the modes that were kept."""
-        store = self.series.shown
-        if store.kept[shown.STEPS]:
-            self.recorder.between(ShownSteps(store, self.order, self.system.excitation).course())
-        if store.kept[shown.INTERVALS]:
-            self.recorder.between(ShownIntervals(store, self.series.modal, self.order).course())
-        store.kept[:] = 0
+        envelope = self.series.envelope
+        if envelope.kept[envelope_buffers.STEPS]:
+            self.recorder.between(StepCourse(envelope, self.order, self.system.excitation).course())
+        if envelope.kept[envelope_buffers.INTERVALS]:
+            self.recorder.between(IntervalCourse(envelope, self.series.modal, self.order).course())
+        envelope.kept[:] = 0
 
     def fetch(self) -> None:
         """Fetch what was kept; stop where steps are too short for the length of the run."""
@@ -317,7 +317,7 @@ class Taylor(KernelEngine):
         if why == CHATTER:
             fault = int(self.state.fault)
             s, at = self.law_springs[fault], self.laws.state.branch[fault]
-            what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
+            what = (int(self.state.changes_at_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
 

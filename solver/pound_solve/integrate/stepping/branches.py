@@ -88,7 +88,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
         step.marked[j] = False
     for k in range(-1, len(definition.rule)):
         i = event.law if k < 0 else k
-        room = len(sim.buffers.log) - run.logged > len(laws.friction.coupled)
+        room = len(sim.buffers.log) - run.n_transitions > len(laws.friction.coupled)
         if events.pending[i] < 0 or not room or (k >= 0 and not leaves_independently(sim, i)):
             continue
         change_branch(sim, rules, scheme, h, i, events.pending[i])
@@ -110,5 +110,5 @@ def resume_after_jump(sim: Simulation, rules: Tables) -> None:
     run = sim.run
     make_consistent(sim)
     track_peaks(sim, run.time, 0.0)
-    after = 4.0 * CLOCK_ROUNDING * max(1.0, run.time) if run.time == run.jumped else 0.0
+    after = 4.0 * CLOCK_ROUNDING * max(1.0, run.time) if run.time == run.load_jump_time else 0.0
     store_motion(sim, rules, run.time + after)

@@ -70,7 +70,7 @@ def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
         leave_branch(laws, rules, i, event, where, v1)
         if loses_force(sim.linear, laws, i, k, f0, where):
             return False
-        sim.run.driven += 1
+        sim.run.branches_passed += 1
         d = where
     if laws.definition.curved[i]:
         linearise_law(laws, rules, i, d1, v1)
@@ -139,7 +139,7 @@ def step_through(
     for _ in range(MAX_SOLUTIONS):
         if not tried and not try_step(sim, rules, scheme, piece.coefs, end, length, WHOLE):
             break
-        tried, run.driven = False, 0
+        tried, run.branches_passed = False, 0
         outcome = drive_laws(sim, rules, scheme, length)
         if outcome == SOLVE_AGAIN:
             continue
@@ -149,7 +149,7 @@ def step_through(
             break
         accept_trial(sim, rules, scheme, length, WHOLE)
         run.time += length
-        run.events += run.driven
+        run.events += run.branches_passed
         for i in range(len(definition.rule)):
             if laws.saved.in_step[i] and laws.saved.values[i, 0] != laws.state.branch[i]:
                 force = linear_force(laws.tangent, i, laws.now.deformation[i], laws.now.rate[i])
@@ -216,7 +216,7 @@ def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
             jumps = True
         now.load[i] = load[i]
     if jumps:
-        run.jumped = run.time
+        run.load_jump_time = run.time
         make_consistent(sim)
         track_peaks(sim, run.time, 0.0)
 
@@ -250,7 +250,7 @@ def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
     run.step = 0
     if sampled:
         store_sample(sim, rules, run.time)
-        if run.kept == len(sim.buffers.time):
+        if run.n_samples == len(sim.buffers.time):
             return BUFFERS_FULL
     return DONE
 
@@ -282,7 +282,7 @@ def take_steps(
         if not tried and (run.step == last < count - 1 or used_up):
             return DONE
         length = h if run.step < count - 1 else goal - run.time
-        run.same_instant = 0
+        run.changes_at_instant = 0
         if not scheme.locate:
             outcome = step_through(sim, rules, scheme, piece, length, tried)
             tried = False
@@ -323,9 +323,9 @@ def advance(
         h, piece = lengths[goal], piece_of(goals, goal)
         begin_goal(sim, scheme, piece, h)
         while run.step < steps[goal]:
-            crowded = len(buffers.log) - run.logged < room or run.tied > len(buffers.ties) // 2
+            crowded = len(buffers.log) - run.n_transitions < room or run.n_ties > len(buffers.ties) // 2
             # steps that have room
-            more = len(buffers.shown_time) // 2 - run.shown
+            more = len(buffers.motion_time) // 2 - run.n_motions
             if crowded or more <= 0 or run.steps >= pause:
                 return BUFFERS_FULL
             why = renew_factor(sim, scheme, h)

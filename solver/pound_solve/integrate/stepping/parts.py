@@ -84,7 +84,7 @@ def end_part_at_event(
         run.updates = MAX_UPDATES + 1
     why, event = locate_event(sim, rules, scheme, piece, part, h, event)
     if why == DONE and event.time > SAME_INSTANT_OF_STEP * h:
-        run.same_instant = 0
+        run.changes_at_instant = 0
     elif why == DONE and event.time == 0.0 and curved:
         restore_start_tangents(sim, rules)  # else what follows takes forces and tangents of the last trial
     return why, event
@@ -106,11 +106,11 @@ def answer_event(
     laws, run = sim.laws, sim.run
     change_branches(sim, rules, scheme, h, event)
     run.fault = event.law
-    run.same_instant += 1
+    run.changes_at_instant += 1
     n_laws = len(laws.definition.rule)
-    if run.same_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * n_laws:
+    if run.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * n_laws:
         return CHATTER
-    if run.same_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
+    if run.changes_at_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
         run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
     if run.lost_force >= 0:
         run.remaining_step = left
@@ -132,7 +132,7 @@ def step_in_parts(
     left = length
     factor = WHOLE if abs(length - h) <= SAME_INSTANT_OF_STEP * h else PART
     while left > 0.0:
-        if len(sim.buffers.log) - run.logged <= len(laws.friction.coupled):
+        if len(sim.buffers.log) - run.n_transitions <= len(laws.friction.coupled):
             return TOO_MANY_EVENTS
         part = min(left, run.longest_part)
         factor = factor if part == left else PART
