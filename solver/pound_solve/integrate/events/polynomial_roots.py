@@ -29,67 +29,67 @@ COEFFICIENT_ROUNDING = 1e-15  #: fraction of the sum of the coefficients that is
 POLYNOMIAL, CELLS = range(2)
 
 
-def room(terms: int) -> tuple[int, int]:
-    """Shape of the work array of the kernels for polynomials of highest power `terms`."""
-    return MAX_HALVINGS + 2, terms + 3
+def room(degree: int) -> tuple[int, int]:
+    """Shape of the work array of the kernels for polynomials of highest power `degree`."""
+    return MAX_HALVINGS + 2, degree + 3
 
 
 @reorder_sums
-def size(p: Array, row: int, terms: int) -> float:
+def size(p: Array, row: int, degree: int) -> float:
     """Bound of the change of the polynomial in a row from its value at 0, over [0, 1]."""
     total = 0.0
-    for k in range(1, terms + 1):
+    for k in range(1, degree + 1):
         total += abs(p[row, k])
     return total
 
 
 @reorder_sums
-def rate_size(p: Array, row: int, terms: int) -> float:
+def rate_size(p: Array, row: int, degree: int) -> float:
     """Bound of the change of the polynomial's derivative in a row from its value at 0, over [0, 1]."""
     total = 0.0
-    for k in range(2, terms + 1):
+    for k in range(2, degree + 1):
         total += k * abs(p[row, k])
     return total
 
 
-def value(p: Array, terms: int, s: float) -> float:
+def value(p: Array, degree: int, s: float) -> float:
     """Value of the polynomial."""
-    total: float = p[POLYNOMIAL, terms]
-    for k in range(terms - 1, -1, -1):
+    total: float = p[POLYNOMIAL, degree]
+    for k in range(degree - 1, -1, -1):
         total = total * s + p[POLYNOMIAL, k]
     return total
 
 
-def slopes(p: Array, terms: int, s: float) -> tuple[float, float]:
+def slopes(p: Array, degree: int, s: float) -> tuple[float, float]:
     """First two derivatives of the polynomial."""
     first, second = 0.0, 0.0
-    for k in range(terms, 0, -1):
+    for k in range(degree, 0, -1):
         second = second * s + first
         first = first * s + k * p[POLYNOMIAL, k]
     return first, second
 
 
-def write_in_bernstein_form(p: Array, terms: int, end: float) -> None:
+def write_in_bernstein_form(p: Array, degree: int, end: float) -> None:
     """Write the polynomial on [0, end] in Bernstein's form, into the first cell."""
     place, width = p.shape[1] - 2, p.shape[1] - 1
     scale = 1.0
-    for k in range(terms + 1):
+    for k in range(degree + 1):
         p[CELLS, k] = p[POLYNOMIAL, k] * scale
-        scale *= end * (k + 1) / (terms - k) if k < terms else 1.0
-    for i in range(1, terms + 1):  # to and fro between two rows, several at once
-        for j in range(i, terms + 1):
+        scale *= end * (k + 1) / (degree - k) if k < degree else 1.0
+    for i in range(1, degree + 1):  # to and fro between two rows, several at once
+        for j in range(i, degree + 1):
             p[CELLS + 1, j] = p[CELLS, j] + p[CELLS, j - 1]
-        for j in range(i, terms + 1):
+        for j in range(i, degree + 1):
             p[CELLS, j] = p[CELLS + 1, j]
     p[CELLS, place], p[CELLS, width] = 0.0, end
 
 
-def halve_cell(p: Array, terms: int, row: int) -> None:
+def halve_cell(p: Array, degree: int, row: int) -> None:
     """Leave the right half of a cell in its row, and put the left one into the next (de Casteljau)."""
     place, width = p.shape[1] - 2, p.shape[1] - 1
     p[row + 1, 0] = p[row, 0]
-    for i in range(1, terms + 1):
-        for j in range(terms - i + 1):
+    for i in range(1, degree + 1):
+        for j in range(degree - i + 1):
             p[row, j] = 0.5 * (p[row, j] + p[row, j + 1])
         p[row + 1, i] = p[row, 0]
     half = 0.5 * p[row, width]
@@ -97,10 +97,10 @@ def halve_cell(p: Array, terms: int, row: int) -> None:
     p[row, place], p[row, width] = p[row, place] + half, half
 
 
-def sign_changes(p: Array, terms: int, row: int, noise: float) -> tuple[float, int]:
+def sign_changes(p: Array, degree: int, row: int, noise: float) -> tuple[float, int]:
     """Sign of the first difference of a cell's coefficients, and how often the sign of these changes."""
     first, last, count = 0.0, 0.0, 0
-    for j in range(terms):
+    for j in range(degree):
         step = p[row, j + 1] - p[row, j]
         if abs(step) <= noise:
             continue
@@ -112,21 +112,21 @@ def sign_changes(p: Array, terms: int, row: int, noise: float) -> tuple[float, i
     return first, count
 
 
-def highest_of(p: Array, terms: int, row: int) -> float:
+def highest_of(p: Array, degree: int, row: int) -> float:
     """Largest coefficient of a cell."""
     most: float = p[row, 0]
-    for j in range(1, terms + 1):
+    for j in range(1, degree + 1):
         most = max(most, p[row, j])
     return most
 
 
-def find_zero(p: Array, terms: int, low: float, high: float) -> float:
+def find_zero(p: Array, degree: int, low: float, high: float) -> float:
     """Where the polynomial, not above zero at `low`, rises through it before `high`: Newton's method, kept
     in its bracket.
     """
     at, last = 0.5 * (low + high), np.inf
     for _ in range(200):
-        g, rate = value(p, terms, at), slopes(p, terms, at)[0]
+        g, rate = value(p, degree, at), slopes(p, degree, at)[0]
         if g == 0.0:
             return at
         if g > 0.0:
@@ -143,11 +143,11 @@ def find_zero(p: Array, terms: int, low: float, high: float) -> float:
     return at
 
 
-def find_summit(p: Array, terms: int, low: float, high: float) -> float:
+def find_summit(p: Array, degree: int, low: float, high: float) -> float:
     """Where the slope of the polynomial falls through zero between `low` and `high`."""
     at, last = 0.5 * (low + high), np.inf
     for _ in range(100):
-        rate, bend = slopes(p, terms, at)
+        rate, bend = slopes(p, degree, at)
         if rate > 0.0:
             low = at
         else:
@@ -162,63 +162,63 @@ def find_summit(p: Array, terms: int, low: float, high: float) -> float:
     return at
 
 
-def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
+def first_rise(p: Array, degree: int, end: float, tol: float) -> float:
     """First place before `end`, which is 1 at most, where the polynomial in row 0 rises through zero, to
     above `tol`; -1 if there is none.
 
     A value above zero at 0 counts as rounding there, and is set to zero in row 0: if it rises from it, then
     at once.
     """
-    far = size(p, POLYNOMIAL, terms)
+    far = size(p, POLYNOMIAL, degree)
     if p[POLYNOMIAL, 0] + far <= tol:
         return -1.0
     place, width = p.shape[1] - 2, p.shape[1] - 1
     noise = COEFFICIENT_ROUNDING * (abs(p[POLYNOMIAL, 0]) + far)
     p[POLYNOMIAL, 0] = min(p[POLYNOMIAL, 0], 0.0)
-    write_in_bernstein_form(p, terms, end)
+    write_in_bernstein_form(p, degree, end)
     row = CELLS
     while row >= CELLS:
-        if highest_of(p, terms, row) > tol:
-            first, count = sign_changes(p, terms, row, noise)
+        if highest_of(p, degree, row) > tol:
+            first, count = sign_changes(p, degree, row, noise)
             if count > 0 and row - CELLS < MAX_HALVINGS:
-                halve_cell(p, terms, row)
+                halve_cell(p, degree, row)
                 row += 1
                 continue
-            if p[row, terms] > tol and (first >= 0.0 or count > 0):
+            if p[row, degree] > tol and (first >= 0.0 or count > 0):
                 at = p[row, place]
-                return at if p[row, 0] >= 0.0 else find_zero(p, terms, at, at + p[row, width])
+                return at if p[row, 0] >= 0.0 else find_zero(p, degree, at, at + p[row, width])
         row -= 1
     return -1.0
 
 
-def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, float]:
+def highest(p: Array, degree: int, end: float, known: float) -> tuple[float, float]:
     """Largest value in [0, end], end being 1 at most, of the polynomial in row 0, and its place, if it is
     above one that is `known`; else that and -1.
     """
     best, where = known, -1.0
-    far = size(p, POLYNOMIAL, terms)
+    far = size(p, POLYNOMIAL, degree)
     if p[POLYNOMIAL, 0] + far <= known:
         return best, where
     place, width = p.shape[1] - 2, p.shape[1] - 1
     noise = COEFFICIENT_ROUNDING * (abs(p[POLYNOMIAL, 0]) + far)
-    write_in_bernstein_form(p, terms, end)
+    write_in_bernstein_form(p, degree, end)
     row = CELLS
     while row >= CELLS:
-        if highest_of(p, terms, row) > best:
-            first, count = sign_changes(p, terms, row, noise)
+        if highest_of(p, degree, row) > best:
+            first, count = sign_changes(p, degree, row, noise)
             if count > 1 and row - CELLS < MAX_HALVINGS:
-                halve_cell(p, terms, row)
+                halve_cell(p, degree, row)
                 row += 1
                 continue
             low = p[row, place]
             high = low + p[row, width]
             if p[row, 0] > best:
                 best, where = p[row, 0], low
-            if p[row, terms] > best:
-                best, where = p[row, terms], high
+            if p[row, degree] > best:
+                best, where = p[row, degree], high
             if count > 0 and first > 0.0:
-                at = find_summit(p, terms, low, high)
-                top = value(p, terms, at)
+                at = find_summit(p, degree, low, high)
+                top = value(p, degree, at)
                 if top > best:
                     best, where = top, at
         row -= 1

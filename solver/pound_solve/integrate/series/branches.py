@@ -63,7 +63,7 @@ def change_branches(
     """Change the branch of a law, and of others whose events are at the same instant."""
     laws = sim.laws
     now, instant = sim.run.time, SAME_INSTANT * max(sim.run.time, extent.h)
-    ahead = Extent(extent.begin, extent.h, extent.terms, min(event.time + AHEAD, extent.end))
+    ahead = Extent(extent.begin, extent.h, extent.degree, min(event.time + AHEAD, extent.end))
     first, its_event = event_before_slack(sim, rules, event.law, event.event_index)
     event = LocatedEvent(first, its_event, event.time)
     stiffness, offset = laws.tangent.stiffness[event.law], laws.tangent.offset[event.law]
@@ -124,7 +124,7 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     123-130.
     """
     laws, run = sim.laws, sim.run
-    massless, now, top = series.massless, sim.step.now, len(piece.coefs)
+    massless, now, n_powers = series.massless, sim.step.now, len(piece.coefs)
     in_series = series.rigid.n_closed[0] + len(series.curved.laws) + len(series.friction.laws)
     in_series += len(series.smooth.laws) + len(series.viscous.laws)
     if len(massless.unknown) + in_series == 0:
@@ -135,15 +135,15 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
             return UNRESTRAINED
         begin_series(sim, series, piece, 1.0)
         if in_series:  # forces that are series need the accelerations
-            next_term(sim, series, 0, 1.0, top)
+            next_term(sim, series, 0, 1.0, n_powers)
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
-        if run.fault >= 0 and joints_jump(laws, series, top):
+        if run.fault >= 0 and joints_jump(laws, series, n_powers):
             return LOST_FORCE
         for i in massless.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in massless.laws:
-            laws.now.deformation[i] = deformation_term(laws.definition, series, 0, top, i)
-            laws.now.rate[i] = deformation_term(laws.definition, series, 1, top, i)
+            laws.now.deformation[i] = deformation_term(laws.definition, series, 0, n_powers, i)
+            laws.now.rate[i] = deformation_term(laws.definition, series, 1, n_powers, i)
         if not tangents_settled(laws, series.viscous, now.velocity):
             run.stale = 1
             continue

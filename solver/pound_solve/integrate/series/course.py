@@ -74,11 +74,11 @@ class StepCourse:
         """Count the steps into the extremes of rows (see `protocol.Course`)."""
         x, count = self.envelope, int(self.envelope.kept[STEPS])
         about = self.excitation.about(x.begin[:count])
-        _, top, n_inputs = about.shape
-        inputs = np.zeros((count, n_inputs, max(top, x.coefs.shape[2])))
-        inputs[:, :, :top] = (about * x.length[:count, None, None] ** np.arange(top)[:, None]).swapaxes(
-            1, 2
-        )
+        _, n_powers, n_inputs = about.shape
+        inputs = np.zeros((count, n_inputs, max(n_powers, x.coefs.shape[2])))
+        inputs[:, :, :n_powers] = (
+            about * x.length[:count, None, None] ** np.arange(n_powers)[:, None]
+        ).swapaxes(1, 2)
         on_motion, (row, column) = peaks.rows, np.nonzero(peaks.on_inputs[:, :-1])
         rows = np.concatenate([on_motion.row, row])
         order = np.argsort(rows, kind="stable")

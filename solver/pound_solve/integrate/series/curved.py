@@ -43,16 +43,16 @@ SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.constants`
 
 
-def allocate(curved: Flags, terms: int) -> Curved:
-    """Lay out the `curved` ones of the laws for series of so many `terms`."""
+def allocate(curved: Flags, n_coefs: int) -> Curved:
+    """Lay out the `curved` ones of the laws for series of `n_coefs` coefficients."""
     laws = np.flatnonzero(curved)
     return Curved(
         laws=laws,
         index_of=inverse_index(laws, len(curved)),
         constants=np.zeros((len(laws), 6)),
         phase=np.zeros(len(laws), np.int64),
-        power=np.zeros((len(laws), 2, terms)),
-        force=np.zeros((len(laws), terms)),
+        power=np.zeros((len(laws), 2, n_coefs)),
+        force=np.zeros((len(laws), n_coefs)),
         largest=np.zeros(len(laws)),
     )
 
@@ -127,10 +127,8 @@ def force_term(constants: Array, power: Array, x: float, d: Array, k: int, h: fl
     return force
 
 
-def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
-    """Add the coefficients `k` of the contacts' forces to the right side `new` of the coefficients `k` + 2;
-    the inputs have `top` coefficients.
-    """
+def add_contacts(laws: Laws, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
+    """Add the coefficients `k` of the contacts' forces to the right side `new` of the coefficients `k` + 2."""
     curved = series.curved
     for r in range(len(curved.laws)):
         if curved.phase[r] == APART:
@@ -138,7 +136,7 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         i = curved.laws[r]
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
-            d[m] = deformation_term(laws.definition, series, m, top, i)
+            d[m] = deformation_term(laws.definition, series, m, n_powers, i)
         x = d[0] - laws.definition.parameters[i, GAP] - curved.constants[r, SHIFT]
         force = force_term(curved.constants[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force
@@ -154,11 +152,11 @@ def any_overlap(curved: Curved) -> bool:
     return overlaps
 
 
-def right_part(force: Array, terms: int, end: float) -> float:
+def right_part(force: Array, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the series of a force is accurate, at most `end`; NaN
     where its terms are not finite.
     """
-    last, most = terms - 2, 0.0
+    last, most = degree - 2, 0.0
     for k in range(last + 1):
         most = max(most, abs(force[k]))
     tail = max(abs(force[last]), abs(force[last - 1]))
@@ -167,11 +165,11 @@ def right_part(force: Array, terms: int, end: float) -> float:
     return min(end, (FORCE_TRUNCATION * most / tail) ** (1.0 / last)) if tail > 0.0 else end
 
 
-def contacts_valid_up_to(curved: Curved, terms: int, end: float) -> float:
+def contacts_valid_up_to(curved: Curved, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the forces of all contacts are accurate, at most `end`."""
     for r in range(len(curved.laws)):
         if curved.phase[r] != APART:
-            end = right_part(curved.force[r], terms, end)
+            end = right_part(curved.force[r], degree, end)
     return end
 
 

@@ -16,12 +16,12 @@ MAX_KEPT, MIN_KEPT = 4096, 8  #: of these
 STEPS, INTERVALS = range(2)  #: places in `EnvelopeBuffers.kept`
 
 
-def allocate(unknowns: Index, laws: Index, modal: Modal, terms: int) -> EnvelopeBuffers:
-    """Allocate room for steps, whose series have so many `terms`, and for intervals in modes; the unknowns
+def allocate(unknowns: Index, laws: Index, modal: Modal, n_coefs: int) -> EnvelopeBuffers:
+    """Allocate room for steps, whose series have `n_coefs` coefficients, and for intervals in modes; the
     `unknowns` and the forces of the `laws` are kept.
     """
     b, _, size = modal.x.shape
-    steps = MAX_HELD // max(terms * (len(unknowns) + len(laws)), 1)
+    steps = MAX_HELD // max(n_coefs * (len(unknowns) + len(laws)), 1)
     intervals = MAX_HELD // max(3 * modal.x.shape[1] * len(unknowns), 2 * b * size, 1)
     s, i = (int(np.clip(x, MIN_KEPT, MAX_KEPT)) for x in (steps, intervals))
     return EnvelopeBuffers(
@@ -29,8 +29,8 @@ def allocate(unknowns: Index, laws: Index, modal: Modal, terms: int) -> Envelope
         unknowns=unknowns,
         laws=laws,
         kept=np.zeros(2, np.int64),
-        coefs=np.zeros((s, len(unknowns) + len(laws), terms)),
-        terms=np.zeros(s, np.int64),
+        coefs=np.zeros((s, len(unknowns) + len(laws), n_coefs)),
+        degree=np.zeros(s, np.int64),
         begin=np.zeros(s),
         length=np.zeros(s),
         x=np.zeros((i, b, size)),
@@ -47,27 +47,27 @@ def is_full(envelope: EnvelopeBuffers) -> bool:
 
 def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
     """Keep the series of a step, while the laws are as at its start."""
-    t, h, terms, end = extent
+    t, h, degree, end = extent
     envelope = series.envelope
     if not envelope.is_needed[0]:
         return
     at, n = envelope.kept[STEPS], len(envelope.unknowns)
     for i in range(n):
         coefs, unknown = envelope.coefs[at, i], envelope.unknowns[i]
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             coefs[k] = series.motion[k, unknown]
     for i in range(len(envelope.laws)):
-        whole_force(laws, series, terms, h, envelope.laws[i], envelope.coefs[at, n + i])
+        whole_force(laws, series, degree, h, envelope.laws[i], envelope.coefs[at, n + i])
     for i in range(envelope.coefs.shape[1]):
-        for k in range(terms + 1, envelope.coefs.shape[2]):
+        for k in range(degree + 1, envelope.coefs.shape[2]):
             envelope.coefs[at, i, k] = 0.0
     if end < 1.0:
         power = 1.0
-        for k in range(1, terms + 1):
+        for k in range(1, degree + 1):
             power *= end
             for i in range(envelope.coefs.shape[1]):
                 envelope.coefs[at, i, k] *= power
-    envelope.terms[at], envelope.begin[at], envelope.length[at] = terms, t, h * end
+    envelope.degree[at], envelope.begin[at], envelope.length[at] = degree, t, h * end
     envelope.kept[STEPS] += 1
 
 

@@ -9,6 +9,9 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
 Terms are added until two in a row are below a share `TRUNCATION` of the motion in the energy norm,
 :math:`k^2 c_k^T M c_k / h^2`.  If the last ones allowed are not, the step ends at the place where they
 would be; if that place is far from the end, the step is tried again, shorter.
+
+Two numbers go through these kernels: `degree`, the highest power of the series of a step, and `n_powers`, the
+number of coefficients of the excitation's polynomials, one more than their degree.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from pound_solve.integrate.series.curved import add_contacts, any_overlap, conta
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold_contacts
-from pound_solve.integrate.series.smooth import add_remainders, find_rests, smooth_valid_up_to
+from pound_solve.integrate.series.smooth import add_remainders, find_remainders, smooth_valid_up_to
 from pound_solve.integrate.series.springs import add_product, deformation_term
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.strings import add_strings
@@ -31,7 +34,7 @@ from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
-MAX_TERMS = 32  #: of a series, at most
+MAX_DEGREE = 32  #: of a series, at most
 UNCHECKED_TERMS = 4  #: terms after which it is checked whether they suffice
 TRUNCATION = 1e-14  #: fraction of the motion that a term left out may be
 UNSEEN_ENERGY = 1e-13  #: fraction of its energy that a term may carry that works need not see
@@ -50,24 +53,24 @@ def dot(a: Array, b: Array) -> float:
 def expand_inputs(series: Series, piece: Piece, t: float, h: float) -> None:
     """Series of the inputs from the time `t` on, in steps of `h`."""
     s, coefs, begin = series.inputs, piece.coefs, t - piece.begin
-    top, n = coefs.shape
+    n_powers, n = coefs.shape
     for j in range(n):
-        for k in range(top):
+        for k in range(n_powers):
             s[k, j] = coefs[k, j]
-        for i in range(top - 1):
-            for k in range(top - 2, i - 1, -1):
+        for i in range(n_powers - 1):
+            for k in range(n_powers - 2, i - 1, -1):
                 s[k, j] += begin * s[k + 1, j]
         scale = 1.0
-        for k in range(top):
+        for k in range(n_powers):
             s[k, j] *= scale
             scale *= h
 
 
-def expand_deformations(laws: Laws, series: Series, terms: int, top: int) -> None:
-    """Coefficients of the deformations up to `terms`; the inputs have `top` of them."""
-    for k in range(terms + 1):
+def expand_deformations(laws: Laws, series: Series, degree: int, n_powers: int) -> None:
+    """Coefficients of the deformations up to `degree`."""
+    for k in range(degree + 1):
         for i in range(len(laws.definition.rule)):
-            series.deformation[i, k] = deformation_term(laws.definition, series, k, top, i)
+            series.deformation[i, k] = deformation_term(laws.definition, series, k, n_powers, i)
 
 
 def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
@@ -108,7 +111,7 @@ def structural_forces(
         out[i] = -on_stiffness * series.stiffness_product[i] - on_damping * series.damping_product[i]
 
 
-def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> None:
+def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) -> None:
     """Coefficients `k` + 2 of the unknowns from the two before (see the module's head)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
     new = series.motion[k + 2]
@@ -119,7 +122,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
     if k == 0:
         for i in range(n):
             new[i] += h * h * springs.constant[i]
-    if k < top:
+    if k < n_powers:
         for j in range(series.inputs.shape[1]):
             load = h * h * series.inputs[k, j]
             if load != 0.0:
@@ -127,14 +130,14 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
                     new[i] += springs.inputs[j, i] * load
     for q in range(springs.n_dashpots[0]):
         law = springs.dashpots[q]
-        term = deformation_term(laws.definition, series, k + 1, top, law)
+        term = deformation_term(laws.definition, series, k + 1, n_powers, law)
         force = rate * laws.tangent.damping[law] * term
         add_row(laws.definition.rows, law, -force, new)
-    add_contacts(laws, series, k, h, top, new)
-    add_friction(laws, series, k, h, top, new)
+    add_contacts(laws, series, k, h, n_powers, new)
+    add_friction(laws, series, k, h, n_powers, new)
     add_remainders(laws, series.smooth, k, h, new)
     add_drags(laws.definition, series.viscous, k, h, new)
-    add_strings(sim.members, series, k, h, top, new)
+    add_strings(sim.members, series, k, h, n_powers, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -145,34 +148,34 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, top: int) -> No
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
         for i in series.massless.unknown:  # loads on these are for `add_massless`
             new[i] = 0.0
-    hold_contacts(laws, series, k + 2, h, top)
-    find_rests(laws, series, k + 2, top)
-    find_drags(laws, series, k + 1, h, top)
+    hold_contacts(laws, series, k + 2, h, n_powers)
+    find_remainders(laws, series, k + 2, n_powers)
+    find_drags(laws, series, k + 1, h, n_powers)
     if len(series.massless.unknown):
-        add_massless(laws, step, series, k + 2, h, top)
+        add_massless(laws, step, series, k + 2, h, n_powers)
 
 
 def begin_series(sim: Simulation, series: Series, piece: Piece, h: float) -> None:
     """Set the first two coefficients of the series from the present state."""
     laws = sim.laws
-    c, now, top = series.motion, sim.step.now, len(piece.coefs)
+    c, now, n_powers = series.motion, sim.step.now, len(piece.coefs)
     expand_inputs(series, piece, sim.run.time, h)
     for i in range(len(now.displacement)):
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
     for k in range(2):
-        hold_contacts(laws, series, k, h, top)
-        find_rests(laws, series, k, top)
+        hold_contacts(laws, series, k, h, n_powers)
+        find_remainders(laws, series, k, n_powers)
         if k == 1:
-            find_drags(laws, series, 0, h, top)
+            find_drags(laws, series, 0, h, n_powers)
         if len(series.massless.unknown):
-            add_massless(laws, sim.step, series, k, h, top)
+            add_massless(laws, sim.step, series, k, h, n_powers)
 
 
-def valid_up_to(series: Series, terms: int, end: float) -> float:
+def valid_up_to(series: Series, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which forces that are series are accurate, at most `end`."""
-    end = contacts_valid_up_to(series.curved, terms, end)
-    end = smooth_valid_up_to(series.smooth, terms, end)
-    return drags_valid_up_to(series.viscous, terms, end)
+    end = contacts_valid_up_to(series.curved, degree, end)
+    end = smooth_valid_up_to(series.smooth, degree, end)
+    return drags_valid_up_to(series.viscous, degree, end)
 
 
 def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
@@ -180,7 +183,7 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
 
     Returns
     -------
-    terms : int
+    degree : int
         Its highest power.
     end : float
         Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all
@@ -188,38 +191,41 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
     """
     lengths = series.lengths
     linear = sim.linear
-    top = len(piece.coefs)
+    n_powers = len(piece.coefs)
     begin_series(sim, series, piece, h)
     lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
     most, k, tail, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, UNCHECKED_TERMS
-    while k + 2 <= MAX_TERMS:
+    while k + 2 <= MAX_DEGREE:
         while True:
-            next_term(sim, series, k, h, top)
+            next_term(sim, series, k, h, n_powers)
             k += 1
             if (k + 1) % UNCHECKED_TERMS == 0:
                 break
-        terms = k + 1
-        tail, last = energy_of_term(linear, series, terms, h), energy_of_term(linear, series, terms - 1, h)
+        degree = k + 1
+        tail, last = (
+            energy_of_term(linear, series, degree, h),
+            energy_of_term(linear, series, degree - 1, h),
+        )
         if most == 0.0:  # from rest
             most = max(energy_of_term(linear, series, 2, h), last, tail)
         if tail + last > UNSEEN_ENERGY * most:
-            lengths.carried = terms + UNCHECKED_TERMS
-        enough = terms > top and tail + last <= TRUNCATION * TRUNCATION * most
-        if enough and valid_up_to(series, terms, 1.0) == 1.0:
+            lengths.carried = degree + UNCHECKED_TERMS
+        enough = degree > n_powers and tail + last <= TRUNCATION * TRUNCATION * most
+        if enough and valid_up_to(series, degree, 1.0) == 1.0:
             break
     # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
     others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
     if any_overlap(series.curved) or others:
-        lengths.carried = terms + UNCHECKED_TERMS
+        lengths.carried = degree + UNCHECKED_TERMS
     if not tail + last < np.inf:
-        return terms, np.nan
-    expand_deformations(sim.laws, series, terms, top)
+        return degree, np.nan
+    expand_deformations(sim.laws, series, degree, n_powers)
     end = MAX_GROWTH
     if tail > 0.0:
-        end = min(end, (TRUNCATION * TRUNCATION * most / tail) ** (0.5 / terms))
+        end = min(end, (TRUNCATION * TRUNCATION * most / tail) ** (0.5 / degree))
     if last > 0.0:
-        end = min(end, (TRUNCATION * TRUNCATION * most / last) ** (0.5 / (terms - 1)))
-    return terms, valid_up_to(series, terms, end)
+        end = min(end, (TRUNCATION * TRUNCATION * most / last) ** (0.5 / (degree - 1)))
+    return degree, valid_up_to(series, degree, end)
 
 
 def derivative_factor(k: int, order: int, h: float) -> float:
@@ -230,12 +236,12 @@ def derivative_factor(k: int, order: int, h: float) -> float:
     return factor
 
 
-def evaluate_motion(c: Array, terms: int, s: float, h: float, order: int, out: Array) -> None:
+def evaluate_motion(c: Array, degree: int, s: float, h: float, order: int, out: Array) -> None:
     """Derivative of an order of a motion with coefficients `c` at the place `s`."""
     n = len(out)
     for i in range(n):
         out[i] = 0.0
-    k = terms
+    k = degree
     while k >= order:
         # four terms at once: to read and write a row takes longer than the arithmetic
         f0, f1 = derivative_factor(k, order, h), derivative_factor(k - 1, order, h)
@@ -257,10 +263,10 @@ def evaluate_motion(c: Array, terms: int, s: float, h: float, order: int, out: A
             k -= 1
 
 
-def law_at(series: Series, terms: int, s: float, h: float, i: int) -> tuple[float, float]:
+def law_at(series: Series, degree: int, s: float, h: float, i: int) -> tuple[float, float]:
     """Deformation and rate of a law at the place `s`."""
-    d, v = series.deformation[i, terms], 0.0
-    for k in range(terms - 1, -1, -1):
+    d, v = series.deformation[i, degree], 0.0
+    for k in range(degree - 1, -1, -1):
         v = v * s + d
         d = d * s + series.deformation[i, k]
     return d, v / h

@@ -51,12 +51,12 @@ class RowExtremes(NamedTuple):
     polynomial: Array
 
 
-def bound_series(extremes: RowExtremes, i: int, c: Array, terms: int, h: float) -> None:
+def bound_series(extremes: RowExtremes, i: int, c: Array, degree: int, h: float) -> None:
     """Value and first two derivatives of series `i` at the start of a step, and bounds of their changes in
     it.
     """
     zeroth, first, second = abs(c[1]) + abs(c[2]), 2.0 * abs(c[2]), 0.0
-    for k in range(3, terms + 1):
+    for k in range(3, degree + 1):
         zeroth += abs(c[k])
         first += k * abs(c[k])
         second += k * (k - 1) * abs(c[k])
@@ -74,16 +74,16 @@ def may_exceed(extremes: RowExtremes, r: int) -> bool:
     return bool(first + far > extremes.high[r] or first - far < extremes.low[r])
 
 
-def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) -> None:
+def add_derivative(c: Array, degree: int, order: int, factor: float, p: Array) -> None:
     """Add a derivative of a series, times a factor, to a polynomial."""
-    for k in range(terms + 1 - order):
+    for k in range(degree + 1 - order):
         p[k] += factor * derivative_factor(k + order, order, 1.0) * c[k + order]
 
 
 def form_row(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtremes, s: int, r: int) -> None:
     """Write row `r` in step `s` as a polynomial into the work space."""
-    p, terms, n = extremes.polynomial[POLYNOMIAL], envelope.terms[s], envelope.coefs.shape[1]
-    for k in range(terms + 1):
+    p, degree, n = extremes.polynomial[POLYNOMIAL], envelope.degree[s], envelope.coefs.shape[1]
+    for k in range(degree + 1):
         p[k] = 0.0
     p[0] = extremes.constant[r]
     for q in range(extremes.pointers[r], extremes.pointers[r + 1]):
@@ -91,23 +91,23 @@ def form_row(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtremes, s:
         for _ in range(order):
             factor /= envelope.length[s]
         if i < n:
-            add_derivative(envelope.coefs[s, i], terms, order, factor, p)
+            add_derivative(envelope.coefs[s, i], degree, order, factor, p)
         else:
-            add_derivative(inputs[s, i - n], terms, order, factor, p)
+            add_derivative(inputs[s, i - n], degree, order, factor, p)
 
 
 def count_row(envelope: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> None:
     """Update the extremes of row `r` with the polynomial in the work space."""
-    p, terms, begin, h = extremes.polynomial, envelope.terms[s], envelope.begin[s], envelope.length[s]
-    first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, terms)
+    p, degree, begin, h = extremes.polynomial, envelope.degree[s], envelope.begin[s], envelope.length[s]
+    first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, degree)
     if first + far > extremes.high[r]:
-        value, place = highest(p, terms, 1.0, extremes.high[r])
+        value, place = highest(p, degree, 1.0, extremes.high[r])
         if place >= 0.0:
             extremes.high[r], extremes.t_high[r] = value, begin + h * place
     if first - far < extremes.low[r]:
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
-        value, place = highest(p, terms, 1.0, -extremes.low[r])
+        value, place = highest(p, degree, 1.0, -extremes.low[r])
         if place >= 0.0:
             extremes.low[r], extremes.t_low[r] = -value, begin + h * place
 
@@ -128,11 +128,11 @@ def find_extremes(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtreme
         0.
     """
     for s in range(envelope.kept[STEPS]):
-        n, terms, h = envelope.coefs.shape[1], envelope.terms[s], envelope.length[s]
+        n, degree, h = envelope.coefs.shape[1], envelope.degree[s], envelope.length[s]
         for i in range(n):
-            bound_series(extremes, i, envelope.coefs[s, i], terms, h)
+            bound_series(extremes, i, envelope.coefs[s, i], degree, h)
         for j in range(inputs.shape[1]):
-            bound_series(extremes, n + j, inputs[s, j], terms, h)
+            bound_series(extremes, n + j, inputs[s, j], degree, h)
         for r in range(len(extremes.high)):
             if may_exceed(extremes, r):
                 form_row(envelope, inputs, extremes, s, r)

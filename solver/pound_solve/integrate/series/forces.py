@@ -28,7 +28,7 @@ def has_series(series: Series, i: int) -> bool:
     return contact or series.smooth.index_of[i] >= 0 or is_fast(series.viscous, i)
 
 
-def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
+def copy_force(series: Series, degree: int, i: int, sign: float, out: Array) -> None:
     """Put `sign` times the series of the force of law `i`, which has one, into `out`."""
     rigid, curved, friction = (
         series.rigid.index_of[i],
@@ -36,9 +36,9 @@ def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> N
         series.friction.index_of[i],
     )
     smooth, viscous = series.smooth.index_of[i], series.viscous.index_of[i]
-    for k in range(terms + 1):
+    for k in range(degree + 1):
         out[k] = 0.0
-    for k in range(terms - 1):
+    for k in range(degree - 1):
         if rigid >= 0:
             out[k] = sign * series.rigid.force[rigid, k]
         elif curved >= 0:
@@ -51,46 +51,46 @@ def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> N
             out[k] = sign * series.friction.force[friction, k]
 
 
-def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: Array) -> None:
+def whole_force(laws: Laws, series: Series, degree: int, h: float, i: int, out: Array) -> None:
     """Put the series of the force of law `i` into `out`, all dashpots included."""
     tangent = laws.tangent
     smooth, d = series.smooth, series.deformation[i]
     r, damping = smooth.index_of[i], tangent.damping[i]
     if has_series(series, i):
-        copy_force(series, terms, i, 1.0, out)
+        copy_force(series, degree, i, 1.0, out)
         if r >= 0:
-            for k in range(terms - 1):
+            for k in range(degree - 1):
                 out[k] += damping * (k + 1) / h * d[k + 1] + dashpot_remainder(
                     laws.definition, smooth, r, k, h
                 )
         return
     acts = 1.0 if series.curved.index_of[i] < 0 else 0.0  # which presses nothing now
-    for k in range(terms + 1):
+    for k in range(degree + 1):
         out[k] = acts * tangent.stiffness[i] * d[k]
     out[0] += acts * tangent.offset[i]
     if damping != 0.0:
-        for k in range(terms):
+        for k in range(degree):
             out[k] += acts * damping * (k + 1) / h * d[k + 1]
 
 
-def force_at(force: Array, terms: int, s: float) -> float:
-    """Force at the place `s` of a step with so many `terms`."""
+def force_at(force: Array, degree: int, s: float) -> float:
+    """Force at the place `s` of a step whose series has this `degree`."""
     value = 0.0
-    for k in range(terms - 2, -1, -1):
+    for k in range(degree - 2, -1, -1):
         value = value * s + force[k]
     return value
 
 
-def update_branch_forces(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
+def update_branch_forces(laws: Laws, series: Series, degree: int, s: float, h: float) -> None:
     """Set the offsets of rigid and curved contacts and of friction to their forces at the place `s`."""
-    update_friction(laws, series, terms, s, h)
+    update_friction(laws, series, degree, s, h)
     rigid, curved = series.rigid, series.curved
     for q in range(rigid.n_closed[0]):
         r = rigid.closed[q]
-        laws.tangent.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
+        laws.tangent.offset[rigid.laws[r]] = force_at(rigid.force[r], degree, s)
     for r in range(len(curved.laws)):
         laws.tangent.offset[curved.laws[r]] = (
-            force_at(curved.force[r], terms, s) if curved.phase[r] == PRESSED else 0.0
+            force_at(curved.force[r], degree, s) if curved.phase[r] == PRESSED else 0.0
         )
 
 

@@ -29,8 +29,8 @@ KT, MU, MUD = range(3)  #: among the parameters
 OVERDUE = 1e-9  #: fraction of its terms above which an event function has jumped, as the normal force has
 
 
-def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
-    """Lay out the friction `laws` for series of so many `terms`.
+def allocate(laws: Index, normal: Index, n_laws: int, n_coefs: int) -> Friction:
+    """Lay out the friction `laws` for series of `n_coefs` coefficients.
 
     The laws `normal` have the forces that press.
     """
@@ -40,8 +40,8 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
         normal=normal,
         sliding_direction=np.zeros(len(laws)),
         pressing=np.ones(len(laws), bool),
-        normal_force=np.zeros((len(laws), terms)),
-        force=np.zeros((len(laws), terms)),
+        normal_force=np.zeros((len(laws), n_coefs)),
+        force=np.zeros((len(laws), n_coefs)),
         largest=np.zeros(len(laws)),
     )
 
@@ -57,31 +57,31 @@ def is_sliding(friction: Friction, i: int) -> bool:
     return bool(friction.index_of[i] >= 0 and friction.sliding_direction[friction.index_of[i]] != 0.0)
 
 
-def normal_force_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
-    """Coefficient `k` of the normal force of friction `r`; the inputs have `top` coefficients."""
+def normal_force_term(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: int) -> float:
+    """Coefficient `k` of the normal force of friction `r`."""
     tangent = laws.tangent
     j, curved = series.friction.normal[r], series.curved
     row = curved.index_of[j]
     if row >= 0:
         force: float = curved.force[row, k] if curved.phase[row] == PRESSED else 0.0
         return force
-    linear: float = tangent.stiffness[j] * deformation_term(laws.definition, series, k, top, j)
+    linear: float = tangent.stiffness[j] * deformation_term(laws.definition, series, k, n_powers, j)
     if tangent.damping[j] != 0.0:
-        term = deformation_term(laws.definition, series, k + 1, top, j)
+        term = deformation_term(laws.definition, series, k + 1, n_powers, j)
         linear += tangent.damping[j] * (k + 1) / h * term
     return linear + tangent.offset[j] if k == 0 else linear
 
 
-def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
+def add_friction(laws: Laws, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
     """Add the coefficients `k` of the forces of friction to the right side `new` of the coefficients
-    `k` + 2; the inputs have `top` coefficients.
+    `k` + 2.
     """
     friction = series.friction
     for r in range(len(friction.laws)):
         i = friction.laws[r]
         if laws.state.branch[i] == OPEN:
             continue
-        friction.normal_force[r, k] = normal_force_term(laws, series, r, k, h, top)
+        friction.normal_force[r, k] = normal_force_term(laws, series, r, k, h, n_powers)
         if friction.sliding_direction[r] != 0.0:
             share = (
                 friction.sliding_direction[r] * laws.definition.parameters[i, MUD]
@@ -92,7 +92,7 @@ def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
             add_row(laws.definition.rows, i, -h * h * friction.force[r, k], new)
 
 
-def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
+def update_friction(laws: Laws, series: Series, degree: int, s: float, h: float) -> None:
     """Set the normal forces of the friction laws, and the forces of sliding, to those at the place `s`."""
     state, friction = laws.state, series.friction
     for r in range(len(friction.laws)):
@@ -100,7 +100,7 @@ def update_friction(laws: Laws, series: Series, terms: int, s: float, h: float) 
         if state.branch[i] == OPEN:
             continue
         force, rate = 0.0, 0.0
-        for k in range(terms - 2, -1, -1):
+        for k in range(degree - 2, -1, -1):
             rate = rate * s + force
             force = force * s + friction.normal_force[r, k]
         state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(force, 0.0), rate / h
@@ -130,14 +130,14 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
     return 0 if pressed else RELEASED
 
 
-def lift_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
+def lift_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
     """Instant at which the contact of friction `i` begins to pull, or to press again; law -1 for none."""
     friction, p = series.friction, series.polynomial[POLYNOMIAL]
     r = friction.index_of[i]
     sign = -1.0 if friction.pressing[r] else 1.0
-    for k in range(terms + 1):
-        p[k] = sign * friction.normal_force[r, k] if k < terms - 1 else 0.0
-    at = first_rise(series.polynomial, terms, end, EVENT_TOLERANCE * friction.largest[r])
+    for k in range(degree + 1):
+        p[k] = sign * friction.normal_force[r, k] if k < degree - 1 else 0.0
+    at = first_rise(series.polynomial, degree, end, EVENT_TOLERANCE * friction.largest[r])
     return earlier(no_event(end), i, LIFT, at)
 
 
@@ -147,20 +147,20 @@ def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> Locate
     r, parameters = friction.index_of[i], laws.definition.parameters[i]
     if laws.state.branch[i] == OPEN:
         return no_event(extent.end)
-    terms, h = extent.terms, extent.h
-    first = lift_event(series, terms, extent.end, i)
+    degree, h = extent.degree, extent.h
+    first = lift_event(series, degree, extent.end, i)
     sliding, pressing = friction.sliding_direction[r] != 0.0, 1.0 if friction.pressing[r] else 0.0
     for e in range(1 if sliding else 2):
         sign = friction.sliding_direction[r] if sliding else 1.0 - 2.0 * e
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             p[k] = 0.0
         if sliding:  # the slider would turn back
             scale, share = laws.largest.rate[i], pressing * parameters[MUD] / parameters[KT]
-            for k in range(terms - 2):
+            for k in range(degree - 2):
                 p[k] = (k + 1) / h * (share * friction.normal_force[r, k + 1] - sign * d[i, k + 1])
         else:  # the spring reaches the limit
             scale = parameters[KT] * laws.largest.deformation[i] + parameters[MU] * friction.largest[r]
-            for k in range(terms - 1):
+            for k in range(degree - 1):
                 p[k] = (
                     sign * parameters[KT] * d[i, k]
                     - pressing * parameters[MU] * friction.normal_force[r, k]
@@ -168,6 +168,6 @@ def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> Locate
             p[0] -= sign * parameters[KT] * laws.state.internal[i, ANCHOR]
         if p[0] > OVERDUE * scale:
             return LocatedEvent(i, e, 0.0)
-        at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)
+        at = first_rise(series.polynomial, degree, first.time, EVENT_TOLERANCE * scale)
         first = earlier(first, i, e, at)
     return first

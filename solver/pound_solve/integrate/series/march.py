@@ -37,8 +37,8 @@ from pound_solve.integrate.series.branches import (
 from pound_solve.integrate.series.curved import change_phase
 from pound_solve.integrate.series.envelope_buffers import has_room, is_full, keep_step
 from pound_solve.integrate.series.expansion import (
+    MAX_DEGREE,
     MAX_GROWTH,
-    MAX_TERMS,
     dot,
     evaluate_motion,
     expand_series,
@@ -75,7 +75,7 @@ def update_displacement_scale(laws: Laws, series: Series, extent: Extent) -> Non
             far = 0.0
             for q in range(rows.pointers[i], rows.pointers[i + 1]):
                 x, at = 0.0, rows.columns[q]
-                for k in range(extent.terms, -1, -1):
+                for k in range(extent.degree, -1, -1):
                     x = x * extent.end + motion[k, at]
                 far += abs(rows.values[q]) * max(abs(x), abs(motion[0, at]))
             laws.largest.deformation[i] = max(laws.largest.deformation[i], far)
@@ -83,11 +83,11 @@ def update_displacement_scale(laws: Laws, series: Series, extent: Extent) -> Non
 
 def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) -> None:
     """Set the present motion and the state of the laws to those at the end of a step."""
-    largest, terms, h, end = laws.largest, extent.terms, extent.h, extent.end
-    evaluate_motion(series.motion, terms, end, h, 0, now.displacement)
-    evaluate_motion(series.motion, terms, end, h, 1, now.velocity)
+    largest, degree, h, end = laws.largest, extent.degree, extent.h, extent.end
+    evaluate_motion(series.motion, degree, end, h, 0, now.displacement)
+    evaluate_motion(series.motion, degree, end, h, 1, now.velocity)
     for i in range(len(laws.definition.rule)):
-        d, v = law_at(series, terms, end, h, i)
+        d, v = law_at(series, degree, end, h, i)
         if is_closed(series.rigid, i):
             d, v = laws.state.entry_deformation[i], 0.0
         if is_sliding(series.friction, i):  # its work is added up
@@ -95,7 +95,7 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
         laws.now.deformation[i], laws.now.rate[i] = d, v
         largest.deformation[i] = max(largest.deformation[i], abs(d))
         largest.rate[i] = max(largest.rate[i], abs(v))
-    update_branch_forces(laws, series, terms, end, h)
+    update_branch_forces(laws, series, degree, end, h)
     count_largest(laws.tangent, series)
 
 
@@ -205,12 +205,12 @@ def step_to_goal(
             if why != DONE:
                 return why
         if is_implicit(series):
-            terms, fit = expand_implicit(sim, series, piece, h)
+            degree, fit = expand_implicit(sim, series, piece, h)
             least, room = 1.0, 1.0
         else:
-            terms, fit = expand_series(sim, series, piece, h)
+            degree, fit = expand_series(sim, series, piece, h)
             # terms that were not needed make room for a longer step
-            least, room = MIN_PART, MAX_TERMS / terms
+            least, room = MIN_PART, MAX_DEGREE / degree
         if not fit >= least:  # terms far too large say nothing about the motion
             shorten_step(lengths, h, fit)
             pause -= 1
@@ -220,7 +220,7 @@ def step_to_goal(
             return STEP_TOO_SHORT
         whole = end == 1.0 and h == goal - t
         lengths.next = max(h * min(fit * room, MAX_GROWTH), lengths.next if end == 1.0 else 0.0)
-        searched = Extent(t, h, terms, end)
+        searched = Extent(t, h, degree, end)
         update_displacement_scale(laws, series, searched)
         event = first_event(laws, series, searched)
         at = event.time
@@ -228,7 +228,7 @@ def step_to_goal(
             shorten_step(lengths, h, MIN_SHORTENING)
             pause -= 1
             continue
-        take_step(sim, rules, series, piece, Extent(t, h, terms, at))
+        take_step(sim, rules, series, piece, Extent(t, h, degree, at))
         if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)

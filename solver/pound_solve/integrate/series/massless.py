@@ -182,7 +182,7 @@ def solve_order(massless: Massless, which: int) -> None:
         x[j] = t
 
 
-def balance_forces(series: Series, k: int, top: int, which: int) -> None:
+def balance_forces(series: Series, k: int, n_powers: int, which: int) -> None:
     """Right sides for the unknowns of one order: loads less the forces of K and of the laws, with the parts
     of smooth laws and dampers beyond their tangents, at the coefficients `k`.
     """
@@ -190,9 +190,9 @@ def balance_forces(series: Series, k: int, top: int, which: int) -> None:
     members, x = massless.members[which], massless.right_side
     for q in range(massless.counts[which]):
         x[members[q]] = -row_product(springs.rows, massless.unknown[members[q]], c)
-    if k < top:
+    if k < n_powers:
         for q in range(massless.counts[which]):
-            x[members[q]] += load_term(springs, series, k, top, massless.unknown[members[q]])
+            x[members[q]] += load_term(springs, series, k, n_powers, massless.unknown[members[q]])
     smooth = series.smooth
     for r in range(len(smooth.laws)):
         n = massless.index_of_law[smooth.laws[r]]
@@ -205,17 +205,19 @@ def balance_forces(series: Series, k: int, top: int, which: int) -> None:
             add_row(massless.rows, n, -viscous.remainder[r, k], x)
 
 
-def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
+def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` > 0 of the unknowns of order one."""
     massless, c, x = series.massless, series.motion, series.massless.right_side
     members = massless.members[DAMPING]
-    balance_forces(series, k - 1, top, DAMPING)
+    balance_forces(series, k - 1, n_powers, DAMPING)
     for q in range(massless.counts[DAMPING]):
         x[members[q]] -= k / h * row_product(massless.damping, members[q], c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
         if massless.index_of_law[i] >= 0:
-            force = k / h * laws.tangent.damping[i] * deformation_term(laws.definition, series, k, top, i)
+            force = (
+                k / h * laws.tangent.damping[i] * deformation_term(laws.definition, series, k, n_powers, i)
+            )
             add_row(massless.rows, massless.index_of_law[i], -force, x)
     for r in range(len(series.smooth.laws)):
         n = massless.index_of_law[series.smooth.laws[r]]
@@ -226,7 +228,7 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
         c[k, massless.unknown[members[q]]] = x[members[q]] * (h / k)
 
 
-def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: int) -> None:
+def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` of the unknowns without mass (see the module's head), which must be zero
     before for `k` > 1.
     """
@@ -236,21 +238,21 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
             i = massless.unknown[n]
             c[k, i] = step.now.displacement[i] if k == 0 and massless.damped[n] else 0.0
     if k > 0 and massless.counts[DAMPING] > 0:
-        add_damped(laws, series, k, h, top)
-    balance_forces(series, k, top, STIFFNESS)
+        add_damped(laws, series, k, h, n_powers)
+    balance_forces(series, k, n_powers, STIFFNESS)
     solve_order(massless, STIFFNESS)
     members = massless.members[STIFFNESS]
     for q in range(massless.counts[STIFFNESS]):
         c[k, massless.unknown[members[q]]] = x[members[q]]
 
 
-def joints_jump(laws: Laws, series: Series, top: int) -> bool:
-    """Whether the laws at joints without mass deform instantly; the inputs have `top` coefficients."""
+def joints_jump(laws: Laws, series: Series, n_powers: int) -> bool:
+    """Whether the laws at joints without mass deform instantly."""
     massless, most, far = series.massless, 0.0, 0.0
     for i in massless.laws:
         d = laws.now.deformation[i]
         most = max(most, abs(d), laws.largest.deformation[i])
-        far = max(far, abs(deformation_term(laws.definition, series, 0, top, i) - d))
+        far = max(far, abs(deformation_term(laws.definition, series, 0, n_powers, i) - d))
     return far > DEFORMATION_JUMP * most
 
 

@@ -27,7 +27,7 @@ from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.recording import count_extreme
 from pound_solve.integrate.kernels.state import LinearSystem, Piece, Simulation, Step
 from pound_solve.integrate.series.envelope_buffers import keep_interval
-from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, expand_inputs
+from pound_solve.integrate.series.expansion import MAX_DEGREE, UNCHECKED_TERMS, dot, expand_inputs
 from pound_solve.integrate.series.state import Extent, Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
 from pound_solve.integrate.tracker import TrackedExtremes
@@ -179,9 +179,9 @@ def next_powers(re: Array, im: Array, turn: Array, share: float) -> tuple[float,
 
 def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> int:
     """Power series of a followed quantity over a cell; return its highest power, 0 if that is too high."""
-    for k in range(MAX_TERMS + 1):
+    for k in range(MAX_DEGREE + 1):
         p[k] = 0.0
-    p[0], terms = modal.values[cell, i], UNCHECKED_TERMS
+    p[0], degree = modal.values[cell, i], UNCHECKED_TERMS
     for b in range(len(modal.counts)):
         at, count = modal.index_of[b, i], modal.counts[b, MODES]
         if at < 0:
@@ -199,12 +199,12 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
         k, tail = 0, first
         while tail > SERIES_ROUNDING * first or k < fastest:
             k += 1
-            if k > MAX_TERMS:
+            if k > MAX_DEGREE:
                 return 0
             term, tail = next_powers(re[:count], im[:count], turn, 1.0 / k)
             p[k] += term
-        terms = max(terms, k)
-    return terms
+        degree = max(degree, k)
+    return degree
 
 
 def may_change(events: BranchEvents, modal: Modal, cell: int, i: int) -> bool:
@@ -228,8 +228,8 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
     for cell in range(cells):
         for i in range(len(laws.definition.rule)):
             if may_change(laws.events, modal, cell, i):
-                terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
-                if terms == 0 or event_of(laws, series, Extent(t + cell * h, h, terms, 1.0), i).law >= 0:
+                degree = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
+                if degree == 0 or event_of(laws, series, Extent(t + cell * h, h, degree, 1.0), i).law >= 0:
                     return False
     return True
 
@@ -273,18 +273,18 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
             if exceeds_peaks(extremes, outputs + i, low, high) or exceeds_peaks(
                 extremes, force, least, most
             ):
-                terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
-                if terms == 0:
+                degree = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
+                if degree == 0:
                     return False
-                track_law(laws, step, series, Extent(t + cell * h, h, terms, 1.0), outputs, i)
+                track_law(laws, step, series, Extent(t + cell * h, h, degree, 1.0), outputs, i)
         for i in range(outputs):
             low, high = cell_bounds(modal, cell, n_laws + i)
             if exceeds_peaks(extremes, i, low, high):
                 p = series.polynomial[POLYNOMIAL]
-                terms = expand_in_cell(modal, cell, n_laws + i, n_inputs, p)
-                if terms == 0:
+                degree = expand_in_cell(modal, cell, n_laws + i, n_inputs, p)
+                if degree == 0:
                     return False
-                count_crest(laws, step, series, Extent(t + cell * h, h, terms, 1.0), i, -1)
+                count_crest(laws, step, series, Extent(t + cell * h, h, degree, 1.0), i, -1)
     return True
 
 

@@ -24,8 +24,8 @@ from pound_solve.integrate.series.state import Rigid, Series
 from pound_solve.numerics.types import Flags, Index
 
 
-def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> Rigid:
-    """Lay out the rigid contacts for series of so many `terms`, the unknowns in an `order`."""
+def allocate(contacts: RigidContacts, order: Index, n_laws: int, n_coefs: int) -> Rigid:
+    """Lay out the rigid contacts for series of `n_coefs` coefficients, the unknowns in an `order`."""
     n, laws = len(contacts.laws), np.array(contacts.laws, np.int64)
     return Rigid(
         laws=laws,
@@ -37,7 +37,7 @@ def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> 
         is_closed=np.zeros(n, bool),
         inverse=np.zeros((n, n)),
         violation=np.zeros(n),
-        force=np.zeros((n, terms)),
+        force=np.zeros((n, n_coefs)),
         largest=np.zeros(n),
     )
 
@@ -55,16 +55,13 @@ def is_closed(rigid: Rigid, law: int) -> bool:
     return bool(rigid.index_of[law] >= 0 and rigid.is_closed[rigid.index_of[law]])
 
 
-def hold_contacts(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
-    """Correct the coefficients `k` of the unknowns with mass so that closed contacts stay closed.
-
-    The inputs have `top` coefficients.
-    """
+def hold_contacts(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
+    """Correct the coefficients `k` of the unknowns with mass so that closed contacts stay closed."""
     rigid, c = series.rigid, series.motion[k]
     n = rigid.n_closed[0]
     for q in range(n):
         r = rigid.closed[q]
-        off = deformation_term(laws.definition, series, k, top, rigid.laws[r])
+        off = deformation_term(laws.definition, series, k, n_powers, rigid.laws[r])
         rigid.violation[q] = off - rigid.gap[r] if k == 0 else off
     for q in range(n):
         r, x = rigid.closed[q], 0.0

@@ -120,25 +120,25 @@ def elastic_force(linear: LinearSystem, series: Series, u: Array, out: Array) ->
     add_product(springs, u, out)
 
 
-def expand_loads(series: Series, top: int) -> None:
-    """Coefficients of the inputs in Laguerre's polynomials; they have `top` powers."""
+def expand_loads(series: Series, n_powers: int) -> None:
+    """Coefficients of the inputs in Laguerre's polynomials; they have `n_powers` powers."""
     laguerre = series.single_pole
     for j in range(laguerre.inputs.shape[1]):
         for n in range(len(laguerre.inputs)):
             laguerre.inputs[n, j] = 0.0
-        for k in range(min(top, len(laguerre.monomials))):
+        for k in range(min(n_powers, len(laguerre.monomials))):
             for n in range(k + 1):
                 laguerre.inputs[n, j] += laguerre.monomials[k, n] * series.inputs[k, j]
 
 
-def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array) -> None:
+def add_loads(laws: Laws, series: Series, n: int, h: float, n_powers: int, out: Array) -> None:
     """Add the coefficient `n` of the loads, less the next one, times gamma h."""
     laguerre, springs = series.single_pole, series.springs
     scale = laguerre.gamma * h
     if n == 0:
         for i in range(len(out)):
             out[i] += scale * springs.constant[i]
-    if n >= top:
+    if n >= n_powers:
         return
     for j in range(laguerre.inputs.shape[1]):
         load = scale * (laguerre.inputs[n, j] - laguerre.inputs[n + 1, j])
@@ -147,7 +147,7 @@ def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array
                 out[i] += springs.inputs[j, i] * load
     for q in range(springs.n_dashpots[0]):  # rates of moved supports: the coefficients k + 1 of a power k
         law, rate = springs.dashpots[q], 0.0
-        for k in range(min(top - 1, len(laguerre.monomials))):
+        for k in range(min(n_powers - 1, len(laguerre.monomials))):
             change = laguerre.monomials[k, n] - (laguerre.monomials[k, n + 1] if n + 1 <= k else 0.0)
             for j in range(laguerre.inputs.shape[1]):
                 rate += change * (k + 1) / h * laws.definition.inputs[law, j] * series.inputs[k + 1, j]
@@ -179,7 +179,7 @@ def match_initial_velocity(series: Series, velocity: Array, h: float) -> None:
             term[i] += share * defect[i]
 
 
-def find_terms(sim: Simulation, series: Series, h: float, top: int) -> float:
+def find_terms(sim: Simulation, series: Series, h: float, n_powers: int) -> float:
     """Find the terms of the series from the present state on; return twice the energy of that state."""
     linear, step = sim.linear, sim.step
     laguerre, now, present = series.single_pole, step.now, 0.0
@@ -197,7 +197,7 @@ def find_terms(sim: Simulation, series: Series, h: float, top: int) -> float:
             present = abs(kinetic) + abs(dot(u[0], force))
         for i in range(len(delta)):
             delta[i] -= scale * force[i]
-        add_loads(sim.laws, series, n, h, top, delta)
+        add_loads(sim.laws, series, n, h, n_powers, delta)
         solve(linear.pattern, step.factors[WHOLE], step.pivots[WHOLE], delta)
         for i in range(len(delta)):
             u[n + 1, i] = -scale * delta[i]
@@ -223,7 +223,7 @@ def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> 
 
     Returns
     -------
-    terms : int
+    degree : int
         Its highest power.
     fit : float
         Multiple of the step that would be right; below 1 the step must be taken again, shorter.  NaN where
@@ -231,7 +231,7 @@ def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> 
     """
     lengths = series.lengths
     run = sim.run
-    laguerre, top = series.single_pole, len(piece.coefs)
+    laguerre, n_powers = series.single_pole, len(piece.coefs)
     last = len(laguerre.basis) - 1
     if run.factor_length != h:
         run.factor_length = -1.0
@@ -241,12 +241,12 @@ def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> 
         run.factor_length = h
         lengths.factored += 1
     expand_inputs(series, piece, run.time, h)
-    expand_loads(series, top)
-    present = find_terms(sim, series, h, top)
+    expand_loads(series, n_powers)
+    present = find_terms(sim, series, h, n_powers)
     write_in_powers(series)
     match_initial_velocity(series, sim.step.now.velocity, h)
     lengths.carried = TERMS_OF_WORK
-    expand_deformations(sim.laws, series, last, top)
+    expand_deformations(sim.laws, series, last, n_powers)
     most = lengths.kinetic
     if most == 0.0:  # from rest
         most = energy(sim.linear, series, 1)

@@ -46,8 +46,8 @@ MAX_POWER_BITS = 7
 W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.constants`
 
 
-def allocate(smooth: Flags, terms: int) -> Smooth:
-    """Lay out the `smooth` ones of the laws for series of so many `terms`."""
+def allocate(smooth: Flags, n_coefs: int) -> Smooth:
+    """Lay out the `smooth` ones of the laws for series of `n_coefs` coefficients."""
     laws = np.flatnonzero(smooth)
     n = len(laws)
     return Smooth(
@@ -57,11 +57,11 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
         bent=np.zeros(n, bool),
         low=np.zeros(n),
         high=np.zeros(n),
-        share=np.zeros((n, 2 * MAX_POWER_BITS, terms)),
-        power=np.zeros((n, terms)),
-        part=np.zeros((n, terms)),
-        remainder=np.zeros((n, terms)),
-        force=np.zeros((n, terms)),
+        share=np.zeros((n, 2 * MAX_POWER_BITS, n_coefs)),
+        power=np.zeros((n, n_coefs)),
+        part=np.zeros((n, n_coefs)),
+        remainder=np.zeros((n, n_coefs)),
+        force=np.zeros((n, n_coefs)),
     )
 
 
@@ -135,11 +135,11 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
     return power
 
 
-def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
+def take_term(laws: Laws, series: Series, r: int, k: int, n_powers: int) -> None:
     """Compute the coefficients `k` of deformation, force and power of smooth law `r` from the motion."""
     smooth, i = series.smooth, series.smooth.laws[r]
     constants, share = smooth.constants[r], smooth.share[r]
-    d = deformation_term(laws.definition, series, k, top, i)
+    d = deformation_term(laws.definition, series, k, n_powers, i)
     series.deformation[i, k] = d
     smooth.force[r, k] = laws.tangent.stiffness[i] * d + constants[Q] * smooth.remainder[r, k]
     smooth.part[r, k] = constants[SLOPE] * d + smooth.remainder[r, k]
@@ -155,16 +155,16 @@ def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
         smooth.power[r, k] = power_term(constants[N], share[0, 0], share[0], smooth.power[r], k)
 
 
-def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
+def find_remainders(laws: Laws, series: Series, k: int, n_powers: int) -> None:
     """Compute the coefficients `k` of the smooth laws' parts beyond their tangents, from the motion up to
-    `k` - 1; the inputs have `top` coefficients.
+    `k` - 1.
     """
     smooth = series.smooth
     for r in range(len(smooth.laws)):
         smooth.remainder[r, k] = 0.0
         if k == 0:
             continue
-        take_term(laws, series, r, k - 1, top)
+        take_term(laws, series, r, k - 1, n_powers)
         constants, d = smooth.constants[r], series.deformation[smooth.laws[r]]
         power, part = smooth.power[r], smooth.part[r]
         total = 0.0
@@ -191,11 +191,11 @@ def add_remainders(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> 
         add_row(laws.definition.rows, smooth.laws[r], -h * h * force, new)
 
 
-def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
+def power_defect(smooth: Smooth, r: int, degree: int, s: float) -> float:
     """Relative error of w/y at the place `s` that comes from truncating the series of its power."""
     constants, share = smooth.constants[r], smooth.share[r, 0]
     x, power = 0.0, 0.0
-    for k in range(terms - 1, -1, -1):
+    for k in range(degree - 1, -1, -1):
         x = x * s + share[k]
         power = power * s + smooth.power[r, k]
     whole = (x if is_product(constants[N]) else max(x, 0.0)) ** constants[N]
@@ -203,23 +203,23 @@ def power_defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
 
 
-def smooth_valid_up_to(smooth: Smooth, terms: int, end: float) -> float:
+def smooth_valid_up_to(smooth: Smooth, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the forces are accurate, at most `end`.
 
     Where the series of a power begins with a high term, the last terms do not show its error: this is
     evaluated at the end, too.
     """
     for r in range(len(smooth.laws)):
-        end = right_part(smooth.force[r], terms, end)
+        end = right_part(smooth.force[r], degree, end)
         if smooth.bent[r]:
             at = min(end, 1.0)
-            lacks = power_defect(smooth, r, terms, at)
+            lacks = power_defect(smooth, r, degree, at)
             if not lacks <= POWER_TRUNCATION:
-                end = at * (POWER_TRUNCATION / lacks) ** (1.0 / terms)
+                end = at * (POWER_TRUNCATION / lacks) ** (1.0 / degree)
     return end
 
 
-def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
+def bend_event(series: Series, degree: int, first: LocatedEvent, i: int) -> LocatedEvent:
     """The instant at which smooth law `i` leaves the range in which its series is valid, or the `first`
     event.
     """
@@ -228,11 +228,11 @@ def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> Locat
     for sign in (-1.0, 1.0):
         limit = smooth.low[r] if sign < 0.0 else smooth.high[r]
         if abs(limit) < np.inf:
-            for k in range(terms):
+            for k in range(degree):
                 p[k] = sign * smooth.share[r, 0, k]
             p[0] -= sign * limit
-            p[terms] = 0.0
-            first = earlier(first, i, BENDS, first_rise(series.polynomial, terms, first.time, 0.0))
+            p[degree] = 0.0
+            first = earlier(first, i, BENDS, first_rise(series.polynomial, degree, first.time, 0.0))
     return first
 
 

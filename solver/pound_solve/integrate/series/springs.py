@@ -102,19 +102,19 @@ def add_product(springs: AssembledSprings, x: Array, out: Array) -> None:
         out[springs.row[r]] += row_product(springs.rows, r, x)
 
 
-def load_term(springs: AssembledSprings, series: Series, k: int, top: int, i: int) -> float:
-    """Coefficient `k` of the load on an unknown less the constant forces of laws; the inputs have `top`."""
+def load_term(springs: AssembledSprings, series: Series, k: int, n_powers: int, i: int) -> float:
+    """Coefficient `k` of the load on an unknown less the constant forces of laws."""
     load: float = springs.constant[i] if k == 0 else 0.0
-    if k < top:
+    if k < n_powers:
         for j in range(series.inputs.shape[1]):
             load += springs.inputs[j, i] * series.inputs[k, j]
     return load
 
 
-def deformation_term(definition: LawDefinition, series: Series, k: int, top: int, i: int) -> float:
-    """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
+def deformation_term(definition: LawDefinition, series: Series, k: int, n_powers: int, i: int) -> float:
+    """Coefficient `k` of the deformation of law `i`."""
     d = row_product(definition.rows, i, series.motion[k])
-    if k < top:
+    if k < n_powers:
         for j in range(series.inputs.shape[1]):
             d += definition.inputs[i, j] * series.inputs[k, j]
     return d

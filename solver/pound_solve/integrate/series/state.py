@@ -419,7 +419,7 @@ class EnvelopeBuffers(NamedTuple):
         Steps and intervals that were kept.
     coefs : ndarray, shape (n_steps, n_unknowns + n_laws, TERMS + 1)
         Series of the unknowns and of the forces of the laws, all dashpots included, over the steps taken.
-    terms : ndarray, shape (n_steps,)
+    degree : ndarray, shape (n_steps,)
         Their highest powers; all others are zero.
     begin, length : ndarray, shape (n_steps,)
         Time of the start, and to where the step was taken.
@@ -436,7 +436,7 @@ class EnvelopeBuffers(NamedTuple):
     laws: Index
     kept: Index
     coefs: Array
-    terms: Index
+    degree: Index
     begin: Array
     length: Array
     x: Array
@@ -490,7 +490,7 @@ class Extent(NamedTuple):
         Time at the start of the step.
     h : float
         Length of the step.
-    terms : int
+    degree : int
         Highest power of the series.
     end : float
         Place up to which the step is taken or searched, in lengths of the step.
@@ -498,7 +498,7 @@ class Extent(NamedTuple):
 
     begin: float
     h: float
-    terms: int
+    degree: int
     end: float
 
 

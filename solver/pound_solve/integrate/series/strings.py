@@ -19,30 +19,28 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import ACROSS, AXIAL, LENGTH, N0
 
 
-def allocate(members: int, terms: int) -> Strings:
-    """Lay out so many `members` for series of so many `terms`."""
-    return Strings(*np.zeros((3, members, terms)))
+def allocate(members: int, n_coefs: int) -> Strings:
+    """Lay out so many `members` for series of `n_coefs` coefficients."""
+    return Strings(*np.zeros((3, members, n_coefs)))
 
 
-def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int, top: int) -> float:
-    """Coefficient `k` of quantity `j` of member `c`; the inputs have `top` coefficients."""
+def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int, n_powers: int) -> float:
+    """Coefficient `k` of quantity `j` of member `c`."""
     total = 0.0
     for y in range(members.pointers[c], members.pointers[c + 1]):
         total += members.rows[y, j] * series.motion[k, members.unknown[y]]
-    if k < top:
+    if k < n_powers:
         for i in range(series.inputs.shape[1]):
             total += members.inputs[c, j, i] * series.inputs[k, i]
     return total
 
 
-def add_strings(members: Corotational, series: Series, k: int, h: float, top: int, new: Array) -> None:
-    """Add the coefficients `k` of the strings' forces to the right side `new` of the coefficients `k` + 2;
-    the inputs have `top` coefficients.
-    """
+def add_strings(members: Corotational, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
+    """Add the coefficients `k` of the strings' forces to the right side `new` of the coefficients `k` + 2."""
     strings = series.strings
     for c in range(len(members.parameters)):
-        strings.across[c, k] = quantity_term(members, series, c, ACROSS, k, top)
-        strings.axial[c, k] = quantity_term(members, series, c, AXIAL, k, top)
+        strings.across[c, k] = quantity_term(members, series, c, ACROSS, k, n_powers)
+        strings.axial[c, k] = quantity_term(members, series, c, AXIAL, k, n_powers)
         if k == 0:
             strings.axial[c, 0] += members.parameters[c, N0]
         force = product_term(strings.axial[c], strings.across[c], k) / members.parameters[c, LENGTH]
@@ -51,14 +49,14 @@ def add_strings(members: Corotational, series: Series, k: int, h: float, top: in
             new[members.unknown[y]] -= h * h * members.rows[y, ACROSS] * force
 
 
-def string_power(members: Corotational, series: Series, terms: int, s: float, h: float) -> float:
+def string_power(members: Corotational, series: Series, degree: int, s: float, h: float) -> float:
     """Power that the strings put in at the place `s`; sets the members' transverse forces to those
     there.
     """
     strings, power = series.strings, 0.0
     for c in range(len(members.parameters)):
         y, rate, force = 0.0, 0.0, 0.0
-        for k in range(terms - 2, -1, -1):
+        for k in range(degree - 2, -1, -1):
             y = y * s + strings.across[c, k]
             force = force * s + strings.force[c, k]
             if k > 0:

@@ -149,11 +149,11 @@ class Taylor(KernelEngine):
     def _allocate(self, monitored: MonitoredOutputs, tolerance: float | None) -> state.Series:
         """Arrays of the series, whose parts are empty where nothing in the system needs them."""
         system, laws, o = self.system, self.laws, self.order
-        n, n_inputs, n_laws, terms = (
+        n, n_inputs, n_laws, n_coefs = (
             system.size,
             system.inputs.shape[1],
             len(self.law_springs),
-            expansion.MAX_TERMS + 1,
+            expansion.MAX_DEGREE + 1,
         )
         mass, whole = self.linear.mass.diagonals[0], system.stiffness[np.ix_(o, o)]
         is_curved = np.array([s.law.curved for s in self.law_springs], bool)
@@ -164,43 +164,43 @@ class Taylor(KernelEngine):
         modal = modal_tables.allocate(
             system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), enveloped
         )
-        kept = terms if tolerance is None else single_pole.LAST_TERM + 1
+        kept = n_coefs if tolerance is None else single_pole.LAST_TERM + 1
         return state.Series(
-            motion=np.zeros((terms, n)),
+            motion=np.zeros((n_coefs, n)),
             stiffness_product=np.zeros(n),
             damping_product=np.zeros(n),
             mass_product=np.zeros(n),
-            deformation=np.zeros((n_laws, terms)),
-            inputs=np.zeros((terms, n_inputs)),
-            polynomial=np.zeros(polynomial_roots.room(expansion.MAX_TERMS)),
+            deformation=np.zeros((n_laws, n_coefs)),
+            inputs=np.zeros((n_coefs, n_inputs)),
+            polynomial=np.zeros(polynomial_roots.room(expansion.MAX_DEGREE)),
             inverse=np.divide(1.0, mass, out=np.zeros(n), where=mass > 0.0),
-            gauss=gauss_rules(expansion.MAX_TERMS // expansion.UNCHECKED_TERMS + 1),
+            gauss=gauss_rules(expansion.MAX_DEGREE // expansion.UNCHECKED_TERMS + 1),
             springs=springs.allocate(
                 n, laws.definition.rows, self.linear.inputs, whole if len(self.massless.unknown) else None
             ),
             massless=self.massless,
-            rigid=rigid.allocate(self.contacts, o, n_laws, terms),
-            curved=curved.allocate(is_curved & collides, terms),
+            rigid=rigid.allocate(self.contacts, o, n_laws, n_coefs),
+            curved=curved.allocate(is_curved & collides, n_coefs),
             friction=friction.allocate(
-                laws.friction.coupled, laws.friction.normal_law[laws.friction.coupled], n_laws, terms
+                laws.friction.coupled, laws.friction.normal_law[laws.friction.coupled], n_laws, n_coefs
             ),
-            smooth=smooth.allocate(is_smooth, terms),
-            viscous=viscous.allocate(is_damper, self.massless.index_of_law >= 0, terms),
-            strings=strings.allocate(len(self.members.parameters), terms),
-            damped=self._damped(terms),
+            smooth=smooth.allocate(is_smooth, n_coefs),
+            viscous=viscous.allocate(is_damper, self.massless.index_of_law >= 0, n_coefs),
+            strings=strings.allocate(len(self.members.parameters), n_coefs),
+            damped=self._damped(n_coefs),
             modal=modal,
             envelope=envelope_buffers.allocate(enveloped, self.recorder.enveloped_laws, modal, kept),
             single_pole=single_pole.allocate(n, n_inputs, tolerance),
             lengths=self.lengths,
         )
 
-    def _damped(self, terms: int) -> state.Damped:
+    def _damped(self, n_coefs: int) -> state.Damped:
         """The unknowns that dashpots act on, in the order of elimination."""
         unknown = np.flatnonzero(used_rows(self.system.damping[self.order]))
         damped = self.order[unknown]
         n = len(unknown)
         matrix = allocation.product(self.system.damping[np.ix_(damped, damped)])
-        return state.Damped(unknown, matrix, np.zeros((terms, n)), np.zeros(n), np.zeros(n))
+        return state.Damped(unknown, matrix, np.zeros((n_coefs, n)), np.zeros(n), np.zeros(n))
 
     def _intervals(self) -> Array:
         """Times between which intervals may be taken in modes; none where something acts that modes do not

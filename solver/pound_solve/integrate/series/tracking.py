@@ -29,18 +29,18 @@ from pound_solve.integrate.series.viscous import turn_event
 from pound_solve.laws.automaton import GAP
 
 
-def parting_event(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
+def parting_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
     """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
     r, p = series.rigid.index_of[i], series.polynomial[POLYNOMIAL]
     still = EVENT_TOLERANCE * series.rigid.largest[r]
-    copy_force(series, terms, i, -1.0, p)
+    copy_force(series, degree, i, -1.0, p)
     if p[0] > still:  # the force has jumped
         return LocatedEvent(i, 0, 0.0)
-    at = first_rise(series.polynomial, terms, end, still)
+    at = first_rise(series.polynomial, degree, end, still)
     return earlier(no_event(end), i, 0, at)
 
 
-def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
+def phase_event(laws: Laws, series: Series, degree: int, first: LocatedEvent, i: int) -> LocatedEvent:
     """The instant at which curved contact `i` begins or ceases to have a force, or the `first` event."""
     curved, r = series.curved, series.curved.index_of[i]
     phase, d, p = curved.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
@@ -48,18 +48,18 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
         return first
     sign, overlap = 1.0, touch_overlap(laws, i)
     if phase == APART:  # where nothing has moved yet, the step tells how far
-        overlap = max(overlap, NO_OVERLAP * size(series.deformation, i, terms))
+        overlap = max(overlap, NO_OVERLAP * size(series.deformation, i, degree))
     else:
         sign = -1.0
-    for k in range(terms + 1):
+    for k in range(degree + 1):
         p[k] = sign * d[k]
     p[0] -= sign * (laws.definition.parameters[i, GAP] + overlap)
-    at = first_rise(series.polynomial, terms, first.time, 0.0)
+    at = first_rise(series.polynomial, degree, first.time, 0.0)
     first = earlier(first, i, TOUCHES if phase == APART else PARTS, at)
     if phase == RELEASED or (phase == PRESSED and curved.constants[r, PULLS] == 0.0):
         sign = 1.0 if phase == RELEASED else -1.0
-        copy_force(series, terms, i, sign, p)
-        at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * curved.largest[r])
+        copy_force(series, degree, i, sign, p)
+        at = first_rise(series.polynomial, degree, first.time, EVENT_TOLERANCE * curved.largest[r])
         first = earlier(first, i, PRESSES_AGAIN if phase == RELEASED else RELEASES, at)
     return first
 
@@ -67,34 +67,34 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
 def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
     """The first event of law `i` in a step, in lengths of the step, see `none`."""
     coefficients = laws.events.coefficients
-    terms, h, end = extent.terms, extent.h, extent.end
+    degree, h, end = extent.degree, extent.h, extent.end
     if series.friction.index_of[i] >= 0:
         return friction_event(laws, series, extent, i)
     first, d, p = no_event(end), series.deformation, series.polynomial[POLYNOMIAL]
-    far, faster = size(d, i, terms), rate_size(d, i, terms) / h
+    far, faster = size(d, i, degree), rate_size(d, i, degree) / h
     for e in range(laws.events.n_events[i]):
         on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
         if on_d == 0.0 and on_v == 0.0:
             continue
         if is_closed(series.rigid, i):
-            return parting_event(series, terms, end, i)
+            return parting_event(series, degree, end, i)
         scale = abs(on_d) * laws.largest.deformation[i] + abs(on_v) * laws.largest.rate[i] + abs(constant)
         most = on_d * d[i, 0] + on_v * d[i, 1] / h + constant + abs(on_d) * far + abs(on_v) * faster
         if most <= EVENT_TOLERANCE * scale:  # most laws are far from all their events
             continue
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             p[k] = on_d * d[i, k]
         p[0] += constant
         if on_v != 0.0:
-            for k in range(terms):
+            for k in range(degree):
                 p[k] += on_v * (k + 1) / h * d[i, k + 1]
-        at = first_rise(series.polynomial, terms, first.time, EVENT_TOLERANCE * scale)
+        at = first_rise(series.polynomial, degree, first.time, EVENT_TOLERANCE * scale)
         first = earlier(first, i, e, at)
     if series.smooth.index_of[i] >= 0:
-        return bend_event(series, terms, first, i)
+        return bend_event(series, degree, first, i)
     if series.viscous.index_of[i] >= 0:
-        return turn_event(series, terms, h, first, i)
-    return phase_event(laws, series, terms, first, i) if series.curved.index_of[i] >= 0 else first
+        return turn_event(series, degree, h, first, i)
+    return phase_event(laws, series, degree, first, i) if series.curved.index_of[i] >= 0 else first
 
 
 def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
@@ -107,7 +107,7 @@ def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
     for late in range(2):
         for i in range(len(laws.definition.rule)):
             if laws.definition.contact[i] == (late == 1):
-                before = Extent(extent.begin, extent.h, extent.terms, first.time)
+                before = Extent(extent.begin, extent.h, extent.degree, first.time)
                 event = event_of(laws, series, before, i)
                 if event.law >= 0 and (first.law < 0 or event.time < first.time):
                     first = event
@@ -120,31 +120,31 @@ def count_crest(laws: Laws, step: Step, series: Series, extent: Extent, i: int, 
     """
     collision = laws.collision
     extremes, p = step.extremes, series.polynomial
-    t, h, terms, end = extent
+    t, h, degree, end = extent
     known = extremes.high[i]
     contact = law >= 0 and laws.definition.contact[law]
     if contact:
         known = min(known, collision.peak_force[law])
-    high, place = highest(p, terms, end, known)
+    high, place = highest(p, degree, end, known)
     if high > extremes.high[i]:
         extremes.high[i], extremes.t_high[i] = high, t + h * place
     if contact and high > collision.peak_force[law]:
         collision.peak_force[law], collision.peak_time[law] = high, t + h * place
-    for k in range(terms + 1):
+    for k in range(degree + 1):
         p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
-    high, place = highest(p, terms, end, -extremes.low[i])
+    high, place = highest(p, degree, end, -extremes.low[i])
     if place >= 0.0:
         extremes.low[i], extremes.t_low[i] = -high, t + h * place
 
 
-def track_outputs(sim: Simulation, series: Series, extent: Extent, top: int) -> None:
+def track_outputs(sim: Simulation, series: Series, extent: Extent, n_powers: int) -> None:
     """Count the monitored outputs over a step into the peaks."""
-    linear, terms = sim.linear, extent.terms
+    linear, degree = sim.linear, extent.degree
     p = series.polynomial[POLYNOMIAL]
     for i in range(len(linear.monitored_constants)):
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             p[k] = row_product(linear.monitored, i, series.motion[k])
-        for k in range(min(top, terms + 1)):
+        for k in range(min(n_powers, degree + 1)):
             for j in range(series.inputs.shape[1]):
                 p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]
         p[0] += linear.monitored_constants[i]
@@ -154,17 +154,17 @@ def track_outputs(sim: Simulation, series: Series, extent: Extent, top: int) -> 
 def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int, i: int) -> None:
     """Count the deformation and the force of law `i` over a step into the peaks, from peak `first` on."""
     definition, tangent = laws.definition, laws.tangent
-    terms = extent.terms
+    degree = extent.degree
     extremes, d, p = step.extremes, series.deformation, series.polynomial[POLYNOMIAL]
-    begin, far = d[i, 0], size(d, i, terms)
+    begin, far = d[i, 0], size(d, i, degree)
     if begin + far > extremes.high[first + i] or begin - far < extremes.low[first + i]:
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             p[k] = d[i, k]
         count_crest(laws, step, series, extent, first + i, -1)
     peak = first + len(definition.rule) + i
     stiffness, damping = tangent.stiffness[i], tangent.damping[i] if definition.viscous[i] else 0.0
     if has_series(series, i):
-        copy_force(series, terms, i, 1.0, p)
+        copy_force(series, degree, i, 1.0, p)
         count_crest(laws, step, series, extent, peak, i)
         return
     far *= abs(stiffness)
@@ -173,11 +173,11 @@ def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int
         high = min(high, laws.collision.peak_force[i])
     force = tangent.offset[i] + stiffness * begin
     if damping != 0.0 or force + far > high or force - far < extremes.low[peak]:
-        for k in range(terms + 1):
+        for k in range(degree + 1):
             p[k] = stiffness * d[i, k]
         p[0] += tangent.offset[i]
         if damping != 0.0:
-            for k in range(terms):
+            for k in range(degree):
                 p[k] += damping * (k + 1) / extent.h * d[i, k + 1]
         count_crest(laws, step, series, extent, peak, i)
 

@@ -42,9 +42,9 @@ RATE_ROUNDING = 1e-15  #: fraction of the velocities whose difference a rate is
 LIMIT, RATE = 2, 3  #: columns of `Viscous.constants`, beside K and N
 
 
-def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
-    """Lay out the `viscous` ones of the laws for series of so many `terms`; the laws `light` hold unknowns
-    without mass.
+def allocate(viscous: Flags, light: Flags, n_coefs: int) -> Viscous:
+    """Lay out the `viscous` ones of the laws for series of `n_coefs` coefficients; the laws `light` hold
+    unknowns without mass.
     """
     laws = np.flatnonzero(viscous)
     n = len(laws)
@@ -54,9 +54,9 @@ def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
         constants=np.zeros((n, 4)),
         light=np.flatnonzero(light[laws]),
         fast=np.zeros(n, bool),
-        rate=np.zeros((n, terms)),
-        remainder=np.zeros((n, terms)),
-        force=np.zeros((n, terms)),
+        rate=np.zeros((n, n_coefs)),
+        remainder=np.zeros((n, n_coefs)),
+        force=np.zeros((n, n_coefs)),
     )
 
 
@@ -98,11 +98,11 @@ def is_fast(viscous: Viscous, i: int) -> bool:
     return bool(viscous.index_of[i] >= 0 and viscous.fast[viscous.index_of[i]])
 
 
-def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> None:
+def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` of rate and force of damper `r` from the motion."""
     viscous, i = series.viscous, series.viscous.laws[r]
     constants, sign = viscous.constants[r], 1.0 if viscous.constants[r, K] > 0.0 else -1.0
-    x = sign * (k + 1) / h * deformation_term(laws.definition, series, k + 1, top, i)
+    x = sign * (k + 1) / h * deformation_term(laws.definition, series, k + 1, n_powers, i)
     if k == 0:
         x = max(x, constants[LIMIT])
         viscous.force[r, 0] = constants[K] * x ** constants[N]
@@ -111,10 +111,8 @@ def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
     viscous.rate[r, k] = x
 
 
-def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
-    """Compute the coefficients `k` of the dampers' forces beyond their tangents, from the motion up to `k`;
-    the inputs have `top` coefficients.
-    """
+def find_drags(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
+    """Compute the coefficients `k` of the dampers' forces beyond their tangents, from the motion up to `k`."""
     viscous = series.viscous
     for r in range(len(viscous.laws)):
         if not viscous.fast[r]:
@@ -122,7 +120,7 @@ def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
         if k == 0:
             viscous.remainder[r, 0] = 0.0
             continue
-        take_rate(laws, series, r, k - 1, h, top)
+        take_rate(laws, series, r, k - 1, h, n_powers)
         n, x, force, total = viscous.constants[r, N], viscous.rate[r], viscous.force[r], 0.0
         for j in range(1, k):
             total += (n * j - (k - j)) * x[j] * force[k - j]
@@ -138,20 +136,20 @@ def add_drags(definition: LawDefinition, viscous: Viscous, k: int, h: float, new
             add_row(definition.rows, viscous.laws[r], -h * h * viscous.remainder[r, k], new)
 
 
-def drags_valid_up_to(viscous: Viscous, terms: int, end: float) -> float:
+def drags_valid_up_to(viscous: Viscous, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the dampers' forces, and the rates of those that hold
     unknowns without mass, are accurate, at most `end`.
     """
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
-            end = right_part(viscous.force[r], terms, end)
+            end = right_part(viscous.force[r], degree, end)
     for r in viscous.light:
         if viscous.fast[r]:
-            end = right_part(viscous.rate[r], terms, end)
+            end = right_part(viscous.rate[r], degree, end)
     return end
 
 
-def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int) -> LocatedEvent:
+def turn_event(series: Series, degree: int, h: float, first: LocatedEvent, i: int) -> LocatedEvent:
     """The instant at which the rate of damper `i` passes the limit of its power series, or the `first`
     event.
     """
@@ -161,11 +159,11 @@ def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int
     if k == 0.0 or limit == np.inf:
         return first
     sign = -1.0 if viscous.fast[r] else 1.0
-    for q in range(terms):
+    for q in range(degree):
         p[q] = (sign if k > 0.0 else -sign) * (q + 1) / h * d[q + 1]
-    p[terms] = 0.0
+    p[degree] = 0.0
     p[0] -= sign * (1.0 + sign * DEAD_BAND) * limit
-    return earlier(first, i, TURNS, first_rise(series.polynomial, terms, first.time, 0.0))
+    return earlier(first, i, TURNS, first_rise(series.polynomial, degree, first.time, 0.0))
 
 
 def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:

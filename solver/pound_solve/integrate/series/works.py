@@ -7,7 +7,7 @@ from pound_solve.integrate.kernels.products import evaluate_inputs, multiply
 from pound_solve.integrate.kernels.state import LinearSystem, Piece, Simulation
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
 from pound_solve.integrate.series.curved import APART
-from pound_solve.integrate.series.expansion import MAX_TERMS, UNCHECKED_TERMS, dot, evaluate_motion, law_at
+from pound_solve.integrate.series.expansion import MAX_DEGREE, UNCHECKED_TERMS, dot, evaluate_motion, law_at
 from pound_solve.integrate.series.forces import update_branch_forces
 from pound_solve.integrate.series.friction import is_sliding
 from pound_solve.integrate.series.state import Extent, Series
@@ -21,7 +21,7 @@ def add_law_losses(
     """Add up the losses in the laws' dashpots and the contacts' impulses at the Gauss point `s`."""
     laws, works, moved = sim.laws, sim.works, len(sim.linear.support_damping) > 0
     definition, tangent = laws.definition, laws.tangent
-    update_branch_forces(laws, series, extent.terms, s, extent.h)
+    update_branch_forces(laws, series, extent.degree, s, extent.h)
     for i in range(len(definition.rule)):
         drag, curved = tangent.damping[i], series.curved.index_of[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
@@ -29,7 +29,7 @@ def add_law_losses(
         curves = overlaps or series.viscous.index_of[i] >= 0
         sliding = is_sliding(series.friction, i)
         if drag != 0.0 or moved or pressed or curves or sliding:
-            d, v = law_at(series, extent.terms, s, extent.h, i)
+            d, v = law_at(series, extent.degree, s, extent.h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
             if series.smooth.index_of[i] >= 0 or (moved and series.viscous.index_of[i] >= 0):
                 linearise_law(laws, rules, i, d, v)
@@ -48,15 +48,15 @@ def add_law_losses(
                 works.damping += lost
 
 
-def work_put_in(linear: LinearSystem, series: Series, extent: Extent, top: int) -> float:
+def work_put_in(linear: LinearSystem, series: Series, extent: Extent, n_powers: int) -> float:
     """Work of the loads on the nodes over a step: their series times those of the velocities."""
-    put, power, terms, end = 0.0, 1.0, extent.terms, extent.end
-    for k in range(1, terms + 1):
+    put, power, degree, end = 0.0, 1.0, extent.degree, extent.end
+    for k in range(1, degree + 1):
         power *= end
         put += power * dot(linear.constant, series.motion[k])
         for j in range(series.inputs.shape[1]):
             share, integral, further = dot(linear.inputs[j], series.motion[k]), 0.0, power
-            for m in range(min(top, terms)):
+            for m in range(min(n_powers, degree)):
                 integral += series.inputs[m, j] * further * k / (k + m)
                 further *= end
             put += share * integral
@@ -66,26 +66,26 @@ def work_put_in(linear: LinearSystem, series: Series, extent: Extent, top: int) 
 def add_works(sim: Simulation, rules: Tables, series: Series, piece: Piece, extent: Extent) -> None:
     """Add up the works over a step, all but those of the loads by Gauss's rule."""
     linear, laws, works = sim.linear, sim.laws, sim.works
-    begin, terms, h, end = extent.begin - piece.begin, extent.terms, extent.h, extent.end
+    begin, degree, h, end = extent.begin - piece.begin, extent.degree, extent.h, extent.end
     moved, trial, damped = len(linear.support_damping) > 0, sim.step.trial, series.damped
-    for k in range(1, terms + 1):
+    for k in range(1, degree + 1):
         for i in range(len(damped.unknown)):
             damped.motion[k, i] = series.motion[k, damped.unknown[i]]
     put = 0.0 if moved else work_put_in(linear, series, extent, len(piece.coefs))
-    rule = min(series.lengths.carried, MAX_TERMS) // UNCHECKED_TERMS
+    rule = min(series.lengths.carried, MAX_DEGREE) // UNCHECKED_TERMS
     for g in range(2 * (rule + 1)):
         weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
-        evaluate_motion(damped.motion, terms, s, h, 1, damped.velocity)
+        evaluate_motion(damped.motion, degree, s, h, 1, damped.velocity)
         multiply(damped.damping, damped.velocity, damped.force)
         works.damping += weight * dot(damped.velocity, damped.force)
         if moved:
             evaluate_inputs(piece.coefs, begin + s * h, trial.inputs, trial.input_rates)
         add_law_losses(sim, rules, series, extent, s, weight)
-        put += weight * string_power(sim.members, series, terms, s, h)
+        put += weight * string_power(sim.members, series, degree, s, h)
         if moved:
-            evaluate_motion(series.motion, terms, s, h, 0, trial.displacement)
-            evaluate_motion(series.motion, terms, s, h, 1, trial.velocity)
-            evaluate_motion(series.motion, terms, s, h, 2, trial.acceleration)
+            evaluate_motion(series.motion, degree, s, h, 0, trial.displacement)
+            evaluate_motion(series.motion, degree, s, h, 1, trial.velocity)
+            evaluate_motion(series.motion, degree, s, h, 2, trial.acceleration)
             supplied, lost = support_power(linear, laws, sim.members, trial, laws.trial, sim.members.trial)
             put += weight * supplied
             works.damping += weight * lost
