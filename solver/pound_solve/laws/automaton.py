@@ -1,14 +1,13 @@
-"""Force laws as automata: what hysteresis rules and contact laws share.
+"""Force laws as automata: the common ground of hysteresis rules and contact laws.
 
-A law is always on one of its *branches*.  A branch has up to three *event functions*
-``g = a d + b v + g0`` of the deformation ``d`` and its rate ``v``; where one of them rises through zero, a
-*transition* to another branch takes place.  On most branches the force is linear, ``f = k d + c v + f0``;
-a law with a `curve` computes it.  Integrators use nothing else of a law, and laws are independent of the
-integrators.  The state (branch and *internal variables*) is an immutable value, so a trial step can be
-discarded.
+A law is always on one of its *branches*.  A branch has up to three *event functions* ``g = a d + b v + g0``
+of the deformation ``d`` and its rate ``v``; where one of them rises through zero, a *transition* to another
+branch takes place.  On most branches the force is linear, ``f = k d + c v + f0``; a law with a `curve`
+computes it.  Integrators use nothing else of a law, and laws do not depend on the integrators.  The state
+(the branch and the *internal variables*) is immutable, so a trial step can be discarded.
 
 The functions of a Rule take and return plain numbers and tuples of fixed length, so that `jit` can compile
-the very same source.
+the same source.
 """
 
 from __future__ import annotations
@@ -18,19 +17,19 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple
 
-EVENTS = 3  #: most event functions of a branch
+EVENTS = 3  #: largest number of event functions of a branch
 K = 0  #: place of the (initial) stiffness among the parameters of a law
 FY, FY_MINUS = 1, 2  #: places of the yield forces (the negative one signed) in most hysteresis rules
 GAP = 2  #: place of the gap among the parameters of a contact
 RESTITUTION = 1  #: place of the restitution among those of a rigid contact
-PAST = 1e-12  #: fraction of its scale up to which the variable of a smooth rule counts as zero
+PAST = 1e-12  #: the variable of a smooth rule counts as zero up to this fraction of its scale
 AT_END = 1e-9  #: a law has left a line once it is beyond the end by this fraction of the deformation
 NORMAL_FORCE, NORMAL_FORCE_RATE = 0, 1  #: internal variables of a law with normal-force coupling
 
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; internal variables
 
-# the functions of a Rule, which explains them
+# types of the functions of a Rule; see its docstring
 StartFunction = Callable[[Numbers], tuple[int, Numbers]]
 BranchFunction = Callable[[Numbers, int, Numbers], Numbers]
 TransitionFunction = Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
@@ -48,22 +47,21 @@ REVERSAL_DOWN, REVERSAL_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)
 
 
 def above(d: float) -> tuple[float, float, float]:
-    """Event function of a deformation that rises above `d`."""
+    """Return the event function of a deformation that rises above `d`."""
     return (1.0, 0.0, -d)
 
 
 def below(d: float) -> tuple[float, float, float]:
-    """Event function of a deformation that falls below `d`."""
+    """Return the event function of a deformation that falls below `d`."""
     return (-1.0, 0.0, d)
 
 
 def passes(x: float, end: float, size: float) -> bool:
-    """Whether the deformation `x` is beyond the `end` of a line by more than the rounding of a value of
-    that `size`.
+    """Return whether the deformation `x` is beyond the `end` of a line by more than the rounding error of a
+    value of the given `size`.
 
-    Where a spring in series has the same strength and yields, a law rests at the end of its line until the
-    motion reverses.  Its internal variables must not depend on the last digit then: it has not left the
-    line.
+    If a spring in series has the same strength and yields, a law rests at the end of its line until the
+    motion reverses.  It has not left the line, so its internal variables must not depend on the last digit.
     """
     return x - end > AT_END * size
 
@@ -81,17 +79,17 @@ def linear(
 
 
 def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Recoverable energy of a law that unloads with its initial stiffness ``p[K]``."""
+    """Return the recoverable energy of a law that unloads with its initial stiffness ``p[K]``."""
     return 0.5 * f * f / p[K]
 
 
 def first_stiffness(p: Numbers) -> float:
-    """Stiffness of a rule none of whose branches is steeper than the first."""
+    """Return the initial stiffness, for a rule whose first branch is the steepest."""
     return p[K]
 
 
 def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power of a rule whose force does not depend on the rate: zero."""
+    """Return zero, the rate-dependent power of a rule whose force does not depend on the rate."""
     return 0.0
 
 
@@ -101,15 +99,15 @@ def rate_power(curve: CurveFunction, p: Numbers, at: int, m: Numbers, d: float, 
 
 
 class BranchKind(IntEnum):
-    """Kind of a branch, by which yields and collisions are counted."""
+    """Kind of a branch; it decides what counts as a yield event or a collision."""
 
     ELASTIC = 0  #: below yield: loading, unloading or reloading; every branch of a smooth rule
     YIELDING = 1  #: on the yield line; its entry from another kind is a yield event
     SLIPPING = 2  #: friction at its limit
-    VISCOUS = 3  #: the rate alone makes the force
+    VISCOUS = 3  #: the force depends on the rate alone
     OPEN = 4  #: without force: a contact that is open, a spring that is slack or has failed
     PRESSED = 5  #: a closed contact; its entry is a collision
-    #: a contact without force and with overlap left; pressed again, the same collision goes on
+    #: a contact without force but with some overlap left; a new pressing continues the same collision
     RELEASED = 6
     HELD = 7  #: a closed rigid contact: the deformation is constant, the force a reaction
 
@@ -123,11 +121,11 @@ class BranchKind(IntEnum):
         return tuple(BranchType(name, self) for name in names)
 
 
-STRENGTHLESS = "failed"  #: name of the branch of a spring that has lost all of its strength for good
+STRENGTHLESS = "failed"  #: name of the branch of a spring that has lost all its strength permanently
 
 
 class BranchType(NamedTuple):
-    """A branch of a rule: its name, as reports show it, and its kind."""
+    """A branch of a rule: its name, as shown in reports, and its kind."""
 
     name: str
     kind: BranchKind
@@ -140,41 +138,42 @@ class Rule:
     Attributes
     ----------
     branches : tuple of BranchType
-        Names and kinds; ``at`` counts them from 0.  A rigid contact has one branch of the kind HELD, on
-        which the deformation stays at ``p[GAP]``; its event functions are those of the force instead of the
-        deformation, and its entry is an impact with the restitution ``p[RESTITUTION]``.
+        Names and kinds; ``at`` is an index into them.  A rigid contact has one branch of the kind HELD, on
+        which the deformation stays at ``p[GAP]``.  The event functions of that branch are functions of the
+        force instead of the deformation, and its entry is an impact with the restitution
+        ``p[RESTITUTION]``.
     start : callable
-        ``start(p) -> (at, m)``: virgin, at zero deformation.
+        ``start(p) -> (at, m)``: the virgin state, at zero deformation.
     branch : callable
         ``branch(p, at, m) -> linear(...)``.
     transition : callable
-        ``transition(p, at, m, event, d, v) -> (at, m)``: the state after the event with that index, at
-        deformation `d` and rate `v`.  The force is continuous, except where a dashpot or a release makes
-        it jump.
+        ``transition(p, at, m, event, d, v) -> (at, m)``: the state after the event with the index `event`,
+        at deformation `d` and rate `v`.  The force is continuous unless a dashpot or a release makes it
+        jump.
     recoverable : callable
-        ``recoverable(p, at, m, d, f) -> energy`` recovered when the force `f` is removed.
+        ``recoverable(p, at, m, d, f) -> energy`` that is recovered when the force `f` is removed.
     curve : callable or None
-        ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` where branches are
-        not linear; `d0` is the deformation at their entry.
+        ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` of a rule whose
+        branches are not linear; `d0` is the deformation at the entry of the branch.
     power : callable or None
-        ``power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates by the rate `v`.  None:
-        that of the rate-dependent part of the force, see `rate_power`.  A linear
-        branch dissipates ``c v^2``.
+        ``power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates at the rate `v`.  None: the
+        power of the rate-dependent part of the force, see `rate_power`.  A linear branch dissipates the
+        power ``c v^2``.
     powers : callable or None
-        ``powers(p, at, m) -> (k, n, c, q, pulls, shift)``: the force of a pressed contact with a `curve`
-        is ``k x^n + c x^q v``, where x is the overlap ``d - p[GAP]`` less `shift`, and, unless `pulls` is
-        above zero, nothing where that would pull.  That of a damper on a branch that is not linear is
-        ``k |v|^n``; `k` has the sign of the rate there.  None: it is not of this kind.
+        ``powers(p, at, m) -> (k, n, c, q, pulls, shift)``: the force of a pressed contact with a `curve` is
+        ``k x^n + c x^q v``, where x is the overlap ``d - p[GAP]`` minus `shift`.  Unless `pulls` is above
+        zero, the force is zero where this expression would pull.  The force of a damper on a nonlinear
+        branch is ``k |v|^n``, where `k` has the sign of the rate.  None: the rule has neither form.
     smooth : callable or None
-        ``smooth(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: on from the deformation `d`, where the force is
-        `f`, that of a rule with a `curve` is ``k d + q w`` and a constant, where
-        ``dw/dd = (1 + a x^n) / (1 + b x^n)``, ``x = w / y``.  Where `x` falls to zero the numbers change;
-        what is left of it there, up to `PAST`, is rounding.  None: it is not of this kind.
+        ``smooth(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: starting from the deformation `d` and the force
+        `f`, the force of a rule with a `curve` is ``k d + q w`` plus a constant, with
+        ``dw/dd = (1 + a x^n) / (1 + b x^n)``, ``x = w / y``.  The numbers change where `x` falls to zero; a
+        remainder up to `PAST` is rounding error.  None: the rule does not have this form.
     steepest : callable
-        ``steepest(p) -> stiffness`` that none of its straight branches exceeds.
+        ``steepest(p) -> stiffness``, an upper bound of the stiffness of all straight branches.
     first_yield : callable or None
-        ``first_yield(p) -> (positive, negative)`` deformations at which a virgin spring yields.  None: its
-        yield forces over its initial stiffness.
+        ``first_yield(p) -> (positive, negative)`` deformations at which a virgin spring yields.  None: the
+        yield forces divided by the initial stiffness.
     parameters, variables : int
         Numbers of values in ``p`` and ``m``.
     """
@@ -199,12 +198,12 @@ class Rule:
 
     @property
     def rigid(self) -> bool:
-        """Whether it is a rigid contact."""
+        """Whether the law is a rigid contact."""
         return any(b.kind is BranchKind.HELD for b in self.branches)
 
 
 class EventFunction(NamedTuple):
-    """Its event is where ``d_factor * d + v_factor * v + constant`` rises through zero."""
+    """An event occurs where ``d_factor * d + v_factor * v + constant`` rises through zero."""
 
     d_factor: float
     v_factor: float
@@ -236,11 +235,11 @@ class Law:
     """A force law with internal variables: a Rule with its parameters.
 
     The energy balance is the same for every rule: the work done on the spring is integrated in closed form
-    along each branch, and the part that is not recoverable has been dissipated.
+    along each branch, and the part that cannot be recovered is the dissipated energy.
     """
 
     rule: Rule
-    p: Numbers  #: the first is the (initial) stiffness; those left out at the end are zero
+    p: Numbers  #: parameters, the (initial) stiffness first; those omitted at the end are zero
 
     def __post_init__(self) -> None:
         missing = self.rule.parameters - len(self.p)
@@ -250,12 +249,12 @@ class Law:
 
     @property
     def curved(self) -> bool:
-        """Whether its branches are not linear."""
+        """Whether the branches are nonlinear."""
         return self.rule.curve is not None
 
     @property
     def rigid(self) -> bool:
-        """Whether it is a rigid contact."""
+        """Whether the law is a rigid contact."""
         return self.rule.rigid
 
     def start(self) -> State:
@@ -267,7 +266,7 @@ class Law:
         return (at, 0.0, self.stored(state, 0.0), m)
 
     def branch(self, state: State) -> Branch:
-        """Return the linear branch of `state` (of a curved law its event functions, and a tangent)."""
+        """Return the linear branch of `state` (for a curved law: the event functions and a tangent)."""
         k, c, f0, *flat = self.rule.branch(self.p, state[0], state[3])
         events = [EventFunction(*flat[i : i + 3]) for i in range(0, 3 * EVENTS, 3)]
         while events and events[-1] == NEVER:
@@ -275,7 +274,7 @@ class Law:
         return Branch(*self.rule.branches[state[0]], k, c, f0, tuple(events))
 
     def force(self, state: State, d: float, v: float = 0.0) -> tuple[float, float, float]:
-        """Force at deformation `d` and rate `v`, and its derivatives with respect to them."""
+        """Return the force at deformation `d` and rate `v`, and its derivatives with respect to both."""
         if self.rule.curve is not None:
             return self.rule.curve(self.p, state[0], state[3], state[1], d, v)[:3]
         k, c, f0 = self.rule.branch(self.p, state[0], state[3])[:3]
@@ -291,7 +290,7 @@ class Law:
         return self.rule.power(self.p, at, m, d, v)
 
     def work(self, state: State, d: float) -> float:
-        """Work done on the law so far [F L], dashpots apart, at deformation `d`."""
+        """Return the work done on the law so far [F L] at deformation `d`, excluding dashpots."""
         at, d0, before, m = state
         if self.rule.curve is not None:
             return before + self.rule.curve(self.p, at, m, d0, d, 0.0)[3]
@@ -299,7 +298,7 @@ class Law:
         return before + (0.5 * k * (d + d0) + f0) * (d - d0)
 
     def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
-        """Return the state after that event of the branch, at deformation `d` and rate `v`."""
+        """Return the state after event `event_index` of the branch, at deformation `d` and rate `v`."""
         at, m = self.rule.transition(self.p, state[0], state[3], event_index, d, v)
         return at, d, self.work(state, d), m
 
@@ -308,15 +307,15 @@ class Law:
         return self.rule.recoverable(self.p, state[0], state[3], d, self.force(state, d)[0])
 
     def dissipated(self, state: State, d: float) -> float:
-        """Return the energy [F L] lost so far by slip or release, dashpots apart."""
+        """Return the energy [F L] lost so far by slip or release, excluding dashpots."""
         lost = self.work(state, d) - self.stored(state, d)
-        # a loss within the rounding of d is none: an elastic law dissipates nothing
+        # ignore a loss within the rounding error of d: an elastic law dissipates nothing
         return lost if abs(lost) > 1e-14 * self.p[K] * max(abs(d), abs(state[1])) ** 2 else 0.0
 
 
 def consistent(law: Law, state: State, d: float, v: float) -> State:
-    """Return the state after the transitions of all events that lie behind deformation `d` and rate `v`,
-    as at a sudden start.
+    """Return the state after the transitions of all events that deformation `d` and rate `v` have already
+    passed, as at a sudden start.
     """
     for _ in range(10):
         events = law.branch(state).events
@@ -328,7 +327,7 @@ def consistent(law: Law, state: State, d: float, v: float) -> State:
 
 
 class NoProgressError(Exception):
-    """A law changed branch again and again without moving."""
+    """A law changed branch repeatedly without any motion."""
 
 
 def drive(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> State:
@@ -342,7 +341,7 @@ def drive(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> St
 def transitions(
     law: Law, state: State, d0: float, d1: float, rate: float = 0.0, limit: int = 1000
 ) -> Iterator[tuple[float, State]]:
-    """Changes of branch along a straight path from `d0` to `d1`.
+    """Yield the changes of branch along a straight path from `d0` to `d1`.
 
     Parameters
     ----------
@@ -352,9 +351,9 @@ def transitions(
     d0, d1 : float
         Deformations [L] or [rad].
     rate : float
-        Speed along the path; 0: infinitely slow, and a branch that ends at a reversal still ends there.
+        Speed along the path.  0: infinitely slow; a branch that ends at a reversal still ends there.
     limit : int
-        Most branch changes on the way.
+        Largest number of branch changes on the path.
 
     Yields
     ------
@@ -364,7 +363,7 @@ def transitions(
     Raises
     ------
     NoProgressError
-        More than `limit` branch changes.
+        There are more than `limit` branch changes.
     """
     direction = 1.0 if d1 >= d0 else -1.0
     at, v = d0, direction * rate
@@ -380,8 +379,8 @@ def transitions(
 
 
 def event_place(event: EventFunction, at: float, d1: float, direction: float, v: float) -> float | None:
-    """Deformation of an event on a straight path from `at` to `d1` at the rate `v`; None where it does not
-    occur.  A reversal occurs at once, where the path runs against the branch.
+    """Return the deformation of an event on a straight path from `at` to `d1` at the rate `v`, or None if
+    it does not occur.  A reversal occurs at once if the path runs against the branch.
     """
     a, b, c = event
     g, slope = a * at + b * v + c, a * direction

@@ -1,21 +1,19 @@
-r"""A law whose deformation lacks an elastic part, which the structure beside it has.
+r"""A law whose deformation excludes an elastic part that the adjacent structure already includes.
 
-Of a law :math:`f = k x + f_0` of the deformation :math:`x` the elastic part :math:`g f` is left out:
+The elastic part :math:`g f` is removed from the deformation :math:`x` of a law :math:`f = k x + f_0`:
 
 .. math:: d = x - g f, \qquad f = \frac{k d + f_0}{1 - g k}, \qquad x = \frac{d + g f_0}{1 - g k}
 
-Every branch stays a line, and every event occurs at the same force; :math:`g k < 1` must hold on all
-branches.  A hinge of the length :math:`L_p` is such a law: its section also bends elastically, by
-:math:`L_p / EI` for a moment of one.  A beam behind it that is as long as the member already contains that
-part (`structure.elements.frame`).
+Every branch remains a straight line, and every event occurs at the same force; :math:`g k < 1` must hold on
+all branches.  A hinge of length :math:`L_p` is such a law: its section also bends elastically, by
+:math:`L_p / EI` per unit moment.  The beam behind it, modelled with the full length of the member, already
+contains that part (`structure.elements.frame`).
 
-Parameters are those of the law, then :math:`g`; internal variables are those of the law.
+The parameters are those of the law, followed by :math:`g`; the internal variables are those of the law.
 
-References
-----------
-Giberson MF (1967), The response of nonlinear multi-story structures subjected to earthquake excitation,
-Earthquake Engineering Research Laboratory, California Institute of Technology, Pasadena (springs at the
-ends of an elastic member that have the part of the rotation beyond the elastic one).
+References ---------- Giberson MF (1967), The response of nonlinear multi-story structures subjected to
+earthquake excitation, Earthquake Engineering Research Laboratory, California Institute of Technology,
+Pasadena (springs at the ends of an elastic member, which take the inelastic part of the rotation).
 """
 
 from __future__ import annotations
@@ -27,9 +25,9 @@ from pound_solve.laws.automaton import K, Law, Numbers, Rule
 from pound_solve.laws.functions import bound, missing
 from pound_solve.numerics.jit import Function
 
-STEEP = 0.99  #: largest g k: by the remaining deformation a branch is at most a hundred times as steep
+STEEP = 0.99  #: largest g k; in terms of d a branch is then at most a hundred times as steep
 
-# `bound` gives each copy of the functions below its own
+# `bound` sets this separately for each copy of the functions below
 rule_branch: Any = missing
 rule_transition: Any = missing
 rule_recoverable: Any = missing
@@ -37,7 +35,7 @@ place = 0  #: place of g among the parameters, after those of the rule
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Branch as a function of the remaining deformation, without the elastic part."""
+    """Return the branch as a function of the remaining deformation, without the elastic part."""
     g = p[place]
     k, c, f0, a1, b1, c1, a2, b2, c2, a3, b3, c3 = rule_branch(p[:place], at, m)
     s = 1.0 / (1.0 - g * k)
@@ -49,7 +47,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Transition of the original rule, at the whole deformation."""
+    """Return the state after a transition of the original rule, at the total deformation."""
     g = p[place]
     k, _, f0 = rule_branch(p[:place], at, m)[:3]
     s = 1.0 / (1.0 - g * k)
@@ -58,7 +56,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Recoverable energy less that of the elastic part."""
+    """Return the recoverable energy minus that of the elastic part."""
     g = p[place]
     energy: float = rule_recoverable(p[:place], at, m, d + g * f, f) - 0.5 * g * f * f
     return energy
@@ -66,7 +64,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 @cache
 def condensed(rule: Rule) -> Rule:
-    """The rule with `g` as its last parameter.
+    """Return the rule with `g` as an additional last parameter.
 
     Raises
     ------
@@ -106,12 +104,12 @@ def condensed(rule: Rule) -> Rule:
 
 
 def without(law: Law, elastic_share: float) -> Law:
-    """The law without that share of its initial elastic deformation.
+    """Return the law without the given share of its initial elastic deformation.
 
     Raises
     ------
     ValueError
-        Its branches are not straight, or one may be so steep that no deformation is left on it.
+        The branches are not straight, or one may be so steep that no deformation remains on it.
     """
     g = elastic_share / law.p[K]
     if law.rule.curve is None and g * law.rule.steepest(law.p) >= STEEP:

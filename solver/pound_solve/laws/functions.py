@@ -1,8 +1,8 @@
-"""The functions of the rules of a run, gathered so that kernels call them by number.
+"""The functions of the rules of a run, collected so that kernels can call them by number.
 
-Compiled code can call functions by number only if all have the same types.  The numbers of parameters and
-of internal variables differ from rule to rule.  Here both are tuples as long as those of the longest rule,
-and each function gets the first ones.
+Compiled code can call functions by number only if all have the same types, but the numbers of parameters
+and of internal variables differ between rules.  Here both tuples are as long as those of the longest rule,
+and each function receives the first elements that it needs.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ from pound_solve.numerics.jit import Function
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array
 
-RowPart = Callable[[Array, int, int], Numbers]  #: numbers in a row of an array, from a place on
+RowPart = Callable[[Array, int, int], Numbers]  #: numbers in a row of an array, starting at a column
 
-ROOM = 8  #: number of rules that the tables have room for, or a multiple of it
+ROOM = 8  #: the tables have room for this number of rules, or a multiple of it
 #: lengths of the parameters and of the internal variables in the kernels: those of the longest rule of the
 #: catalog, to which a test holds them, so that no run has to import every rule
 PARAMETERS, VARIABLES = 20, 16
 
 
 class Tables(NamedTuple):
-    """The functions of several rules, one tuple a kind, in the order of the rules."""
+    """The functions of several rules: one tuple per kind of function, in the order of the rules."""
 
     branch: tuple[BranchFunction, ...]
     transition: tuple[TransitionFunction, ...]
@@ -51,53 +51,53 @@ class Tables(NamedTuple):
     smooth: tuple[SmoothFunction, ...]
 
 
-# what kernels call: the library compiled ahead of time has its own of these, see `ahead_of_time`
+# the functions that kernels call; the library compiled ahead of time has its own, see `ahead_of_time`
 
 
 def branch_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Branch of the rule of that number."""
+    """Return the branch of rule `number`."""
     return rules.branch[number](p, at, m)
 
 
 def transition_of(
     rules: Tables, number: int, p: Numbers, at: int, m: Numbers, event: int, d: float, v: float
 ) -> tuple[int, Numbers]:
-    """Transition of the rule of that number."""
+    """Return the state after a transition of rule `number`."""
     return rules.transition[number](p, at, m, event, d, v)
 
 
 def recoverable_of(
     rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
 ) -> float:
-    """Recoverable energy of the rule of that number."""
+    """Return the recoverable energy of rule `number`."""
     return rules.recoverable[number](p, at, m, d, f)
 
 
 def curve_of(
     rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Curve of the rule of that number."""
+    """Evaluate the curve of rule `number`."""
     return rules.curve[number](p, at, m, d0, d, v)
 
 
 def power_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power of the rule of that number."""
+    """Return the dissipated power of rule `number`."""
     return rules.power[number](p, at, m, d, v)
 
 
 def powers_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Powers of the rule of that number."""
+    """Return the power-law coefficients of rule `number`."""
     return rules.powers[number](p, at, m)
 
 
 def smooth_of(
     rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
 ) -> SmoothNumbers:
-    """Smooth curve of the rule of that number."""
+    """Return the smooth curve of rule `number`."""
     return rules.smooth[number](p, at, m, d, f)
 
 
-#: these, in the order of `Tables`
+#: the functions above, in the order of `Tables`
 CALLS: tuple[Function, ...] = (
     branch_of,
     transition_of,
@@ -109,7 +109,7 @@ CALLS: tuple[Function, ...] = (
 )
 
 _P, _M = f"UniTuple(f8, {PARAMETERS})", f"UniTuple(f8, {VARIABLES})"
-#: types of the functions, of numba
+#: numba types of the functions
 SIGNATURES = (
     f"UniTuple(f8, {3 + 3 * EVENTS})({_P}, i8, {_M})",
     f"Tuple((i8, {_M}))({_P}, i8, {_M}, i8, f8, f8)",
@@ -139,39 +139,39 @@ def not_smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNum
 
 
 def missing(*_: Any) -> Any:
-    """Stand in for a function of a rule in the templates below; `bound` makes copies of these with the
+    """Stand in for a function of a rule in the templates below; `bound` copies a template and puts the
     function of the rule in its place.
     """
     raise NotImplementedError
 
 
 def bound(template: Function, name: str, **values: Any) -> Function:
-    """Copy of a function with other values of some globals, which compiled code takes for constants."""
+    """Copy a function with other values for some globals, which compiled code treats as constants."""
     copy = FunctionType(template.__code__, {**template.__globals__, **values}, template.__name__)
-    copy.__qualname__ = f"{template.__name__}-{name}"  # compiled code is kept under it
+    copy.__qualname__ = f"{template.__name__}-{name}"  # name of the compiled code in the cache
     return copy
 
 
 # ---------------------------------------------------------------------- rows of arrays as tuples
 
-first: RowPart = missing  # `bound` gives each copy of the functions below its own
+first: RowPart = missing  # `bound` sets this for each copy of the functions below
 second: RowPart = missing
 half = 0
 
 
 def single_number(a: Array, i: int, j: int) -> Numbers:
-    """Number `j` of row `i` of an array, as a tuple of one."""
+    """Return number `j` of row `i` of an array, as a tuple of length 1."""
     return (a[i, j],)
 
 
 def joined_halves(a: Array, i: int, j: int) -> Numbers:
-    """Numbers in row `i` of an array, from `j` on, as a tuple."""
+    """Return the numbers in row `i` of an array from column `j` on, as a tuple."""
     return first(a, i, j) + second(a, i, j + half)
 
 
 @cache
 def from_place(length: int) -> RowPart:
-    """Function ``numbers(a, i, j)``: so many numbers in row `i` of an array, from `j` on, as a tuple."""
+    """Return a function ``numbers(a, i, j)``: `length` numbers of row `i` from column `j` on, as a tuple."""
     if length == 1:
         return single_number
     n = length // 2
@@ -180,29 +180,29 @@ def from_place(length: int) -> RowPart:
 
 
 def start_of_row(a: Array, i: int) -> Numbers:
-    """First numbers in row `i` of an array."""
+    """Return the first numbers of row `i` of an array."""
     return first(a, i, 0)
 
 
 def row(length: int) -> Callable[[Array, int], Numbers]:
-    """Function ``numbers(a, i)``: the first numbers in row `i` of an array, as a tuple of that length."""
+    """Return a function ``numbers(a, i)``: the first `length` numbers of row `i`, as a tuple."""
     return bound(start_of_row, str(length), first=from_place(length))
 
 
 # ---------------------------------------------------------------------- functions of rules
 
-function_of_rule = missing  # `bound` gives each copy of the functions below its own, with its lengths
+function_of_rule = missing  # `bound` sets this and the lengths for each copy of the functions below
 parameters = variables = 0
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Branch of a rule, see `Rule`."""
+    """Return the branch of a rule, see `Rule`."""
     piece: Numbers = function_of_rule(p[:parameters], at, m[:variables])
     return piece
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Transition of a rule."""
+    """Return the state after a transition of a rule."""
     at_after, m_after = function_of_rule(p[:parameters], at, m[:variables], event, d, v)
     return at_after, m_after + m[variables:]
 
@@ -216,7 +216,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Curve of a rule."""
+    """Evaluate the curve of a rule."""
     response: tuple[float, float, float, float] = function_of_rule(
         p[:parameters], at, m[:variables], d0, d, v
     )
@@ -224,14 +224,14 @@ def curve(
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power by the rule's own function."""
+    """Return the dissipated power from the rule's own function."""
     stated: float = function_of_rule(p[:parameters], at, m[:variables], d, v)
     return stated
 
 
 def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power of the rate-dependent part of a rule's curve, see `automaton.rate_power`; numba cannot keep a
-    function to which another one is handed.
+    """Return the power of the rate-dependent part of a rule's curve, see `automaton.rate_power`, which
+    numba could not cache because it takes another function as an argument.
     """
     moving = function_of_rule(p[:parameters], at, m[:variables], d, d, v)
     resting = function_of_rule(p[:parameters], at, m[:variables], d, d, 0.0)
@@ -240,20 +240,20 @@ def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Powers of a rule."""
+    """Return the power-law coefficients of a rule."""
     numbers: PowersNumbers = function_of_rule(p[:parameters], at, m[:variables])
     return numbers
 
 
 def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
-    """Smooth curve of a rule."""
+    """Return the smooth curve of a rule."""
     numbers: SmoothNumbers = function_of_rule(p[:parameters], at, m[:variables], d, f)
     return numbers
 
 
 @cache
 def functions(rule: Rule) -> tuple[Function, ...]:
-    """Functions of a rule in the order of `Tables`, each for the lengths `PARAMETERS` and `VARIABLES`.
+    """Return the functions of a rule in the order of `Tables`, for tuples of `PARAMETERS` and `VARIABLES`.
 
     Raises
     ------
@@ -290,10 +290,10 @@ def functions(rule: Rule) -> tuple[Function, ...]:
 
 
 def tables(rules: Sequence[Rule]) -> Tables:
-    """Functions of the rules, ready to be called by number.
+    """Return the functions of the rules, ready to be called by number.
 
-    The last rule fills the tables up to a length that few decks exceed, because numba compiles the kernels
-    anew for every length.
+    The last rule is repeated to fill the tables up to a length that few decks exceed, because numba
+    recompiles the kernels for every new length.
     """
     by_rule = [functions(r) for r in rules]
     by_rule += by_rule[-1:] * (-len(by_rule) % ROOM)

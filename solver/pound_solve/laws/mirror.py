@@ -1,8 +1,8 @@
-"""Mirror images: rules are written once, for the positive side, and mirrored for the negative.
+"""Mirror images: rules are written once, for the positive side, and mirrored for the negative side.
 
-Side ``s`` is +1 or -1; a mirrored deformation is ``s d``, a mirrored force ``s f``.  The mirror image of
-``f = k d + f0`` is ``f = k d + s f0``.  Branches come in pairs: an odd number for the positive side, the
-next one for the negative.
+Side ``s`` is +1 or -1; a mirrored deformation is ``s d`` and a mirrored force is ``s f``.  The mirror image
+of ``f = k d + f0`` is ``f = k d + s f0``.  Branches come in pairs: an odd number for the positive side, and
+the next number for the negative side.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ def side(at: int) -> float:
 
 
 def on_side(first: int, s: float) -> int:
-    """Branch of a side, `first` being the positive one's."""
+    """Return the branch of side `s`; `first` is the branch of the positive side."""
     return first if s > 0.0 else first + 1
 
 
 def both_sides(*names: str) -> tuple[str, ...]:
-    """Names of pairs of branches: of each the positive side's, then the negative side's."""
+    """Return the names of pairs of branches: for each, the positive side, then the negative side."""
     return tuple(f"{name} {sign}" for name in names for sign in "+-")
 
 
@@ -44,6 +44,6 @@ def turns_outward(s: float) -> tuple[float, float, float]:
 
 
 def need_both_sides(fy_plus: float, fy_minus: float) -> None:
-    """Refuse a zero yield force, for rules that divide by their yield deformations."""
+    """Raise an error for a zero yield force, for rules that divide by the yield deformation."""
     if not fy_minus < 0.0 < fy_plus:
         raise ValueError("this rule needs a yield force other than zero on both sides")

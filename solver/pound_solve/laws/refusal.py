@@ -1,17 +1,17 @@
-"""How laws, elements and damping refuse the values of a card."""
+"""The error that laws, elements and damping raise for invalid values of a card."""
 
 from __future__ import annotations
 
 
 class ItemError(ValueError):
-    """An item has a value that contradicts another one, or what the law needs.
+    """The value of an item contradicts another value or the requirements of the law.
 
     Parameters
     ----------
     message : str
-        What is wrong, and what would be right.
+        What is wrong, and what would be valid.
     item : str
-        Name of the item at fault, whose place the message states; empty for the card.
+        Name of the invalid item, whose position the message gives; empty for the whole card.
     """
 
     def __init__(self, message: str, item: str = "") -> None:

@@ -1,1 +1,1 @@
-"""Contact laws, one law a file."""
+"""Contact laws, one per file."""

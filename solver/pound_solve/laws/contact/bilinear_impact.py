@@ -1,28 +1,28 @@
-r"""Bilinear impact (Muthukumar 2003): a spring and a slider that lose their energy by hysteresis.
+r"""Bilinear impact (Muthukumar 2003): a spring and a slider that dissipate energy by hysteresis.
 
-Pressed for the first time the force follows :math:`K_1` up to the overlap :math:`\delta_y`, then
-:math:`K_2`; it comes back along :math:`K_1`, and from the line :math:`f = K_2\delta` on along that to zero:
+On first loading, the force follows :math:`K_1` up to the overlap :math:`\delta_y`, then :math:`K_2`.  It
+unloads along :math:`K_1` to the line :math:`f = K_2\delta`, and then along that line to zero:
 
 .. math:: f = K_2\delta + (K_1 - K_2)(\delta - \delta_p), \qquad 0 \le \delta - \delta_p \le \delta_y
 
-If the bodies are pressed again before they have parted, the force rises along :math:`K_1` to the upper
-line.
+If the bodies are pressed together again before they separate, the force rises along :math:`K_1` to the
+upper line.
 
-The constants stand for Hertz' force :math:`k_h\delta^n` at one largest overlap :math:`\delta_m`, with
+The constants represent the Hertz force :math:`k_h\delta^n` at one maximum overlap :math:`\delta_m`, with
 :math:`K = k_h\delta_m^{n-1}`, :math:`\delta_y = a\delta_m`:
 
 .. math:: a K_1 + (1-a) K_2 = K
 
-An impact that reaches :math:`\delta_m` brings the energy :math:`W = \delta_m^2 (a K_1 + (1-a) K)/2` and
-loses :math:`D = \delta_m^2 a (K_1 - K)`.  EXACT: :math:`D = (1-e^2) W`, so that with :math:`s = (1-e^2)/2`
+An impact that reaches :math:`\delta_m` has the energy :math:`W = \delta_m^2 (a K_1 + (1-a) K)/2` and loses
+:math:`D = \delta_m^2 a (K_1 - K)`.  EXACT: :math:`D = (1-e^2) W`, so that with :math:`s = (1-e^2)/2`
 
 .. math:: K_1 = K\,\frac{a + s(1-a)}{a(1-s)}, \qquad K_2 = \frac{K - a K_1}{1-a}
 
-which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss
-on the energy of a Hertz contact; the restitution is then greater than :math:`e`.
+which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss relative
+to the energy of a Hertz contact; the restitution is then greater than :math:`e`.
 
-The restitution of any other speed differs: 1 where :math:`\delta_y` is not passed, and
-least, :math:`(K_2/K_1)^{1/4}`, where the overlap is :math:`\delta_y(1 + \sqrt{K_1/K_2})`.
+The restitution depends on the approach speed.  It is 1 if :math:`\delta_y` is not exceeded, and has its
+minimum, :math:`(K_2/K_1)^{1/4}`, at the overlap :math:`\delta_y(1 + \sqrt{K_1/K_2})`.
 
 References
 ----------
@@ -54,17 +54,17 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
 OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
-DY = 3  #: place of the overlap where K2 begins, in the parameters K1, K2, gap and this
+DY = 3  #: index of the overlap at which K2 begins, among the parameters (K1, K2, gap, this overlap)
 SLIDER = 0  #: internal variable: position of the slider, delta_p
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    """Return the initial state: open, or pressed if the gap is negative (an initial overlap)."""
     return (STIFF if p[GAP] < 0.0 else OPEN), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     k1, k2, gap, dy = p[:4]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
@@ -77,7 +77,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, slide, reverse, or part."""
+    """Return the state after a touch, a slip, a reversal or a separation."""
     dy, overlap = p[DY], d - p[GAP]
     if at == OPEN:
         return STIFF, (0.0,)
@@ -91,7 +91,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Area below the unloading path."""
+    """Return the area below the unloading path."""
     _, k2, gap, dy = p[:4]
     if at == OPEN:
         return 0.0
@@ -124,7 +124,7 @@ def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:
 
 
 def speed(k1: float, k2: float, dy: float, overlap: float, mass: float) -> float:
-    """Approach [L/T] of a reduced mass that reaches `overlap` [L], beyond dy."""
+    """Return the approach speed [L/T] at which a reduced mass reaches `overlap` [L], beyond dy."""
     beyond = overlap - dy
     energy = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
     return math.sqrt(2.0 * energy / mass) if mass else math.inf
@@ -138,12 +138,12 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     values : mapping
         GAP and K1, K2, DY, or KH, N, E, DM, A, RELATION.
     reduced_mass : float
-        Of the colliding masses [F T^2/L], for the note alone; may be zero.
+        Of the colliding masses [F T^2/L], used only for the note; may be zero.
 
     Raises
     ------
     ValueError
-        Neither or both of the sets are given, or constants that no loop has.
+        Neither or both of the sets are given, or the constants do not define a loop.
     """
     by_slopes = [name for name in ("K1", "K2", "DY") if values[name] is not None]
     by_e = [name for name in ("KH", "E", "DM") if values[name] is not None]
@@ -171,17 +171,17 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
 
 
 def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:
-    """K1, K2 [F/L] and the overlap [L] where one follows the other.
+    """Return K1, K2 [F/L] and the overlap [L] at which K2 begins.
 
     Raises
     ------
     ValueError
-        E is out of reach.
+        No constants give the required E.
     """
     e, dm, a, n = (values[name] for name in ("E", "DM", "A", "N"))
     k = values["KH"] * dm ** (n - 1.0)
     if values["RELATION"] == "PUBLISHED":
-        loss = k * (1.0 - e * e) / (n + 1.0)  # over DM^2
+        loss = k * (1.0 - e * e) / (n + 1.0)  # divided by DM^2
         least = math.sqrt(max(1.0 - (n + 1.0) * (1.0 - a), 0.0))
         k1, k2 = k + loss / a, k - loss / (1.0 - a)
     else:

@@ -13,7 +13,7 @@ Relation = Callable[[float], float]
 
 
 class Constant(NamedTuple):
-    """A damping constant, the required restitution (NaN: none) and the resulting one; a note."""
+    """A damping constant, the required restitution (NaN: none), the resulting one, and a note."""
 
     value: float
     e_asked: float
@@ -47,12 +47,12 @@ def fields(name: str, doc: str, published: str) -> tuple[Field, Field, Field]:
 def damping_item(
     values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: float, free: str = ""
 ) -> str:
-    """Name of the one item of several that the card gives; all but `free` need masses.
+    """Return the name of the single item that the card gives; all items except `free` need masses.
 
     Raises
     ------
     ValueError
-        None or several; or no mass.
+        None or several are given; or there is no mass.
     """
     present = [name for name in names if values[name] is not None]
     if len(present) != 1:
@@ -70,12 +70,12 @@ def damping_item(
 def constant(
     values: Mapping[str, Any], name: str, restitution_of: Relation, exact: Relation, published: Relation
 ) -> Constant:
-    """Constant `name` of a law, from itself or from E.
+    """Return the constant `name` of a law, given directly or computed from E.
 
     Parameters
     ----------
     values : mapping
-        Holds `name`, E and RELATION.
+        Contains `name`, E and RELATION.
     restitution_of : callable
         Restitution that a constant gives.
     exact, published : callable
@@ -89,7 +89,7 @@ def constant(
 
 
 class Dashpot(NamedTuple):
-    """A linear dashpot: its coefficient [F T/L], damping ratio, and what `Constant` says."""
+    """A linear dashpot: its coefficient [F T/L], its damping ratio, and the fields of `Constant`."""
 
     c: float
     xi: float
@@ -105,12 +105,12 @@ def dashpot(
     exact: Relation,
     published: Relation,
 ) -> Dashpot:
-    """Dashpot of a linear law, given as C, XI or E (see `constant`) beside the stiffness K.
+    """Return the dashpot of a linear law, given as C, XI or E (see `constant`) with the stiffness K.
 
     Raises
     ------
     ValueError
-        None or several of C, XI, E; or XI or E where there is no mass.
+        None or several of C, XI, E are given; or XI or E is given but there is no mass.
     """
     critical = 2.0 * math.sqrt(values["K"] * reduced_mass)
     if damping_item(values, ("C", "XI", "E"), reduced_mass, "C") == "C":

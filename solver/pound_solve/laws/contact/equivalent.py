@@ -1,5 +1,5 @@
-r"""Equivalent contact of two rigid floors: a Kelvin-Voigt contact after which their centres of mass move as
-those of two diaphragms with distributed mass.
+r"""Equivalent contact of two rigid floors: a Kelvin-Voigt contact that gives the centres of mass the same
+velocities after a collision as two diaphragms with distributed mass.
 
 :mod:`pound_solve.laws.two_bars` gives the contact force of the diaphragms from the masses and from the
 axial stiffnesses DIAPHRAGMS.  A contact has two constants.  MODEL=EXACT gives it the impulse
@@ -8,13 +8,13 @@ stiffnesses:
 
 .. math:: \omega\bar t = \frac{e}{1+e}(\omega t_r + 2\xi), \qquad k = m\omega^2, \qquad c = 2\xi m\omega
 
-with the damping ratio and the time of release :math:`t_r` that belong to :math:`e` (`restitution`); of a
-contact with tension :math:`\bar t` is the centroid of its push.
+with the damping ratio and the time of release :math:`t_r` that correspond to :math:`e` (`restitution`).
+For a contact with tension, :math:`\bar t` is the centroid of the compressive part of its force.
 
-MODEL=PAPER is Eqs 14 to 17 and 22 of Cole et al. (2011): their restitution, the shorter collision period as
-duration, and the relation of a contact with tension whatever TENSION says; the report shows the restitution
-that comes of it.  R < 1 is the plasticity index of Eq 22; the centroid is left at that of the elastic
-collision, as there the duration.
+MODEL=PAPER uses Eqs 14 to 17 and 22 of Cole et al. (2011): their restitution, the shorter collision period
+as the duration, and the relation of a contact with tension regardless of TENSION.  The report shows the
+resulting restitution.  R < 1 is the plasticity index of Eq 22; the centroid remains that of the elastic
+collision, as the duration does in the paper.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     Raises
     ------
     ValueError
-        No DIAPHRAGMS or no masses, or the paper's equations give no restitution.
+        There are no DIAPHRAGMS or no masses, or the paper's equations give no restitution.
     """
     if values["DIAPHRAGMS"] is None:
         raise ValueError("EQUIVALENT needs the axial stiffness of the diaphragms: DIAPHRAGMS=kD1,kD2")

@@ -1,19 +1,19 @@
-r"""Coulomb friction across a contact: stick on a tangential spring, slip at a share of the normal force.
+r"""Coulomb friction across a contact: stick on a tangential spring, slip at a fraction of the normal force.
 
 .. math:: f = k_t (x - x_s) \ \text{while}\ |f| \le \mu_s N, \qquad f = \pm\mu_d N \ \text{while it slips}
 
-:math:`x` is the tangential displacement of I against J, :math:`N` the present force of the contact.  The
-spring represents the material between the nodes and the surface, so the slider itself moves at the rate
-:math:`\dot x - \dot f / k_t`; where that reverses, it sticks again:
+:math:`x` is the tangential displacement of I relative to J, and :math:`N` is the present contact force.
+The spring represents the material between the nodes and the surface, so the slider itself moves at the rate
+:math:`\dot x - \dot f / k_t`.  When this rate reverses, the slider sticks again:
 
 .. math:: \pm\dot x < \mu_d \dot N / k_t
 
-At touch the spring begins without force; bodies that slide faster than the limit grows,
+At touch the spring starts without force.  Bodies that slide faster than the limit grows,
 :math:`k_t |\dot x| > \mu_s \dot N`, slip at once.  At release the internal variables are reset.
 
 The law has normal-force coupling: before each evaluation, the internal variables `NORMAL_FORCE` and
-`NORMAL_FORCE_RATE` are set to :math:`N` and :math:`\dot N`.  Its work while it slips is no function of x
-alone; the integrator accumulates it.
+`NORMAL_FORCE_RATE` are set to :math:`N` and :math:`\dot N`.  While the law slips, its work is not a
+function of x alone; the integrator accumulates it.
 
 References
 ----------
@@ -43,13 +43,13 @@ ANCHOR = 2  #: internal variable: displacement at which the spring has no force
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open; the integrator enters the closed state with the contact."""
+    """Return the open state; the integrator changes it to closed when the contact closes."""
     return OPEN, (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Branch; internal variables: normal force and its rate, displacement at which the spring has no
-    force.
+    """Return the branch.  The internal variables are the normal force, its rate, and the displacement at
+    which the spring has no force.
     """
     kt, mu, mud = p[:3]
     if at == OPEN:
@@ -61,7 +61,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, slip, stick, or release."""
+    """Return the state after a touch, a slip, a stick or a release."""
     kt, mu, mud = p[:3]
     if at != OPEN and event == RELEASED:
         return OPEN, (0.0, 0.0, 0.0)
@@ -78,7 +78,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force, its derivatives, and work since `d0` under the present force of the contact."""
+    """Return the force, its derivatives, and the work since `d0` under the present contact force."""
     k, _, f0 = branch(p, at, m)[:3]
     return k * d + f0, k, 0.0, (0.5 * k * (d + d0) + f0) * (d - d0)
 
@@ -100,7 +100,7 @@ RULE = Rule(
 
 
 def build(kt: float, mu: float, mud: float) -> Law:
-    """Law from the tangential stiffness [F/L], the static and the dynamic coefficient [-].
+    """Return the law with the tangential stiffness [F/L] and the static and dynamic coefficients [-].
 
     Raises
     ------

@@ -1,6 +1,6 @@
 r"""Gonthier's contact: Hunt-Crossley with n = 1.5.
 
-RELATION=PUBLISHED is :math:`d = (1 - e^2)/e`, their approximation of the implicit relation that is exact
+RELATION=PUBLISHED is :math:`d = (1 - e^2)/e`, their approximation of the exact implicit relation
 (Gonthier Y, McPhee J, Lange C, Piedboeuf J-C 2004, A regularized contact model with asymmetric damping and
 dwell-time dependent friction, Multibody Syst. Dyn. 11: 209-233).
 """
@@ -20,7 +20,7 @@ N = 1.5  #: exponent
 
 
 def published(e: float) -> float:
-    """Damping constant for restitution `e` as published."""
+    """Return the published damping constant for restitution `e`."""
     return (1.0 - e * e) / e
 
 

@@ -1,7 +1,7 @@
 r"""Hertz contact: :math:`f = k\delta^n` while pressed, n = 1.5 for round bodies; restitution 1.
 
-Hunt-Crossley without damping.  Hertz H (1882), Ueber die Beruehrung fester elastischer Koerper, J. reine
-angew. Math. 92: 156-171.
+This is Hunt-Crossley without damping.  Hertz H (1882), Ueber die Beruehrung fester elastischer Koerper, J.
+reine angew. Math. 92: 156-171.
 """
 
 from __future__ import annotations

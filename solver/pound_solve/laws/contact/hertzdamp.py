@@ -3,7 +3,7 @@ r"""Hertzdamp: Hunt-Crossley with n = 1.5 and the damping of Lankarani and Nikra
 RELATION=PUBLISHED is :math:`d = 3(1 - e^2)/4` (Lankarani HM, Nikravesh PE 1990, A contact force model with
 hysteresis damping for impact analysis of multibody systems, J. Mech. Design 112(3): 369-376; for pounding
 Muthukumar S, DesRoches R 2006, A Hertz contact model with non-linear damping for pounding simulation,
-Earthquake Engng Struct. Dyn. 35(7): 811-828): near e = 1 only.
+Earthquake Engng Struct. Dyn. 35(7): 811-828); it is valid near e = 1 only.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ N = 1.5  #: exponent
 
 
 def published(e: float) -> float:
-    """Damping constant for restitution `e` as published."""
+    """Return the published damping constant for restitution `e`."""
     return 0.75 * (1.0 - e * e)
 
 

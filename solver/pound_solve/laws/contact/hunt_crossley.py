@@ -2,22 +2,22 @@ r"""Hunt-Crossley contact: damping that grows with the force of the spring.
 
 .. math:: f = k\delta^n \Bigl(1 + d\,\frac{\dot\delta}{v_0}\Bigr)
 
-with the approach speed :math:`v_0` at the instant of touch, which is located (Hunt KH, Crossley FRE 1975,
-Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42(2): 440-445).  The force
-begins and ends at zero.  RELATION=PUBLISHED is theirs, :math:`d = 3(1 - e)/2`, good for small losses.
+where :math:`v_0` is the approach speed at the instant of touch, which is located as an event (Hunt KH,
+Crossley FRE 1975, Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42(2):
+440-445).  The force begins and ends at zero.  RELATION=PUBLISHED is their relation, :math:`d = 3(1 - e)/2`,
+which is accurate for small losses.
 
-For a contact that is touched slowly and then driven together, or closed from the start, the damping would
-be unbounded.  There :math:`v_0` is replaced by the speed from which a free impact reaches the present
-overlap,
+For a contact that touches slowly and is then driven together, or that is closed initially, the damping
+would be unbounded.  There :math:`v_0` is replaced by the approach speed at which a free impact reaches the
+present overlap,
 
 .. math:: v(\delta) = \sqrt{\frac{k\delta^{n+1}}{(n+1)\,m\,\varphi(d)}}, \qquad
           \varphi(d) = \frac{d - \ln(1 + d)}{d^2},
 
-if that is larger, on a separate branch.  No free impact reaches that branch, so that none is changed and no
-smallest speed has to be chosen.  The damping then is
-:math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, like that of
-POWER_LAW_DAMPED.  Where the bodies are pulled apart faster than :math:`v_0/d` the force is zero: it never
-pulls.
+if that speed is larger, on a separate branch.  No free impact reaches that branch, so free impacts do not
+change and no minimum speed has to be chosen.  The damping is then :math:`d\sqrt{(n+1)\varphi k
+m}\;\delta^{(n-1)/2}\dot\delta`, like that of POWER_LAW_DAMPED.  If the bodies are pulled apart faster than
+:math:`v_0/d`, the force is zero: the contact never pulls.
 """
 
 from __future__ import annotations
@@ -51,23 +51,25 @@ from pound_solve.laws.contact.power import (
     stiffness_unit,
 )
 
-V0 = 0  #: internal variable: approach speed, zero where there was none
+V0 = 0  #: internal variable: approach speed, zero if there was none
 BEYOND = 2  #: branch of overlaps that no free impact reaches
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative; the internal variable is the approach speed."""
+    """Return the initial state: open, or pressed if the gap is negative; its variable is the approach
+    speed.
+    """
     return (BEYOND if p[GAP] < 0.0 else OPEN), (0.0,)
 
 
 def free_reach(p: Numbers, m: Numbers) -> float:
-    """Overlap that a free impact reaches; up to there the damping for slow touches is the larger one."""
+    """Return the overlap that a free impact reaches; below it the damping for slow touches is larger."""
     k, n, _, constant, slow = p[:5]
     return (slow * m[V0] / (constant * k)) ** (2.0 / (n + 1.0)) if constant > 0.0 else math.inf
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     if at == OPEN:
         return linear(0.0, 0.0, above(p[GAP]))
     if m[V0] == 0.0:  # a free impact reaches no overlap
@@ -79,7 +81,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, with the approach speed, go beyond the reach of a free impact and come back, or part."""
+    """Return the state after a touch, after leaving or regaining the reach of a free impact, or after
+    separation.
+    """
     if at == OPEN:
         return (PRESSED, (v,)) if v > 0.0 else (BEYOND, (0.0,))
     if event == 1:
@@ -88,14 +92,14 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring."""
+    """Return the energy of the contact spring."""
     return 0.0 if at == OPEN else spring_energy(p[K], p[EXPONENT], d - p[GAP])
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force; `p` holds k, n, gap, d, the coefficient for slow touches, and the mass."""
+    """Evaluate the force; `p` contains k, n, gap, d, the coefficient for slow touches, and the mass."""
     if at == OPEN:
         return 0.0, 0.0, 0.0, 0.0
     k, n, gap, constant, slow, mass = p[:6]
@@ -115,7 +119,7 @@ def curve(
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Force as powers of the overlap, see `Rule`."""
+    """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, constant, slow = p[:5]
     if at == OPEN:
         return 0.0, n, 0.0, n, 0.0, 0.0
@@ -137,7 +141,7 @@ RULE = Rule(
 
 
 def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:
-    """Law with the damping constant `d`; the mass is that of the colliding pair [F T^2/L]."""
+    """Return the law with the damping constant `d`; `mass` is that of the colliding pair [F T^2/L]."""
     slow = d * math.sqrt((n + 1.0) * restitution.phi(d) * k * mass)
     return Law(RULE, (k, n, gap, d, slow, mass))
 
@@ -145,12 +149,13 @@ def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:
 def build_with(
     values: Mapping[str, Any], reduced_mass: float, n: float, published: constants.Relation
 ) -> Built:
-    """Law from a card's values (GAP, K, one of D, E; RELATION), its exponent and the published relation.
+    """Build the law from a card's values (GAP, K, one of D, E; RELATION), an exponent and the published
+    relation.
 
     Raises
     ------
     ValueError
-        Both or none of D, E; or no mass.
+        Both or neither of D, E are given; or there is no mass.
     """
     constants.damping_item(values, ("D", "E"), reduced_mass)
     damping = constants.constant(

@@ -4,7 +4,8 @@ r"""Non-linear viscoelastic contact: a Hertz spring, and a dashpot in approach o
           f = k\delta^{3/2} \ (\dot\delta < 0)
 
 (Jankowski R 2005, Non-linear viscoelastic modelling of earthquake-induced structural pounding, Earthquake
-Engng Struct. Dyn. 34(6): 595-611.)  Here for any exponent n, with :math:`2\xi\sqrt{k m}\,\delta^{(n-1)/2}`.
+Engng Struct. Dyn. 34(6): 595-611.)  Here n may be any exponent, with :math:`2\xi\sqrt{k
+m}\,\delta^{(n-1)/2}`.
 
 RELATION=PUBLISHED is :math:`\xi = \tfrac{9\sqrt5}{2} \frac{1 - e^2}{e\,(e(9\pi - 16) + 16)}` (Jankowski R
 2006, Analytical expression between the impact damping ratio and the coefficient of restitution in the
@@ -48,7 +49,7 @@ from pound_solve.laws.refusal import ItemError
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     if at == OPEN:
         return linear(0.0, 0.0, above(p[GAP]))
     if at == APPROACH:
@@ -57,14 +58,14 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring."""
+    """Return the energy of the contact spring."""
     return 0.0 if at == OPEN else spring_energy(p[K], p[EXPONENT], d - p[GAP])
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force; `p` holds k, n, gap, the coefficient of the dashpot, and the mass."""
+    """Evaluate the force; `p` contains k, n, gap, the coefficient of the dashpot, and the mass."""
     if at == OPEN:
         return 0.0, 0.0, 0.0, 0.0
     k, n, gap, c, mass = p[:5]
@@ -79,7 +80,7 @@ def curve(
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Force as powers of the overlap, see `Rule`."""
+    """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, c = p[:4]
     return (0.0 if at == OPEN else k), n, (c if at == APPROACH else 0.0), 0.5 * (n - 1.0), 0.0, 0.0
 
@@ -90,7 +91,7 @@ RULE = Rule(
 
 
 def published(e: float) -> float:
-    """Damping ratio for restitution `e` as published."""
+    """Return the published damping ratio for restitution `e`."""
     return 4.5 * math.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
 
 
@@ -100,7 +101,8 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     Raises
     ------
     ValueError
-        Both or none of XI, E; or no mass; or the published relation with another exponent than its own.
+        Both or neither of XI, E are given; there is no mass; or the exponent is not that of the published
+        relation.
     """
     k, n = values["K"], values["N"]
     constants.damping_item(values, ("XI", "E"), reduced_mass)
@@ -108,7 +110,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         raise ItemError(
             "the published relation of E to XI is for N=1.5: RELATION=EXACT holds for any N", "N"
         )
-    scale = math.sqrt(2.0 / (n + 1.0))  # to the ratio of the linear law with the same path
+    scale = math.sqrt(2.0 / (n + 1.0))  # to the damping ratio of the linear law with the same path
     damping = constants.constant(
         values,
         "XI",

@@ -2,16 +2,16 @@ r"""Kelvin-Voigt contact: spring and dashpot, :math:`f = k\delta + c\dot\delta` 
 
 With TENSION=NO (default) the contact releases where the force falls to zero, with some overlap left
 (Shakya, Wijeyewickrema and Ohmachi 2008, 14th World Conf. Earthquake Engng, Beijing);
-with TENSION=YES it holds until the overlap is gone and pulls before it does (Anagnostopoulos 1988,
+with TENSION=YES it lasts until the overlap is gone, and pulls shortly before that (Anagnostopoulos 1988,
 Earthquake Engng Struct. Dyn. 16: 443-456).
 
 The dashpot is given as C, as damping ratio XI, or as restitution E.
-The relation of E to XI is the exact one of the form chosen, or by RELATION=PUBLISHED the published one,
+The relation of E to XI is the exact one for the chosen form or, with RELATION=PUBLISHED, the published one,
 :math:`\xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}`, which is exact only with tension.
 
-Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; of an overlap :math:`\delta_r` left at
-release the contact element loses :math:`\tfrac12 k(\delta_r^2 - \delta^2)` as it relaxes alone to
-:math:`\delta`.
+Energy: the loss in the dashpot is the integral of :math:`c\dot\delta^2`.  If an overlap :math:`\delta_r`
+remains at release, the contact element loses :math:`\tfrac12 k(\delta_r^2 - \delta^2)` while it relaxes
+without force to :math:`\delta`.
 """
 
 from __future__ import annotations
@@ -26,34 +26,34 @@ from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 
 OPEN, PRESSED, RELEASED = 0, 1, 2
-C, PULLS = 1, 3  #: parameters of a law beside K and GAP: dashpot; whether it may pull
+C, PULLS = 1, 3  #: parameters of a law besides K and GAP: dashpot; whether it may pull
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    """Return the initial state: open, or pressed if the gap is negative (an initial overlap)."""
     return (PRESSED if p[GAP] < 0.0 else OPEN), ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     k, c, gap, tension = p[:4]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
     if at == RELEASED:
-        # overlap left, force zero: pressed again if k*overlap + c*rate becomes positive
+        # some overlap remains, without force: pressed again if k*overlap + c*rate becomes positive
         return linear(0.0, 0.0, (k, c, -k * gap), below(gap))
     return linear(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, release, or part."""
+    """Return the state after a touch, a release or a separation."""
     if at == OPEN or (at == RELEASED and event == 0):
         return PRESSED, m
     return (OPEN if at == RELEASED or p[PULLS] != 0.0 or p[C] == 0.0 else RELEASED), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring; after a release it is lost within the contact as the overlap
+    """Return the energy of the contact spring; after a release it is lost within the contact as the overlap
     vanishes.
     """
     return 0.0 if at == OPEN else 0.5 * p[K] * (d - p[GAP]) ** 2
@@ -75,7 +75,7 @@ RULE = Rule(
 
 
 class Built(NamedTuple):
-    """A contact law with its figures in the report; NaN for values that depend on the speed.
+    """A contact law with its values for the report; values that depend on the speed are NaN.
 
     Attributes
     ----------
@@ -87,12 +87,12 @@ class Built(NamedTuple):
     xi : float
         Damping ratio of the closed contact with the reduced mass.
     e_asked, e_given : float
-        Restitution that the card asks for, and that the law gives.
+        Restitution that the card requires, and restitution that the law gives.
     note : str
         For the report.
     unit : str
     limit : float
-        Overlap up to which the law is meant [L].
+        Largest overlap for which the law is intended [L].
     """
 
     law: Law

@@ -1,15 +1,16 @@
-r"""Lagrange multiplier: bodies that touch stay together for as long as the multiplier presses.
+r"""Lagrange multiplier: bodies that touch stay together while the multiplier is compressive.
 
-At touch the two nodes take up one velocity, with the momentum that they had; while they are together
-:math:`b^T u` stays at the gap, and the multiplier :math:`\lambda` of that condition is the contact force;
-they part, without a jump, when it would pull.  The restitution of such a collision comes from the bodies
-behind the nodes: divided into elements they emit waves, whose return ends the contact.
+At touch the two nodes take a common velocity that conserves their momentum.  While they are together,
+:math:`b^T u` stays at the gap, and the multiplier :math:`\lambda` of that constraint is the contact force.
+They separate without a jump when the multiplier would become tensile.  The restitution of such a collision
+comes from the bodies behind the nodes: if they are divided into elements, they emit waves whose return ends
+the contact.
 
-This is the idea of Papadrakakis M, Mouzakis H, Plevris N, Bitzarakis S (1991), Earthquake Engng Struct.
+The idea is that of Papadrakakis M, Mouzakis H, Plevris N, Bitzarakis S (1991), Earthquake Engng Struct.
 Dyn. 20: 981-998, whose details are not followed; the impact conditions of lumped nodes are those of Hughes
 TJR, Taylor RL, Sackman JL, Curnier A, Kanoknukulchai W (1976), Comput. Methods Appl. Mech. Engng 8:
 249-276.
-It is the rule of :mod:`.stereomechanics` with a restitution of zero unless E says more.
+The law is that of :mod:`.stereomechanics`, with a restitution of zero unless E is given.
 """
 
 from __future__ import annotations

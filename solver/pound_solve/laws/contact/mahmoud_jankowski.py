@@ -2,12 +2,12 @@ r"""Modified viscoelastic contact: the dashpot of Kelvin-Voigt, in approach only
 
 .. math:: f = k\delta + c\dot\delta \ (\dot\delta > 0), \qquad f = k\delta \ (\dot\delta < 0)
 
-The force is continuous where the motion reverses, falls to zero with the overlap, and never pulls
-(Mahmoud S, Jankowski R 2011, Modified linear viscoelastic model of earthquake-induced structural pounding,
-Iranian J. Sci. Technol. Trans. Civ. Engng 35(C1): 51-62).  Bodies that come together again before they have
-parted meet the dashpot again.
+The force is continuous where the motion reverses, falls to zero with the overlap, and never pulls (Mahmoud
+S, Jankowski R 2011, Modified linear viscoelastic model of earthquake-induced structural pounding, Iranian
+J. Sci. Technol. Trans. Civ. Engng 35(C1): 51-62).  The dashpot also acts when bodies approach again before
+they have separated.
 
-RELATION=PUBLISHED is theirs, :math:`\xi = (1 - e^2) / (e\,(e(\pi - 2) + 2))`.
+RELATION=PUBLISHED is their relation, :math:`\xi = (1 - e^2) / (e\,(e(\pi - 2) + 2))`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ BRANCHES = (*BranchKind.OPEN.named("open"), *BranchKind.PRESSED.named("pressed",
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     k, c, gap = p[:3]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
@@ -49,14 +49,14 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, reverse, or part."""
+    """Return the state after a touch, a reversal or a separation."""
     if at == OPEN or (at == PARTING and event == 1):
         return APPROACH, m
     return (PARTING if at == APPROACH and event == 0 else OPEN), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring."""
+    """Return the energy of the contact spring."""
     return 0.0 if at == OPEN else 0.5 * p[K] * (d - p[GAP]) ** 2
 
 
@@ -64,7 +64,7 @@ RULE = Rule(BRANCHES, start, branch, transition, recoverable, parameters=3, vari
 
 
 def published(e: float) -> float:
-    """Damping ratio for restitution `e` as published."""
+    """Return the published damping ratio for restitution `e`."""
     return (1.0 - e * e) / (e * (e * (math.pi - 2.0) + 2.0))
 
 

@@ -1,4 +1,4 @@
-r"""Modified Kelvin contact: Hunt-Crossley with n = 1, so that neither touch nor release has a jump.
+r"""Modified Kelvin contact: Hunt-Crossley with n = 1, without a force jump at touch or release.
 
 RELATION=PUBLISHED is :math:`d = 3(1 - e)/(2e)` (Ye K, Li L, Zhu H 2009, A modified Kelvin impact model for
 pounding simulation of base-isolated building with adjacent structures, Earthquake Engng Engng Vib. 8:
@@ -20,7 +20,7 @@ N = 1.0  #: exponent
 
 
 def published(e: float) -> float:
-    """Damping constant for restitution `e` as published."""
+    """Return the published damping constant for restitution `e`."""
     return 1.5 * (1.0 - e) / e
 
 

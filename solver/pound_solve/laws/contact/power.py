@@ -1,4 +1,4 @@
-r"""Spring and dashpot that grow with powers of the overlap: what the curved contact laws share.
+r"""Spring and dashpot forces that are powers of the overlap: the common part of the curved contact laws.
 
 .. math:: f = k x^n, \qquad c\,x^{(n-1)/2}\dot x, \qquad x = \delta \ge 0
 """
@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pound_deck.schema import Field, Kind
 
-EXPONENT = 1  #: place of n among the parameters of a law on such a spring, after K
-#: fraction of a law's kinetic scale below which its spring counts as just touched
+EXPONENT = 1  #: index of n among the parameters of a law with such a spring, after K
+#: a contact counts as just touched while its spring energy is below this fraction of its kinetic scale
 TOUCH = 1e-20
 
 
@@ -33,12 +33,12 @@ def drag(c: float, n: float, x: float) -> float:
 
 
 def drag_slope(k: float, n: float, mass: float, x: float, v: float, c: float) -> float:
-    """Derivative with respect to the overlap `x` of the dashpot's force ``c v`` with the present
-    coefficient `c`.
+    """Return the derivative of the dashpot force ``c v`` with respect to the overlap `x`; `c` is the
+    present coefficient.
 
-    With n < 3 it is infinite at touch, where rounding alone decides what `x` is: an iteration that follows
-    it there diverges.  As long as the energy of the spring is negligible beside that of the motion, zero
-    is the better derivative.
+    With n < 3 it is infinite at touch, where `x` consists of rounding error only, and an iteration that
+    uses it there diverges.  While the energy of the spring is negligible compared with that of the motion,
+    zero is the better derivative.
     """
     if x <= 0.0 or k * x ** (n + 1.0) <= TOUCH * mass * v * v:
         return 0.0
@@ -46,12 +46,12 @@ def drag_slope(k: float, n: float, mass: float, x: float, v: float, c: float) ->
 
 
 def stiffness_field(n: float) -> Field:
-    """K of a law with that exponent."""
+    """Return the field K of a law with the exponent `n`."""
     return Field("K", Kind.REAL, stiffness_unit(n), above=0, doc="contact stiffness: force at unit overlap")
 
 
 def power_fields(n: float, linear: bool = True) -> tuple[Field, Field]:
-    """K and N of a law whose exponent is free, by default `n`; `linear`: N may be 1."""
+    """Return the fields K and N of a law with a free exponent, `n` by default; `linear`: N may be 1."""
     return (
         Field("K", Kind.REAL, "F/L^N", above=0, doc="contact stiffness: force at unit overlap"),
         Field(

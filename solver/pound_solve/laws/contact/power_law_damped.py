@@ -1,16 +1,15 @@
-r"""Power law with the damping whose restitution does not depend on the speed.
+r"""Power law with a damping that makes the restitution independent of the speed.
 
 .. math:: f = k\delta^n + \alpha\sqrt{m k}\;\delta^{(n-1)/2}\dot\delta
 
 (Tsuji Y, Tanaka T, Ishida T 1992, Powder Technol. 71: 239-250, for n = 1.5; for any n and with the relation
 of RELATION=PUBLISHED, :math:`\alpha = -\sqrt{2(n+1)}\ln e/\sqrt{\pi^2 + \ln^2 e}`: arXiv:2603.27764.)  That
-relation is exact with TENSION=YES, where the contact holds until the overlap is gone.  With TENSION=NO
-(default) there is no force where the sum is below zero, and the exact relation is that of the linear
-contact.
+relation is exact with TENSION=YES, where the contact lasts until the overlap is gone.  With TENSION=NO
+(default) the force is zero where the sum is negative, and the exact relation is that of the linear contact.
 
-The overlap at which the force vanishes moves with the rate along a curve, so that no event function
-describes it: the contact is pressed until the overlap is gone, without force in the last part.  The energy
-left in the spring there counts as lost.
+The overlap at which the force vanishes is a nonlinear function of the rate, which no event function can
+describe.  The contact therefore stays on its pressed branch until the overlap is gone, without force in the
+last part.  The energy that remains in the spring there counts as lost.
 """
 
 from __future__ import annotations
@@ -46,29 +45,31 @@ from pound_solve.laws.contact.power import (
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative."""
+    """Return the initial state: open, or pressed if the gap is negative."""
     return (PRESSED if p[GAP] < 0.0 else OPEN), ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     return linear(0.0, 0.0, above(p[GAP]) if at == OPEN else below(p[GAP]))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch or part."""
+    """Return the state after a touch or a separation."""
     return (PRESSED if at == OPEN else OPEN), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring."""
+    """Return the energy of the contact spring."""
     return 0.0 if at == OPEN else spring_energy(p[K], p[EXPONENT], d - p[GAP])
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force; `p` holds k, n, gap, the coefficient of the dashpot, the mass, and whether it may pull."""
+    """Evaluate the force; `p` contains k, n, gap, the dashpot's coefficient, the mass, and whether it may
+    pull.
+    """
     if at == OPEN:
         return 0.0, 0.0, 0.0, 0.0
     k, n, gap, c, mass, tension = p[:6]
@@ -79,12 +80,12 @@ def curve(
     force = spring + c * v
     if x <= 0.0 or (force < 0.0 and tension == 0.0):
         return 0.0, 0.0, 0.0, work
-    # the pull of a sticky release falls to zero with an infinite slope, which an iteration must not follow
+    # at a release with tension the pull vanishes with an infinite slope, which an iteration must not use
     return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Force as powers of the overlap, see `Rule`."""
+    """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, c, _, tension = p[:6]
     return (0.0, n, 0.0, n, 0.0, 0.0) if at == OPEN else (k, n, c, 0.5 * (n - 1.0), tension, 0.0)
 
@@ -108,7 +109,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     Raises
     ------
     ValueError
-        Both or none of ALPHA, E; or no mass.
+        Both or neither of ALPHA, E are given; or there is no mass.
     """
     k, n, tension = values["K"], values["N"], values["TENSION"] == "YES"
     constants.damping_item(values, ("ALPHA", "E"), reduced_mass)

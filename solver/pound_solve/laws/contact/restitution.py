@@ -1,15 +1,14 @@
-r"""Restitution of a free impact against the damping constant of a contact law.
+r"""Relations between the restitution of a free impact and the damping constant of a contact law.
 
-Two masses meet with the speed :math:`v_0`, reduced mass :math:`m`.
+Two masses with the reduced mass :math:`m` collide at the approach speed :math:`v_0`.
 
 **Spring and dashpot**, :math:`f = k\delta + c\dot\delta`, :math:`\xi = c / (2\sqrt{k m})`.
 
 *Sticky* (released at :math:`\delta = 0`, tension allowed): :math:`e = \exp(-\pi\xi/\sqrt{1-\xi^2})`,
 Anagnostopoulos (2004), Earthquake Engng Struct. Dyn. 33: 897-902; Cole et al. (2011), Eqs 15-17.
 
-*No tension* (released at :math:`f = 0`):
-the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`;
-:math:`f = 0` at :math:`t = 2\arccos(\xi)/\omega_d`, where
+*No tension* (released at :math:`f = 0`): the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega
+t}\sin\omega_d t`, and :math:`f = 0` at :math:`t = 2\arccos(\xi)/\omega_d`, so that
 
 .. math:: e = \exp\!\left(-\frac{2\xi\arccos\xi}{\sqrt{1-\xi^2}}\right), \qquad
           e = \exp\!\left(-\frac{2\xi\,\mathrm{arcosh}\,\xi}{\sqrt{\xi^2-1}}\right)\ (\xi > 1)
@@ -21,20 +20,20 @@ Its impulse is :math:`(1 + e) m v_0`; :math:`\int f t\,dt = m v_0 e (t_r + 2\xi/
 
 *One-sided* (the dashpot acts in approach only): the motion reverses at half that time,
 :math:`\arccos(\xi)/\omega_d`, and the spring releases its energy at that instant, so that this restitution
-is the root of the one above.
+is the square root of the one above.
 
-**Power laws** :math:`f = k\delta^n + c\,\delta^{(n-1)/2}\dot\delta`: with :math:`x = \delta^{(n+1)/2}` the
+**Power laws** :math:`f = k\delta^n + c\,\delta^{(n-1)/2}\dot\delta`: with :math:`x = \delta^{(n+1)/2}`, the
 path in the plane of :math:`x` and :math:`\dot\delta` is that of the linear contact with the mass
-:math:`(n+1)m/2`, so that all three hold with :math:`\xi = c / \sqrt{2(n+1) k m}`.
+:math:`(n+1)m/2`, so that all three relations hold with :math:`\xi = c / \sqrt{2(n+1) k m}`.
 
-**Damping that grows with the spring's force** :math:`F(\delta)`, whatever that is: with
+**Damping that grows with the spring force** :math:`F(\delta)`, for any such force: with
 :math:`u = \dot\delta/v_0`
 
 .. math:: \frac{u\,du}{1 + d u} = -\frac{F\,d\delta}{m v_0^2}, \qquad
           \int_0^u \frac{s\,ds}{1 + d s} = u^2 \varphi(d u), \qquad
           \varphi(x) = \frac{x - \ln(1 + x)}{x^2}
 
-*In both phases*, :math:`f = F(1 + d\dot\delta/v_0)`: the spring does the same work in both,
+*In both phases*, :math:`f = F(1 + d\dot\delta/v_0)`: the spring does the same work in both phases,
 :math:`\varphi(d) = e^2 \varphi(-d e)`, which is :math:`\ln\frac{1 + d}{1 - d e} = d (1 + e)`.
 
 *In restitution only*: :math:`\tfrac12 = e^2 \varphi(-d e)`.
@@ -54,13 +53,13 @@ def with_tension(xi: float) -> float:
 
 
 def with_tension_ratio(e: float) -> float:
-    """Damping ratio [-] that gives restitution `e` in (0, 1] with tension until the overlap is gone."""
+    """Return the damping ratio [-] for restitution `e` in (0, 1] with tension until the overlap is gone."""
     log = math.log(e)
     return -log / math.sqrt(math.pi**2 + log * log)
 
 
 def no_tension_time(xi: float) -> float:
-    """Time of release at zero force for damping ratio `xi`, times the undamped frequency [-]."""
+    """Return the time of release at zero force for damping ratio `xi`, times the undamped frequency [-]."""
     above_1 = xi - 1.0
     if abs(above_1) < 1e-6:
         # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 share the series
@@ -77,7 +76,7 @@ def no_tension(xi: float) -> float:
 
 
 def no_tension_ratio(e: float) -> float:
-    """Damping ratio [-] that gives restitution `e` in (0, 1] with release at zero force."""
+    """Return the damping ratio [-] for restitution `e` in (0, 1] with release at zero force."""
     if e == 1.0:
         return 0.0
     high = 1.0
@@ -87,7 +86,9 @@ def no_tension_ratio(e: float) -> float:
 
 
 def push_centroid(xi: float) -> float:
-    """Centroid of the force until it is zero, after the touch, times the undamped frequency [-]."""
+    """Return the time from the touch to the centroid of the compressive force, times the undamped frequency
+    [-].
+    """
     e = no_tension(xi)
     return e * (no_tension_time(xi) + 2.0 * xi) / (1.0 + e)
 
@@ -98,12 +99,12 @@ def one_sided(xi: float) -> float:
 
 
 def one_sided_ratio(e: float) -> float:
-    """Damping ratio [-] that gives restitution `e` in (0, 1] with a dashpot in approach only."""
+    """Return the damping ratio [-] for restitution `e` in (0, 1] with a dashpot in approach only."""
     return no_tension_ratio(e * e)
 
 
 def phi(x: float) -> float:
-    """Return ``(x - ln(1 + x)) / x^2``, 1/2 at zero; it falls, from infinity at -1."""
+    """Return ``(x - ln(1 + x)) / x^2``, which is 1/2 at zero and decreases from infinity at -1."""
     if x <= -1.0:
         return math.inf
     if abs(x) > 0.1:
@@ -140,7 +141,7 @@ def in_restitution_constant(e: float) -> float:
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Root of a falling function, by bisection to the last bit."""
+    """Return the root of a decreasing function, by bisection to the last bit."""
     while True:
         middle = 0.5 * (low + high)
         if middle in (low, high):

@@ -1,4 +1,5 @@
-r"""Rubber bumper of limited thickness: elastic in approach, damped in restitution, stiff when used up.
+r"""Rubber bumper of limited thickness: elastic in approach, damped in restitution, stiff when fully
+compressed.
 
 .. math:: F(\delta) = k\delta^n \ (\delta \le \delta_u), \qquad
           F(\delta) = k\delta_u^n + k_u(\delta - \delta_u) \ (\delta > \delta_u), \qquad
@@ -6,16 +7,17 @@ r"""Rubber bumper of limited thickness: elastic in approach, damped in restituti
 
 after Polycarpou PC, Komodromos P, Polycarpou AC (2013), A nonlinear impact model for simulating the use of
 rubber shock absorbers for mitigating the effects of structural pounding during earthquakes, Earthquake
-Engng Struct. Dyn. 42(1): 81-100.  Only its abstract was at hand: the model (the spring, the damping in
-restitution alone, the stiff branch beyond a limit), the defaults N = 2.65 and LIMIT = 0.8 and the published
-relation :math:`d = 1.55 (1 - e^2) / e^{0.7076}` are quoted from memory.  The relation is a fit to the exact
-one, to 0.016 in e from 0.2 on.  For a real bumper give its own numbers.
+Engng Struct. Dyn. 42(1): 81-100.  Only the abstract was available.  The model (the spring, the damping in
+restitution only, the stiff branch beyond a limit), the defaults N = 2.65 and LIMIT = 0.8 and the published
+relation :math:`d = 1.55 (1 - e^2) / e^{0.7076}` are quoted from memory.  The relation fits the exact one to
+within 0.016 in e for e of 0.2 and above.  Use measured values for a real bumper.
 
-That the damping acts on the stiff branch too is our choice: the force is continuous, and the restitution is
-as required for any overlap.
+It is our choice that the damping also acts on the stiff branch: the force is then continuous, and the
+restitution has the required value for any overlap.
 
-After a slow touch the damping would be unbounded.  So :math:`v_0` is never less than the speed from
-which a free impact reaches the overlap at which the motion reversed, :math:`\sqrt{2\int F\,d\delta/m}`.
+After a slow touch the damping would be unbounded.  Therefore :math:`v_0` is never less than the approach
+speed at which a free impact reaches the overlap at which the motion reversed, :math:`\sqrt{2\int
+F\,d\delta/m}`.
 """
 
 from __future__ import annotations
@@ -43,21 +45,21 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.contact.power import power_fields, spring_energy, spring_force, stiffness_unit
 from pound_solve.laws.refusal import ItemError
 
-OPEN, APPROACH, PARTING, STIFF_APPROACH, STIFF_PARTING = range(5)  #: stiff: the rubber is used up
-# parameters of a law beside K, EXPONENT and GAP: limit, stiffness beyond it, damping constant d, mass
+OPEN, APPROACH, PARTING, STIFF_APPROACH, STIFF_PARTING = range(5)  #: stiff: the rubber is fully compressed
+# parameters of a law besides K, EXPONENT and GAP: limit, stiffness beyond it, damping constant d, mass
 LIMIT, K_BEYOND, D, MASS = 3, 4, 5, 6
 V0 = 0  #: internal variable: the speed v0
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative; the internal variable is the speed v0."""
+    """Return the initial state: open, or pressed if the gap is negative; its variable is the speed v0."""
     if p[GAP] >= 0.0:
         return OPEN, (0.0,)
     return (APPROACH if -p[GAP] <= p[LIMIT] else STIFF_APPROACH), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure, overlap = closure - gap."""
+    """Return the branch; the deformation is the closure, and overlap = closure - gap."""
     gap, limit = p[GAP], p[LIMIT]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
@@ -73,8 +75,8 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, with the approach speed; reverse; reach the limit of the rubber or come back from it; or
-    part.
+    """Return the state after a touch, a reversal, a passage of the rubber's limit in either direction, or a
+    separation.
     """
     if at == OPEN:
         return APPROACH, (max(v, 0.0),)
@@ -91,7 +93,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def spring(p: Numbers, x: float) -> tuple[float, float, float]:
-    """Force of the bumper without damping, its stiffness, and its energy."""
+    """Return the force of the bumper without damping, its stiffness, and its energy."""
     k, n, _, limit, k_beyond = p[:D]
     if x <= 0.0:
         return 0.0, 0.0, 0.0
@@ -111,7 +113,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force; `p` holds k, n, gap, the limit, the stiffness beyond it, d, and the mass."""
+    """Evaluate the force; `p` contains k, n, gap, the limit, the stiffness beyond it, d, and the mass."""
     if at == OPEN:
         return 0.0, 0.0, 0.0, 0.0
     force, stiffness, energy = spring(p, d - p[GAP])
@@ -125,7 +127,7 @@ def curve(
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Force as powers of the overlap, see `Rule`."""
+    """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, limit, k_beyond, constant = p[:MASS]
     if at == OPEN:
         return 0.0, n, 0.0, n, 0.0, 0.0
@@ -153,7 +155,7 @@ RULE = Rule(
 
 
 def published(e: float) -> float:
-    """Damping constant for restitution `e` as published, a fit to the exact relation."""
+    """Return the published damping constant for restitution `e`, a fit to the exact relation."""
     c: float = 1.55 * (1.0 - e * e) / e**0.7076
     return c
 
@@ -164,7 +166,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     Raises
     ------
     ValueError
-        Both or none of D, E; or of THICKNESS and KU only one; or no mass.
+        Both or neither of D, E are given; only one of THICKNESS and KU is given; or there is no mass.
     """
     k, n, thickness, ku = (values[x] for x in ("K", "N", "THICKNESS", "KU"))
     if (thickness is None) != (ku is None):

@@ -1,18 +1,18 @@
-r"""Stereomechanics: rigid bodies that meet change their velocities at once.
+r"""Stereomechanics: rigid bodies that collide change their velocities instantaneously.
 
-Two masses that approach each other at :math:`v_1 - v_2 > 0` part with
+Two masses that approach each other at :math:`v_1 - v_2 > 0` separate with
 
 .. math:: v_1' = v_1 - (1+e)\frac{m_2}{m_1+m_2}(v_1-v_2), \qquad
           v_2' = v_2 - (1+e)\frac{m_1}{m_1+m_2}(v_2-v_1)
 
 (Goldsmith W (1960), Impact, Arnold; Cole et al. (2011), Earthquake Engng Struct. Dyn. 40: 641-659,
 Eqs 1-2).
-With the contact's row b in a structure of mass M this is the impulse
+For a contact with the row b in a structure with the mass matrix M, this is the impulse
 
 .. math:: J = (1+e)\,\frac{b^T v}{b^T M^{-1} b}, \qquad v' = v - M^{-1} b\,J
 
-An impact without rebound closes the contact: from then on it holds its deformation by the force that
-this requires, and it opens when the force would pull (:mod:`~pound_solve.integrate.rigid.contacts`).
+An impact without rebound closes the contact.  The contact then holds its deformation with the required
+force, and opens when that force would become tensile (:mod:`~pound_solve.integrate.rigid.contacts`).
 """
 
 from __future__ import annotations
@@ -27,26 +27,26 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
 OPEN, PRESSED = 0, 1
-FORCE = 0  #: internal variable: force in a static state; a history computes its own forces
+FORCE = 0  #: internal variable: force in a static state; a time history computes the force itself
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open."""
+    """Return the open state."""
     return OPEN, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Open up to the gap; pressed until the force falls below zero."""
+    """Return the branch: open up to the gap; pressed until the force falls below zero."""
     return linear(0.0, m[FORCE], above(p[GAP]) if at == OPEN else below(0.0))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch or part."""
+    """Return the state after a touch or a separation."""
     return (PRESSED if at == OPEN else OPEN), (0.0,)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Nothing: it does not deform."""
+    """Return zero: the contact does not deform."""
     return 0.0
 
 
@@ -67,7 +67,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     Raises
     ------
     ValueError
-        An overlap, which rigid bodies cannot have; or a node without mass, which nothing would stop.
+        There is an initial overlap, which rigid bodies cannot have; or a node has no mass.
     """
     if values["GAP"] < 0.0:
         raise ItemError(

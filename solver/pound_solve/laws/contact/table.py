@@ -1,18 +1,18 @@
-r"""A force given by points: a bumper or stop of any shape, and what crushes.
+r"""A force given by points: a bumper or a stop with any force curve, which may crush permanently.
 
-The force runs straight from (0, 0) through the points and goes on beyond the last one with its last slope.
-Without KU it unloads along the same line.  With it, the contact is crushed: from the largest overlap
+The force is linear between (0, 0) and the points, and continues beyond the last point with the last slope.
+Without KU it unloads along the same lines.  With KU the contact is crushed: from the largest overlap
 :math:`\delta_m` the force falls along the unloading stiffness,
 
 .. math:: f = K_u(\delta - \delta_r), \qquad \delta_r = \delta_m - F(\delta_m)/K_u
 
-and the bodies part at the residual depth :math:`\delta_r`, where they touch the next time: the gap has
-grown by it.  Pressed again the force follows the same line up to :math:`\delta_m`, then the table.
-:math:`K_u` is at least the steepest slope of the table, so that the residual depth never shrinks.
+and the bodies separate at the residual depth :math:`\delta_r`.  The gap has grown by this depth, so the
+next touch occurs there.  On reloading the force follows the same line up to :math:`\delta_m`, then the
+table.  :math:`K_u` is at least the steepest slope of the table, so the residual depth never decreases.
 
 References
 ----------
-None but the points; code_aster's DIS_CHOC_ENDO (validation cases SDND102 model G, SDND105) is such a law.
+None.  DIS_CHOC_ENDO of code_aster (validation cases SDND102 model G, SDND105) is a similar law.
 """
 
 from __future__ import annotations
@@ -46,17 +46,17 @@ RESIDUAL, LARGEST, SEGMENT = range(3)  #: internal variables: residual depth; la
 
 
 def point(p: Numbers, i: int) -> tuple[float, float]:
-    """Overlap and force of a point; the one before the first is zero."""
+    """Return the overlap and the force of a point; the point before the first is (0, 0)."""
     return (p[POINTS + 2 * i - 2], p[POINTS + 2 * i - 1]) if i > 0 else (0.0, 0.0)
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    """Return the initial state: open, or pressed if the gap is negative (an initial overlap)."""
     return (1 if p[GAP] < 0.0 else OPEN), (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Open, along the line of unloading, or along a segment of the table."""
+    """Return the branch: open, along the unloading line, or along a segment of the table."""
     ku, gap, count = p[KU], p[GAP], int(p[COUNT])
     if at == OPEN:
         return linear(0.0, 0.0, above(gap + m[RESIDUAL]))
@@ -69,7 +69,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, go to the next segment of the table or back, unload, or part."""
+    """Return the state after a touch, a change of segment, an unloading or a separation."""
     ku, gap = p[KU], p[GAP]
     if at == OPEN:
         return (1 if m[LARGEST] == 0.0 else UNLOADING), m
@@ -86,7 +86,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Area below the table, or below the line of unloading."""
+    """Return the area below the table, or below the unloading line."""
     if at == OPEN:
         return 0.0
     if p[KU] != 0.0:
@@ -100,7 +100,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 def steepest(p: Numbers) -> float:
-    """Slope of the steepest segment, or KU, which is not below it."""
+    """Return KU, which is not below any slope of the table, or without KU the steepest slope."""
     ends = [point(p, i) for i in range(int(p[COUNT]) + 1)]
     return max(p[KU], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
 
@@ -131,7 +131,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     Raises
     ------
     ValueError
-        Points that make no table, or a KU below its steepest slope.
+        The points do not form a valid table, or KU is below its steepest slope.
     """
     depths, forces, ku = values["DEPTHS"], values["FORCES"], values["KU"]
     if len(depths) != len(forces):

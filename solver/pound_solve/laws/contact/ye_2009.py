@@ -1,8 +1,8 @@
 r"""Corrected Hertzdamp: Hunt-Crossley with n = 1.5 and the damping of Ye, Li and Zhu.
 
 RELATION=PUBLISHED is :math:`d = 8(1 - e)/(5e)` (Ye K, Li L, Zhu H 2009, A note on the Hertz contact model
-with nonlinear damping for pounding simulation, Earthquake Engng Struct. Dyn. 38(9): 1135-1142; the same in
-Flores P et al. 2011, Multibody Syst. Dyn. 25: 357-375).
+with nonlinear damping for pounding simulation, Earthquake Engng Struct. Dyn. 38(9): 1135-1142; the same
+relation in Flores P et al. 2011, Multibody Syst. Dyn. 25: 357-375).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ N = 1.5  #: exponent
 
 
 def published(e: float) -> float:
-    """Damping constant for restitution `e` as published."""
+    """Return the published damping constant for restitution `e`."""
     return 1.6 * (1.0 - e) / e
 
 

@@ -1,1 +1,1 @@
-"""Laws of dampers, one law a file."""
+"""Damper laws, one per file."""

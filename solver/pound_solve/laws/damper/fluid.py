@@ -3,14 +3,14 @@ r"""Fluid viscous damper: a force that is a power of the rate.
 .. math:: f = C\,\mathrm{sgn}(v)\,|v|^\alpha, \qquad |f| \le F, \qquad
           f = 0 \ \text{while}\ g^- < d < g^+
 
-The force limit :math:`F` is that of a relief valve.  The play :math:`g` is a part of the stroke where a
-bypass is open: beyond it the damper resists the motion in both directions.
+The force limit :math:`F` is that of a relief valve.  The play :math:`g` is the part of the stroke in which
+a bypass is open; beyond it the damper resists motion in both directions.
 
-The force has a corner where the motion reverses, where the relief valve opens and at the ends of the play:
-each is a change of branch.  For :math:`\alpha < 1` the slope at :math:`v = 0` is infinite.  There the force
-runs along a straight line from the rate `CORE` on the side that it moves to through zero, on the other side
-until the branch changes at the rate `CORE` there.  So it is concave ahead of the motion and straight behind
-it, and Newton's iteration converges from any start.
+The force has a kink where the motion reverses, where the relief valve opens and at the ends of the play;
+the branch changes at each of them.  For :math:`\alpha < 1` the slope at :math:`v = 0` is infinite.  There
+the force follows a straight line from the rate `CORE` in the direction of motion through zero to the rate
+`CORE` in the other direction, at which the branch changes.  The force is therefore concave in the direction
+of motion and straight in the other, and Newton's iteration converges from any start.
 
 References
 ----------
@@ -43,18 +43,20 @@ from pound_solve.laws.mirror import inward, on_side, side
 # parameters of a law, after a stiffness of zero: dashpot and exponent; for both directions the largest
 # forces, the rates at which they are reached, and the ends of the play
 C, ALPHA, MOST, MOST_MINUS, FAST, FAST_MINUS, FROM, FROM_MINUS = range(1, 9)
-PLAY_SIDE = 0  #: internal variable: side of the play on which it is (1 or -1; 0: there is none)
-PLAY, MOVING, LIMITED = 0, 1, 3  #: branches of an extending damper; those of a shortening one are one more
-CORE = 1e-12  #: rate up to which the force is straight, as a share of the rate one, at which it is C
+PLAY_SIDE = 0  #: internal variable: side of the play on which the damper is (1 or -1; 0: there is no play)
+PLAY, MOVING, LIMITED = 0, 1, 3  #: branches of an extending damper; add one for a shortening damper
+CORE = 1e-12  #: rate up to which the force is linear, as a fraction of the unit rate, at which it is C
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """In the play, or moving where there is none."""
+    """Return the initial state: in the play, or moving if there is no play."""
     return (PLAY if p[FROM] > p[FROM_MINUS] else MOVING), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Events: a reversal, the limit is reached or no longer, the play begins or ends."""
+    """Return the branch; its events are a reversal, reaching or leaving the limit, and the ends of the
+    play.
+    """
     if at == PLAY:
         return linear(0.0, 0.0, above(p[FROM]), below(p[FROM_MINUS]))
     s = side(at)
@@ -74,7 +76,7 @@ def engaged(p: Numbers, v: float) -> int:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Reach the end of the play or enter it, reverse, reach the limit or come off it."""
+    """Return the state after an end of the play, a reversal, or reaching or leaving the limit."""
     if at == PLAY:
         return engaged(p, v), (1.0 if event == 0 else -1.0,)
     s = side(at)
@@ -86,14 +88,14 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Zero: all of the work is dissipated."""
+    """Return zero: all the work is dissipated."""
     return 0.0
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force and its slope."""
+    """Return the force and its slope."""
     if at == PLAY:
         return 0.0, 0.0, 0.0, 0.0
     s = side(at)
@@ -110,12 +112,12 @@ def curve(
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Force times rate: all of the work is dissipated."""
+    """Return the force times the rate: all the work is dissipated."""
     return curve(p, at, m, d, d, v)[0] * v
 
 
 def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
-    """Force as a power of the rate, see `Rule`."""
+    """Return the force as a power of the rate, see `Rule`."""
     moving = at != PLAY and at < LIMITED
     return (side(at) * p[C] if moving else 0.0), p[ALPHA], 0.0, 0.0, 0.0, 0.0
 
@@ -147,7 +149,7 @@ def damper(
     Parameters
     ----------
     c : float
-        Force at the rate one [F (T/L)^alpha].
+        Force at the unit rate [F (T/L)^alpha].
     alpha : float
         Exponent, above 0.
     limit : tuple of float or None
@@ -166,14 +168,14 @@ def damper(
 def build(
     values: Mapping[str, Any], c: float, limit: tuple[float, float] | None, play: tuple[float, float] | None
 ) -> Law | None:
-    """Law of one component of a DASHPOT from its card's values; None for a linear dashpot.
+    """Build the law of one component of a DASHPOT from its card's values; None for a linear dashpot.
 
     Parameters
     ----------
     values : mapping
         ALPHA.
     c, limit, play
-        See `damper`; None where the card gives none.
+        See `damper`; None if the card does not give it.
     """
     alpha = float(values["ALPHA"])
     if alpha == 1.0 and limit is None and play is None:

@@ -1,1 +1,1 @@
-"""Hysteresis rules of springs and hinges, one rule a file."""
+"""Hysteresis rules of springs and hinges, one per file."""

@@ -1,33 +1,34 @@
-r"""The bilinear backbone that the degrading rules share, and its loss of strength.
+r"""The bilinear backbone that the degrading rules share, and its strength loss.
 
-One side at a time (`mirror`), with the yield force :math:`F_y > 0`, the yield deformation
+The formulas are for one side (`mirror`), with the yield force :math:`F_y > 0`, the yield deformation
 :math:`d_y = F_y / k` and the ductility :math:`x = |d| / d_y`:
 
 .. math:: F(x) = F_y \left[(1 - r)\,\gamma\,\varphi(\max(x, \mu_L)) + r x\right]
 
-so that the share :math:`\gamma\varphi` of the first yield force is left, on the elastic line; the hardening
-is not reduced.  :math:`\varphi` falls with the ductility along a straight line from 1 at
-:math:`D_1` to :math:`\varphi_R` at :math:`D_2`, and, if :math:`D_3` is given, on to 0.01 at :math:`D_3`; in
-the SUDDEN forms it stays at :math:`\varphi_R` up to :math:`D_3` and drops to 0.01 there.  :math:`\mu_L`
-is the largest ductility so far: of that side (EACH) or of either side (LARGEST).  In the forms with RCYC
-:math:`\gamma = 1 - c n`, not below 0.01, after :math:`n` inelastic cycles (RCYC is :math:`c` in per cent).
-With CYCLES the number of cycles takes the place of the ductility: :math:`\gamma = \varphi(n)`, and
+so that, on the elastic line, the fraction :math:`\gamma\varphi` of the initial yield force remains.  The
+hardening is not reduced.  :math:`\varphi` decreases linearly with the ductility from 1 at :math:`D_1` to
+:math:`\varphi_R` at :math:`D_2` and, if :math:`D_3` is given, further to 0.01 at :math:`D_3`.  In the
+SUDDEN forms it stays at :math:`\varphi_R` up to :math:`D_3` and drops to 0.01 there.  :math:`\mu_L` is the
+largest ductility so far, either of the same side (EACH) or of both sides (LARGEST).  In the forms with
+RCYC, :math:`\gamma = 1 - c n`, but at least 0.01, after :math:`n` inelastic cycles (RCYC is :math:`c` in
+per cent).  With CYCLES the number of cycles replaces the ductility: :math:`\gamma = \varphi(n)`, and
 :math:`\varphi = 1`.
 
 A spring that has reached ductility :math:`\mu` unloads with
 
 .. math:: k_u = k \max\left(\mu^{-\alpha},\; \frac{(1 - r)\,\varphi(\mu) + r \mu}{\mu}\right)
 
-The second bound, the secant from the origin to the backbone, is ours: a softer line would reach no force on
-the far side of the origin, and for large :math:`\alpha` run flatter than the backbone itself.
+The second bound, the secant from the origin to the backbone, is ours.  A softer line would reach zero force
+beyond the origin, and for large :math:`\alpha` would be flatter than the backbone itself.
 
-No source states these three choices, which are ours: the loss by ductility acts at once, so that the
-backbone itself falls; a yield of a side counts as a cycle of that side as soon as the other side yields;
-both losses are multiplied.
+Three choices are ours, since no source states them.  The loss due to ductility acts immediately, so the
+backbone itself falls.  A yield of one side counts as a cycle of that side once the other side yields.  Both
+losses are multiplied.
 
-Internal variables of each rule: the largest ductility of each side (1 before yield), a point (d, f), or on
-the backbone the ductility where the spring came to it, and how many times another side yielded than before,
-with the sign of the last one.  A spring that reverses on reaching the backbone has not yielded.
+Internal variables of each rule: the largest ductility of each side (1 before yield); a point (d, f) or, on
+the backbone, the ductility at which the spring reached it; and the number of changes of the yielding side,
+with the sign of the side that yielded last.  A spring that reverses as it reaches the backbone has not
+yielded.
 
 References
 ----------
@@ -46,25 +47,25 @@ from pound_solve.laws.automaton import FY, FY_MINUS, K, Numbers, linear, passes
 from pound_solve.laws.mirror import need_both_sides, on_side, outward, side, turns_inward
 from pound_solve.laws.refusal import ItemError
 
-# branches of the positive side; those of the negative side are one more
+# branches of the positive side; add one for the negative side
 ELASTIC, YIELDING, WEAKENING = 0, 1, 3
 
-BEFORE = -1e300  #: less than any ductility: on the other side of zero
-LEAST = 0.01  #: fraction of the yield force that is left in the end
+BEFORE = -1e300  #: smaller than any ductility, for the other side of zero
+LEAST = 0.01  #: fraction of the yield force that finally remains
 # parameters of a law after K, FY, FY_MINUS: r, alpha; of the loss D1, D2, phi_R, its form, D3 (0: none) and
 # the loss by a cycle
 R, ALPHA, D1, D2, PHI_R, FORM, D3, BY_CYCLE = range(3, 11)
-PARAMETERS = 11  #: number of them all; a rule's own parameters follow
+PARAMETERS = 11  #: number of these parameters; a rule's own parameters follow
 # internal variables: largest ductilities of both sides; the point (d, f); changes of the yielding side,
 # with the sign of the last one
 MU, MU_MINUS, D, F, CHANGES = range(5)
-MET = D  #: on the backbone, in place of the point: the ductility where the spring came to it
-VIRGIN = (1.0, 1.0, 0.0, 0.0, 0.0)  #: internal variables at first
+MET = D  #: replaces the point on the backbone: the ductility at which the spring reached it
+VIRGIN = (1.0, 1.0, 0.0, 0.0, 0.0)  #: initial internal variables
 VARIABLES = 5
 _WORDS = "NONE EACH CYCLES LARGEST EACH_RCYC EACH_SUDDEN LARGEST_RCYC LARGEST_SUDDEN"
 FORMS = {word: code for code, word in enumerate(_WORDS.split())}  #: forms of the loss by Ruaumoko's codes
 _CYCLES, _LARGEST, _EACH_SUDDEN, _LARGEST_RCYC, _LARGEST_SUDDEN = 2.0, 3.0, 5.0, 6.0, 7.0
-_COUNTING = 4.0  #: the first form that counts cycles beside the ductility
+_COUNTING = 4.0  #: the first form that counts cycles in addition to the ductility
 
 R_FIELD = Field(
     "R", Kind.REAL, "-", default=0.0, lo=0.0, below=1.0, doc="ratio of post-yield to initial stiffness"
@@ -120,13 +121,13 @@ _ITEMS = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the loss as
-    D1, D2, residual fraction, form, D3 and the loss per cycle.
+    """Return the first parameters of all rules on this backbone: k, both yield forces, r, alpha, then the
+    strength loss as D1, D2, residual fraction, form, D3 and the loss per cycle.
 
     Raises
     ------
     ValueError
-        No yield force on a side, r outside its limits, or a loss that is not whole.
+        A side has no yield force, r is outside its limits, or the strength loss is incomplete.
     """
     need_both_sides(fy_plus, fy_minus)
     r, alpha = values.get("R", 0.0), values.get("ALFA", 0.0)
@@ -136,12 +137,12 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
 
 
 def loses_strength(values: Mapping[str, Any]) -> bool:
-    """Whether a card asks for a loss of strength.
+    """Return whether a card requests a strength loss.
 
     Raises
     ------
     ValueError
-        It has items of a loss, but none.
+        The card has items of a strength loss, but requests none.
     """
     if values["ILOS"] == "NONE" and any(values[name] is not None for name in _ITEMS):
         raise ValueError(f"{', '.join(_ITEMS)} have no effect without ILOS=EACH or the like")
@@ -149,7 +150,7 @@ def loses_strength(values: Mapping[str, Any]) -> bool:
 
 
 def _loss(values: Mapping[str, Any]) -> Numbers:
-    """Numbers of the loss; see `parameters`."""
+    """Return the parameters of the strength loss; see `parameters`."""
     if not loses_strength(values):
         return 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
     form = FORMS[values["ILOS"]]
@@ -180,7 +181,9 @@ def largest_ductility(m: Numbers, s: float) -> float:
 
 
 def phi(p: Numbers, x: float) -> float:
-    """Share of the yield force left at a ductility `x`, or with CYCLES after `x` cycles."""
+    """Return the fraction of the yield force that remains at ductility `x` or, with CYCLES, after `x`
+    cycles.
+    """
     d1, d2, phi_r, d3 = p[D1], p[D2], p[PHI_R], p[D3]
     if d3 > 0.0 and x >= d3:
         return LEAST
@@ -194,7 +197,7 @@ def phi(p: Numbers, x: float) -> float:
 
 
 def strength_by_ductility(p: Numbers, x: float) -> float:
-    """Share of the yield force that is left at ductility `x`."""
+    """Return the fraction of the yield force that remains at ductility `x`."""
     return 1.0 if p[FORM] == _CYCLES else phi(p, x)
 
 
@@ -204,18 +207,20 @@ def counts_larger_side(p: Numbers) -> bool:
 
 
 def governing_ductility(p: Numbers, m: Numbers, s: float) -> float:
-    """Largest ductility so far that determines the loss of strength of a side."""
+    """Return the largest ductility so far that determines the strength loss of a side."""
     return max(m[MU], m[MU_MINUS]) if counts_larger_side(p) else largest_ductility(m, s)
 
 
 def inelastic_cycles(m: Numbers, s: float) -> float:
-    """Number of inelastic cycles of a side: its yields that were followed by one of the other side."""
+    """Return the number of inelastic cycles of a side: its yields that were followed by one of the other
+    side.
+    """
     changes = abs(m[CHANGES]) - (s * m[CHANGES] > 0.0)
     return float(changes // 2.0)
 
 
 def strength_by_cycles(p: Numbers, m: Numbers, s: float) -> float:
-    """Share of the yield force of a side that is left after its cycles."""
+    """Return the fraction of the yield force of a side that remains after its cycles."""
     if p[FORM] == _CYCLES:
         return phi(p, inelastic_cycles(m, s))
     if p[FORM] < _COUNTING:
@@ -224,11 +229,11 @@ def strength_by_cycles(p: Numbers, m: Numbers, s: float) -> float:
 
 
 def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]:
-    """Straight line of the share of the yield force from ductility `x` on, where `mu` determines the loss
-    so far: slope, value at zero, and the ductility where it ends (0: it does not).
+    """Return the line of the remaining fraction of the yield force from ductility `x` on: slope, value at
+    zero, and the ductility at which it ends (0: no end).  The ductility `mu` determines the loss so far.
     """
     d1, d2, phi_r, d3 = p[D1], p[D2], p[PHI_R], p[D3]
-    flat_to = max(mu, d1)  # up to there no more strength is lost
+    flat_to = max(mu, d1)  # no further strength is lost up to this ductility
     if p[FORM] == 0.0 or p[FORM] == _CYCLES:
         return 0.0, 1.0, 0.0
     if d3 > 0.0 and max(x, flat_to) >= d3:
@@ -246,7 +251,7 @@ def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]
 
 
 def backbone(p: Numbers, m: Numbers, s: float, x: float) -> float:
-    """Force of a side's backbone at a ductility `x` that it has reached, positive."""
+    """Return the force of the backbone of a side at a ductility `x` that it has reached, positive."""
     r, ratio = p[R], strength_by_cycles(p, m, s) * strength_by_ductility(p, governing_ductility(p, m, s))
     return yield_force(p, s) * ((1.0 - r) * ratio + r * x)
 
@@ -264,15 +269,15 @@ def ductilities_with(m: Numbers, s: float, x: float) -> tuple[float, float]:
 
 
 def changes_at(m: Numbers, s: float, x: float) -> float:
-    """Changes of the yielding side, as counted when side `s` has followed the backbone to the ductility
-    `x`.
+    """Return the count of changes of the yielding side after side `s` has followed the backbone to
+    ductility `x`.
     """
     yields = passes(x, m[MET], max(m[MU], m[MU_MINUS]))
     return m[CHANGES] if not yields or s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
 
 
 def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
-    """State on the backbone of side `s`, met at ductility `x`."""
+    """Return the state on the backbone of side `s`, reached at ductility `x`."""
     plus, minus = ductilities_with(m, s, x)
     m = (plus, minus, x, 0.0, m[CHANGES])
     slope, _, _ = strength_line(p, governing_ductility(p, m, s), x)
@@ -280,8 +285,8 @@ def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Num
 
 
 def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
-    """Slope and force at zero of the present line of the backbone, mirrored to the positive side, and the
-    ductility where it ends (0: it does not).
+    """Return the slope and the force at zero of the present line of the backbone, mirrored to the positive
+    side, and the ductility at which it ends (0: no end).
     """
     k, r, s = p[K], p[R], side(at)
     mu = governing_ductility(p, m, s)
@@ -291,7 +296,7 @@ def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
 
 
 def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Along the backbone until the motion reverses (event 0) or the line ends (event 1)."""
+    """Return the branch along the backbone until the motion reverses (event 0) or the line ends (event 1)."""
     s = side(at)
     slope, f0, end = yield_line(p, at, m)
     if end == 0.0:
@@ -300,14 +305,14 @@ def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
-    """State after the end of a line of the backbone."""
+    """Return the state after the end of a line of the backbone."""
     s = side(at)
     _, _, x = yield_line(p, at, m)
     return enter_backbone(p, (*m[:CHANGES], changes_at(m, s, x)), s, x)
 
 
 def reversed_at(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
-    """Internal variables after a reversal on the backbone at `d`: ductilities, and the point itself."""
+    """Return the internal variables after a reversal on the backbone at `d`: the ductilities and the point."""
     s = side(at)
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[K] / yield_force(p, s)
@@ -316,11 +321,11 @@ def reversed_at(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
 
 
 def meeting_ductility(p: Numbers, m: Numbers, s: float, slope: float, d: float, f: float) -> float:
-    """Ductility where the line of that slope through (d, f) meets the backbone of side `s`."""
+    """Return the ductility at which the line with `slope` through (d, f) meets the backbone of side `s`."""
     r, fy, mu = p[R], yield_force(p, s), governing_ductility(p, m, s)
     scale, start = (1.0 - r) * strength_by_cycles(p, m, s), s * (slope * d - f) / fy
     x = BEFORE
-    while True:  # one line of the backbone after the other
+    while True:  # for each line of the backbone in turn
         fall, value, end = strength_line(p, mu, x)
         meeting = max(x, (scale * value + start) / (slope / p[K] - r - scale * fall))
         if end == 0.0 or meeting <= end:

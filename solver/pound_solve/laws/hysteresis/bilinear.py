@@ -1,12 +1,12 @@
 r"""Bilinear with kinematic hardening.
 
-With stiffness :math:`k`, yield forces :math:`F_y^+ > 0 > F_y^-` and post-yield ratio :math:`r` the rule is
-a spring :math:`r k` beside an elastic, perfectly plastic spring :math:`(1-r) k` that yields at
+With stiffness :math:`k`, yield forces :math:`F_y^+ > 0 > F_y^-` and post-yield ratio :math:`r`, the rule is
+a spring :math:`r k` in parallel with an elastic, perfectly plastic spring :math:`(1-r) k` that yields at
 :math:`(1-r) F_y^\pm`:
 
 .. math:: f = r k d + (1-r) k (d - d_p), \qquad (1-r) F_y^- \le (1-r) k (d - d_p) \le (1-r) F_y^+
 
-With a loss of strength (ILOS) it is the rule of `degrading_bilinear` with ALFA=0.
+With a strength loss (ILOS), the rule is that of `degrading_bilinear` with ALFA=0.
 
 Internal variables: the plastic deformation :math:`d_p`.
 
@@ -31,12 +31,12 @@ PLASTIC = 0  #: internal variable: plastic deformation
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic until the slider slips; yielding until the motion reverses."""
+    """Return the branch: elastic until the slider slips, or yielding until the motion reverses."""
     k, plus, minus, r = p[:4]
     ke = (1.0 - r) * k
     if at == ELASTIC:
@@ -48,7 +48,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield out of the elastic branch, or unload where the motion reverses."""
+    """Return the state after a yield or a reversal."""
     k, plus, minus = p[:3]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), m
@@ -66,7 +66,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     if loses_strength(values):
         return degrading_bilinear.build(values, k, fy_plus, fy_minus)
     return Law(RULE, (k, fy_plus, fy_minus, values["R"]))

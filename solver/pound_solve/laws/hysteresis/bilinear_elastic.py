@@ -1,13 +1,13 @@
-r"""Bilinear elastic: softer beyond a limit, and back along the same line; nothing is lost.
+r"""Bilinear elastic: softer beyond a limit; it unloads along the same line, without energy loss.
 
 .. math:: f = k d \quad (F^- \le k d \le F^+), \qquad f = F^\pm + r k (d - F^\pm / k) \quad \text{beyond}
 
-A rocking wall or a post-tensioned joint; in parallel with a BILINEAR spring it gives a flag-shaped loop.
-No internal variables.
+It models a rocking wall or a post-tensioned joint; in parallel with a BILINEAR spring it gives a
+flag-shaped loop. No internal variables.
 
 References
 ----------
-Elementary; in Ruaumoko under this name, but its number there is not certain, so none is accepted.
+Elementary.  Ruaumoko has a rule of this name, but its number is not certain, so no number is accepted.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: stiff."""
+    """Return the virgin state: stiff."""
     return STIFF, ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Stiff between the limits, soft beyond."""
+    """Return the branch: stiff between the limits, soft beyond."""
     k, plus, minus, r = p[:4]
     if at == STIFF:
         return linear(k, 0.0, above(plus / k), below(minus / k))
@@ -37,14 +37,14 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Soften, or come back."""
+    """Return the state after a limit is passed outwards or inwards."""
     if at == STIFF:
         return (SOFT_PLUS if event == 0 else SOFT_MINUS), m
     return STIFF, m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """All of the work: the area below the line."""
+    """Return all the work: the area below the line."""
     k, plus, minus = p[:3]
     if at == STIFF:
         return 0.5 * k * d * d
@@ -64,7 +64,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two limits."""
+    """Build the rule from a card's values, a stiffness and the two limits."""
     return Law(RULE, (k, fy_plus, fy_minus, values["R"]))
 
 

@@ -4,16 +4,15 @@ The spring engages at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the positi
 
 .. math:: f = k (d - g^+ - p^+), \qquad f \le F_y^+ + H p^+, \qquad H = \frac{k r}{1 - r}
 
-where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.
-With GROW=YES (braces: the slack grows by the plastic deformation) each side keeps its own :math:`p`;
-with GROW=NO the whole slack zone moves with one common :math:`p` and hardening is kinematic:
-after a large :math:`p` the other side's yield force :math:`F_y^- + H p` lies above zero,
-and the spring yields back before it becomes slack.
+where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.  With GROW=YES
+(braces: the slack grows by the plastic deformation) each side has a separate :math:`p`.  With GROW=NO the
+whole slack zone moves by a common :math:`p`, and the hardening is kinematic: after a large :math:`p` the
+yield force of the other side, :math:`F_y^- + H p`, is above zero, and the spring yields back before it
+becomes slack.
 
-References
-----------
-Ruaumoko's rule 5 (the shape; written for slender cross braces).  The choice of H, which makes the yield
-line run at slope :math:`r k` through the first yield point, and the two forms of growth are ours.
+References ---------- Ruaumoko's rule 5 (the shape; written for slender cross braces).  Two choices are
+ours: the value of H, which gives the yield line the slope :math:`r k` through the first yield point, and
+the two forms of growth.
 """
 
 from __future__ import annotations
@@ -45,19 +44,19 @@ P_PLUS, P_MINUS = 0, 1  #: internal variables: plastic deformations of both side
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
+    """Return the virgin state: slack, or on a side without slack (or with a prestress, a negative slack)."""
     if p[GAP_PLUS] <= 0.0:
         return ELASTIC_PLUS, (0.0, 0.0)
     return (ELASTIC_MINUS if p[GAP_MINUS] >= 0.0 else SLACK), (0.0, 0.0)
 
 
 def first_yield(p: Numbers) -> tuple[float, float]:
-    """Deformations at yield: beyond the slack."""
+    """Return the deformations at yield, beyond the slack."""
     return p[GAP_PLUS] + p[FY] / p[K], p[GAP_MINUS] + p[FY_MINUS] / p[K]
 
 
 def yield_line(p: Numbers, at: int) -> tuple[float, float, float]:
-    """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the engaged side."""
+    """Return gap, yield force and side (+1, -1) of a yield line; yielding back stays on the engaged side."""
     plus, minus, gap_plus, gap_minus = p[FY:R]
     if at == YIELDING_PLUS:
         return gap_plus, plus, 1.0
@@ -67,8 +66,8 @@ def yield_line(p: Numbers, at: int) -> tuple[float, float, float]:
 
 
 def force_at_yield_back(p: Numbers, at: int, m: Numbers) -> float:
-    """Force at which an elastic spring yields in the opposite direction, if it has not become slack
-    before.
+    """Return the force at which an elastic spring yields in the opposite direction unless it becomes slack
+    first.
     """
     k, plus, minus, r = p[K], p[FY], p[FY_MINUS], p[R]
     if p[GROW] != 0.0:
@@ -78,7 +77,7 @@ def force_at_yield_back(p: Numbers, at: int, m: Numbers) -> float:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Nothing, elastic on one side, or along a yield line."""
+    """Return the branch: slack, elastic on one side, or along a yield line."""
     k, plus, minus, gap_plus, gap_minus, r = p[:GROW]
     h = k * r / (1.0 - r)
     start_plus, start_minus = gap_plus + m[P_PLUS], gap_minus + m[P_MINUS]
@@ -102,7 +101,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Engage, yield, become slack, or unload where the motion reverses."""
+    """Return the state after an engagement, a yield, a reversal, or becoming slack."""
     k, r, grow = p[K], p[R], p[GROW]
     if at == SLACK:
         return (ELASTIC_PLUS if event == 0 else ELASTIC_MINUS), m
@@ -144,7 +143,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     gap = values["SLACK"]
     gap_minus = gap[1] if len(gap) == 2 else -gap[0]
     if gap[0] < 0 or gap_minus > 0:

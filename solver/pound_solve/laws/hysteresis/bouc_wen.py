@@ -4,10 +4,10 @@ r"""Bouc-Wen: smooth hysteresis from a differential equation.
           \frac{dz}{dd} = 1 - \Bigl|\frac{z}{d_y}\Bigr|^n
                           \bigl(1 - \beta + \beta\,\mathrm{sgn}(z\,\dot d)\bigr)
 
-with :math:`d_y = F_y/k` of the side of :math:`z`: it tends to the bilinear rule's lines, and to the
-bilinear rule itself as :math:`n \to \infty`.  (In the usual form A = 1,
-:math:`\beta_{BW} = \beta\,d_y^{-n}`, :math:`\gamma_{BW} = (1 - \beta)\,d_y^{-n}`.)
-With :math:`y = |z|/d_y`, :math:`u = |d|/d_y` counted from :math:`z = 0`, the equation is
+with :math:`d_y = F_y/k` of the side of :math:`z`.  The force tends to the lines of the bilinear rule, and
+the rule tends to the bilinear rule as :math:`n \to \infty`.  (In the usual form A = 1,
+:math:`\beta_{BW} = \beta\,d_y^{-n}`, :math:`\gamma_{BW} = (1 - \beta)\,d_y^{-n}`.) With :math:`y = |z|/d_y`
+and :math:`u = |d|/d_y` measured from :math:`z = 0`, the equation is
 
 .. math:: \frac{dy}{du} = 1 - y^n \text{ outwards}, \qquad \frac{dy}{du} = 1 + (2\beta - 1)\,y^n
           \text{ inwards (scaled by } (2\beta-1)^{1/n}\text{: } 1 + y^n)
@@ -17,7 +17,8 @@ so that :math:`u` and the work :math:`w = \int y\,du` are incomplete beta functi
 .. math:: \int_0^y \frac{y^{an-1}\,dy}{1 \mp y^n} = \frac{y^{an}}{n}\,\phi(a, \pm y^n), \quad
           \phi(a, q) = \sum_j \frac{q^j}{a + j}, \quad a = \tfrac1n \text{ for } u,\ \tfrac2n \text{ for } w
 
-which are summed as series and inverted by Newton's iteration, without a step size, to an error below 1e-13.
+These are summed as series and inverted by Newton's iteration to an error below 1e-13, independently of any
+step size.
 
 Internal variables: the position :math:`u d_y` (signed, along the present direction) and the deformation at
 the last reversal, and :math:`\int z\,dd` from :math:`z = 0`.
@@ -62,16 +63,16 @@ LOADING, UNLOADING = 0, 1
 R, N, BETA, C_U, C_W, SCALE = range(3, 9)
 # internal variables at the last reversal: position along the present direction, deformation, integral of z
 POSITION, REVERSAL, INTEGRAL = range(3)
-SATURATED = 40.0  #: -log(1 - y^n) beyond which y is 1 to the last digit
+SATURATED = 40.0  #: value of -log(1 - y^n) beyond which y is 1 to the last digit
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: z = 0."""
+    """Return the virgin state: z = 0."""
     return LOADING, (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Loading until the motion reverses, and unloading until it reverses again."""
+    """Return the branch: loading until the motion reverses, or unloading until it reverses again."""
     return linear(p[K], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
 
 
@@ -79,7 +80,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def phi(a: float, q: float) -> float:
-    """Sum of q^j / (a + j) for q up to 1/2; below zero with Pfaff's transformation."""
+    """Return the sum of q^j / (a + j) for q up to 1/2, with Pfaff's transformation for negative q."""
     if q >= 0.0:
         j, power, total = 0.0, 1.0, 1.0 / a
         while power > 1e-17:
@@ -96,7 +97,7 @@ def phi(a: float, q: float) -> float:
 
 
 def series_near_1(a: float, t: float) -> float:
-    """Sum of (1-a)(2-a)...(j-a) t^j / (j j!), t up to 1/2."""
+    """Return the sum of (1-a)(2-a)...(j-a) t^j / (j j!) for t up to 1/2."""
     j, term, total = 1.0, (1.0 - a) * t, (1.0 - a) * t
     while abs(term) > 1e-17:
         term *= (j + 1.0 - a) * t / (j + 1.0)
@@ -106,13 +107,15 @@ def series_near_1(a: float, t: float) -> float:
 
 
 def constant_near_1(a: float) -> float:
-    """Constant of q^a phi(a, q) = -log(1 - q) + constant - series_near_1(a, 1 - q); both series at 1/2."""
+    """Return the constant of q^a phi(a, q) = -log(1 - q) + constant - series_near_1(a, 1 - q), from q =
+    1/2.
+    """
     constant: float = 0.5**a * phi(a, 0.5) - math.log(2.0) + series_near_1(a, 0.5)
     return constant
 
 
 def outward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
-    """y, dy/du and w of dy/du = 1 - y^n at `u`."""
+    """Return y, dy/du and w of dy/du = 1 - y^n at `u`."""
     n, c_u, c_w = p[N], p[C_U], p[C_W]
     half = 0.5 ** (1.0 / n)
     # y^n = 1/2 and above: tau = -log(1 - y^n) = n u - c_u + series_near_1, by Newton's iteration
@@ -132,14 +135,14 @@ def outward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
         slope = 1.0 - y**n
         error = u - y * phi(1.0 / n, y**n) / n
         y += error * slope * (1.0 - 0.5 * error * n * y ** (n - 1.0))
-        if abs(error) < 1e-6 * u:  # of third order: the next step is rounding
+        if abs(error) < 1e-6 * u:  # third-order convergence: the next step is rounding
             break
     return y, 1.0 - y**n, y * y * phi(2.0 / n, y**n) / n
 
 
 def inward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
-    """y, dy/du and w of dy/du = 1 + (2 beta - 1) y^n at `u`; beyond y = 1 (no motion gets there) a straight
-    line.
+    """Return y, dy/du and w of dy/du = 1 + (2 beta - 1) y^n at `u`; beyond y = 1, which no motion reaches,
+    y is a straight line.
     """
     n, scale = p[N], p[SCALE]
     if scale == 0.0:
@@ -160,7 +163,7 @@ def inward_curve(p: Numbers, u: float) -> tuple[float, float, float]:
 
 
 def inverse_outward_curve(p: Numbers, y: float) -> tuple[float, float]:
-    """Return u and w of `y`, outwards."""
+    """Return u and w at `y`, outwards."""
     n, c_u, c_w = p[N], p[C_U], p[C_W]
     q = y**n
     if q <= 0.5:
@@ -171,7 +174,7 @@ def inverse_outward_curve(p: Numbers, y: float) -> tuple[float, float]:
 
 
 def inverse_inward_curve(p: Numbers, y: float) -> tuple[float, float]:
-    """Return u and w of `y`, inwards."""
+    """Return u and w at `y`, inwards."""
     n, scale = p[N], p[SCALE]
     if scale == 0.0:
         return y, 0.5 * y * y
@@ -188,7 +191,7 @@ def yield_deformation(p: Numbers, s: float) -> float:
 
 
 def motion_at(p: Numbers, s: float, x: float) -> tuple[float, float, float]:
-    """s z, dz/dd and the integral of z dd from z = 0, at position `x` of a motion in direction `s`."""
+    """Return s z, dz/dd and the integral of z dd from z = 0, at position `x` of a motion in direction `s`."""
     if x >= 0.0:
         dy = yield_deformation(p, s)
         y, slope, w = outward_curve(p, x / dy)
@@ -199,7 +202,7 @@ def motion_at(p: Numbers, s: float, x: float) -> tuple[float, float, float]:
 
 
 def position(p: Numbers, s: float, z: float) -> tuple[float, float]:
-    """Position at the (mirrored) `z` of a motion in direction `s`, and the integral of z dd from z = 0."""
+    """Return the position at the (mirrored) `z` of a motion in direction `s`, and the integral of z dd."""
     if z >= 0.0:
         dy = yield_deformation(p, s)
         u, w = inverse_outward_curve(p, z / dy)
@@ -212,7 +215,7 @@ def position(p: Numbers, s: float, z: float) -> tuple[float, float]:
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force from the position along the present direction."""
+    """Evaluate the force from the position along the present direction."""
     k, r = p[K], p[R]
     s = 1.0 if at == LOADING else -1.0
     z, slope, integral = motion_at(p, s, m[POSITION] + s * (d - m[REVERSAL]))
@@ -221,7 +224,7 @@ def curve(
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Reverse."""
+    """Return the state after a reversal."""
     s = 1.0 if at == LOADING else -1.0
     z, _, _ = motion_at(p, s, m[POSITION] + s * (d - m[REVERSAL]))
     x, integral = position(p, -s, -z)
@@ -229,7 +232,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered down to zero force, which is found by Newton's iteration."""
+    """Return the energy recovered down to zero force, which Newton's iteration finds."""
     k, r = p[K], p[R]
     if f == 0.0:
         return 0.0
@@ -240,7 +243,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
         z, slope, integral = motion_at(p, s, x)
         step = -(r * (s * d + x - x0) + (1.0 - r) * z) / (r + (1.0 - r) * slope)
         x += step
-        if abs(step) < 1e-10 * abs(d):  # from one side, as the force is concave: the next step is rounding
+        if abs(step) < 1e-10 * abs(d):  # one-sided, because the force is concave: the next step is rounding
             break
     z, slope, integral = motion_at(p, s, x)
     end = d + s * (x - x0)
@@ -248,7 +251,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
-    """Differential equation of z, see `Rule`."""
+    """Return the differential equation of z, see `Rule`."""
     k, r, n, beta = p[K], p[R], p[N], p[BETA]
     s = 1.0 if at == LOADING else -1.0
     z = (f / k - r * d) / (1.0 - r)
@@ -272,7 +275,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     need_both_sides(fy_plus, fy_minus)
     n, beta = values["N"], values["BETA"]
     p = (k, fy_plus, fy_minus, values["R"], n, beta, constant_near_1(1.0 / n), constant_near_1(2.0 / n))

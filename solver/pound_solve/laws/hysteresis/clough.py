@@ -1,8 +1,8 @@
-r"""Clough's degrading stiffness: reloading goes straight to the largest point of that side.
+r"""Clough's degrading stiffness: a side reloads straight to its peak.
 
-The rule of `peak_oriented` with :math:`\beta = 0`.  ALFA=0, the default, is Clough's own: unloading with
-the initial stiffness.  A spring that reverses at zero force, or however shortly after it, also aims at the
-peak, and not at the point from which it unloaded.
+The rule of `peak_oriented` with :math:`\beta = 0`.  ALFA=0, the default, is Clough's original rule:
+unloading with the initial stiffness.  A spring that reverses at zero force, or any distance beyond it, also
+aims at the peak, not at the point from which it unloaded.
 
 References
 ----------
@@ -23,7 +23,7 @@ from pound_solve.laws.hysteresis.peak_oriented import RULE
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, parameters(values, k, fy_plus, fy_minus))
 
 

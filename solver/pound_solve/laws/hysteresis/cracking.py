@@ -1,10 +1,10 @@
 r"""The backbone with a crack point that SCHOETTLER_RESTREPO and TAKEDA_SLIP share.
 
-One side at a time (`mirror`), with the yield force :math:`F_y > 0` and :math:`k` the initial stiffness.
-The backbone goes with :math:`k` to the crack point of force :math:`F_{cr} F_y`, on to the yield point at
-:math:`d_y = F_y / (\rho k)`, and beyond it with the slope :math:`r \rho k`.
+The formulas are for one side (`mirror`), with the yield force :math:`F_y > 0` and the initial stiffness
+:math:`k`.  The backbone rises with :math:`k` to the crack point at the force :math:`F_{cr} F_y`, continues
+straight to the yield point at :math:`d_y = F_y / (\rho k)`, and has the slope :math:`r \rho k` beyond it.
 
-The first internal variables of each rule are the largest deformation of each side, at first those of the
+The first internal variables of each rule are the largest deformations of both sides, initially those of the
 crack points.
 """
 
@@ -20,13 +20,13 @@ from pound_solve.laws.hysteresis.backbone import R_FIELD as RATIO_TO_INITIAL
 from pound_solve.laws.hysteresis.backbone import R
 from pound_solve.laws.mirror import need_both_sides, on_side, outward, side, turns_inward
 
-# branches of the positive side; those of the negative side are one more
+# branches of the positive side; add one for the negative side
 ELASTIC, CRACKED, YIELDING = 0, 1, 3
 
 # parameters of a law after K, FY, FY_MINUS, R, ALPHA: ratios of both sides, of the crack force to the yield
 # force, and of the secant stiffness at the yield point to K
 FCR, FCR_MINUS, RHO, RHO_MINUS = range(5, 9)
-PARAMETERS = 9  #: number of them all; a rule's own parameters follow
+PARAMETERS = 9  #: number of these parameters; a rule's own parameters follow
 MOST, MOST_MINUS = 0, 1  #: internal variables: largest deformations of both sides, mirrored
 
 Point = tuple[float, float]  #: deformation and force, mirrored
@@ -57,13 +57,13 @@ RHO_FIELD = Field(
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the ratios
-    of the crack forces and of the secant stiffnesses, each for both sides.
+    """Return the first parameters of all rules on this backbone: k, both yield forces, r, alpha, then the
+    ratios of the crack forces and of the secant stiffnesses, each for both sides.
 
     Raises
     ------
     ValueError
-        No yield force on a side.
+        A side has no yield force.
     """
     need_both_sides(fy_plus, fy_minus)
     fcr, rho = values["FCR"], values["RHO"]
@@ -103,7 +103,7 @@ def largest_deformation(m: Numbers, s: float) -> float:
 
 
 def deformations_with(m: Numbers, s: float, x: float) -> tuple[float, float]:
-    """Largest deformations when side `s` has reached `x`."""
+    """Return the largest deformations after side `s` has reached `x`."""
     return (max(m[MOST], x), m[MOST_MINUS]) if s > 0.0 else (m[MOST], max(m[MOST_MINUS], x))
 
 
@@ -114,14 +114,14 @@ def has_yielded(p: Numbers, s: float, m: Numbers) -> bool:
 
 
 def peak(p: Numbers, s: float, m: Numbers) -> Point:
-    """Largest deformation of a side and its force."""
+    """Return the largest deformation of a side and the force there."""
     x = largest_deformation(m, s)
     return x, backbone(p, s, x)[1]
 
 
 def backbone_branch(p: Numbers, at: int) -> Numbers:
-    """Elastic up to a crack point (event 0: positive side), or along the backbone until the motion reverses
-    (event 0) or the side yields (event 1).
+    """Return the branch: elastic up to a crack point (event 0: positive side), or along the backbone until
+    the motion reverses (event 0) or the side yields (event 1).
     """
     if at == ELASTIC:
         return linear(p[K], 0.0, above(crack_point(p, 1.0)[0]), below(-crack_point(p, -1.0)[0]))
@@ -135,5 +135,5 @@ def backbone_branch(p: Numbers, at: int) -> Numbers:
 
 
 def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
-    """State on the backbone of a side."""
+    """Return the state on the backbone of a side."""
     return on_side(YIELDING if x >= yield_point(p, s)[0] else CRACKED, s), m

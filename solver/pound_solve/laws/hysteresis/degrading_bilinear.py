@@ -1,11 +1,13 @@
-r"""Degrading bilinear: kinematic hardening whose elastic stiffness falls with the largest ductility.
+r"""Degrading bilinear: kinematic hardening with an elastic stiffness that decreases with the largest
+ductility.
 
 The yield lines are those of `backbone`, extended to the other side:
 
 .. math:: f \le (1 - r)\,\gamma\varphi F_y^+ + r k d, \qquad f \ge (1 - r)\,\gamma\varphi F_y^- + r k d
 
-Between them the spring moves with :math:`k_u` of `backbone`, for the largest ductility of either side,
-along the line through the last reversal.  With ALFA=0 and no loss of strength it is BILINEAR.
+Between them the spring follows the line through the last reversal with the stiffness :math:`k_u` of
+`backbone`, for the largest ductility of either side.  With ALFA=0 and no strength loss the rule is
+BILINEAR.
 
 Internal variables: those of `backbone`; the point is that of the last reversal.
 
@@ -49,12 +51,12 @@ from pound_solve.laws.mirror import side
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, VIRGIN
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic until a yield line is met, or along it until the motion reverses."""
+    """Return the branch: elastic until a yield line is reached, or along it until the motion reverses."""
     if at != ELASTIC:
         return yield_branch(p, at, m)
     plus, minus, d, f = m[:CHANGES]
@@ -64,7 +66,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield out of the elastic branch, or unload where the motion reverses."""
+    """Return the state after a yield or a reversal."""
     if at == ELASTIC:
         s = 1.0 if event == 0 else -1.0
         k = unloading(p, max(m[MU], m[MU_MINUS]))
@@ -75,7 +77,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     s = side(at)
     x = 1.0 if at == ELASTIC else s * d * p[K] / yield_force(p, s)
     return 0.5 * f * f / unloading(p, max(x, m[MU], m[MU_MINUS]))
@@ -96,7 +98,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, parameters(values, k, fy_plus, fy_minus))
 
 

@@ -13,7 +13,7 @@ from pound_solve.laws.hysteresis.bilinear import RULE
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a stiffness and the two yield forces."""
+    """Build the rule from a stiffness and the two yield forces."""
     if loses_strength(values):
         return degrading_bilinear.build(values, k, fy_plus, fy_minus)
     return Law(RULE, (k, fy_plus, fy_minus))

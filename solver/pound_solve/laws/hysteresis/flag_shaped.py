@@ -5,13 +5,13 @@ On the positive side, with :math:`d_y = F_y / k`, the force stays between two pa
 .. math:: f_{up} = F_y + r k (d - d_y), \qquad
           f_{low} = (1 - \beta) F_y + r k \bigl(d - (1 - \beta) d_y\bigr)
 
-It loads along the upper one, unloads with :math:`k`, which takes :math:`\beta F_y`, runs back along the
-lower one and meets the elastic line :math:`f = k d` at :math:`(1 - \beta) d_y`.  The negative side is the
-mirror image with its own yield force.  With :math:`\beta \le 1` nothing is left at zero force.
-A loop out to :math:`d` on one side dissipates :math:`\beta (1 - r) F_y (d - d_y)`.
+The spring loads along the upper line, unloads with :math:`k` by the force :math:`\beta F_y`, returns along
+the lower line and meets the elastic line :math:`f = k d` at :math:`(1 - \beta) d_y`.  The negative side is
+the mirror image with a separate yield force.  With :math:`\beta \le 1` no residual deformation remains at
+zero force.  A loop out to :math:`d` on one side dissipates :math:`\beta (1 - r) F_y (d - d_y)`.
 
-Internal variables: the foot :math:`d - f/k` of the elastic line between the two, mirrored to the positive
-side.
+Internal variables: the foot :math:`d - f/k` of the elastic line between the two lines, mirrored to the
+positive side.
 
 References
 ----------
@@ -34,12 +34,12 @@ FOOT = 0  #: internal variable: foot of the elastic line, mirrored
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic through the origin, along one of the two lines, or between them."""
+    """Return the branch: elastic through the origin, along one of the two lines, or between them."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
         return linear(k, 0.0, above(plus / k), below(minus / k))
@@ -55,7 +55,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield, unload from a line where the motion reverses, reach a line, or be elastic again."""
+    """Return the state after a yield, a reversal, reaching a line, or returning to the elastic line."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), (0.0,)
@@ -71,7 +71,9 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the elastic line, the lower line and the elastic line to the origin."""
+    """Return the energy recovered along the elastic line, the lower line and the elastic line to the
+    origin.
+    """
     k, plus, minus, r, beta = p[:5]
     s = 1.0 if d >= 0.0 else -1.0
     foot = s * d - s * f / k
@@ -100,7 +102,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     need_both_sides(fy_plus, fy_minus)
     return Law(RULE, (k, fy_plus, fy_minus, values["R"], values["BETA"]))
 

@@ -1,39 +1,36 @@
-r"""What the three rules of Ibarra, Medina & Krawinkler share: backbone and cyclic deterioration.
+r"""Backbone and cyclic deterioration common to the three rules of Ibarra, Medina & Krawinkler.
 
-The *backbone* of the positive side (the negative one is its mirror image with its own values) is
+The *backbone* of the positive side (the negative side is a mirror image with separate values) is
 
 .. math:: B(d) = \max\bigl(\lambda F_{y0},\ \min(F_y + \alpha_s k\,(d - F_y/k),\ F_{ref} + k_c d)\bigr)
 
-hardening up to the *cap* at :math:`F_y/k + \theta_p`, falling towards zero at :math:`\theta_{pc}` beyond it
-(:math:`k_c` does not change), and the residual strength :math:`\lambda F_{y0}`.
+It hardens up to the *cap* at :math:`F_y/k + \theta_p`, then softens towards zero at :math:`\theta_{pc}`
+beyond the cap (:math:`k_c` does not change), down to the residual strength :math:`\lambda F_{y0}`.
 
-An *excursion* goes from one zero of the force to the next.  The energy :math:`E_i` that the i-th one has
-dissipated deteriorates the component by
+An *excursion* lasts from one zero of the force to the next.  The energy :math:`E_i` dissipated in the i-th
+excursion deteriorates the component by
 
 .. math:: \beta_i = \Bigl(\frac{E_i}{E_t - \sum_{j \le i} E_j}\Bigr)^c, \qquad E_t = \Lambda F_{y0}
 
-with a separate :math:`\Lambda` for each mode, and the mean :math:`F_{y0}` of both sides:
+with a separate :math:`\Lambda` for each mode of deterioration, and the mean :math:`F_{y0}` of both sides:
 
-* basic strength: :math:`F_y` and :math:`\alpha_s` of the side that is entered next, times
-  :math:`1 - \beta_s` (:math:`F_y` not below the residual strength);
-* post-capping strength: :math:`F_{ref}` of that side times :math:`1 - \beta_c`;
-* accelerated reloading: the deformation that reloading aims at, times :math:`1 + \beta_a`;
-* unloading stiffness: :math:`k_u` times :math:`1 - \beta_k`, where a motion reverses on a loading path,
-  with :math:`E_i` less what will be recovered.
+* basic strength: :math:`F_y` and :math:`\alpha_s` of the side that is entered next are multiplied by
+  :math:`1 - \beta_s` (:math:`F_y` stays at or above the residual strength);
+* post-capping strength: :math:`F_{ref}` of that side is multiplied by :math:`1 - \beta_c`;
+* accelerated reloading: the target deformation of reloading is multiplied by :math:`1 + \beta_a`;
+* unloading stiffness: :math:`k_u` is multiplied by :math:`1 - \beta_k` when a motion reverses on a loading
+  path, with :math:`E_i` reduced by the energy that will be recovered.
 
-The energy capacity is exhausted where no :math:`\beta < 1` remains: the component fails at the end of the
-excursion.
-It fails at once at the ultimate deformation :math:`\theta_u`, and where no strength is left.
+If this gives no :math:`\beta < 1`, the energy capacity is exhausted and the component fails at the end of
+the excursion.  It fails immediately at the ultimate deformation :math:`\theta_u`, and where no strength
+remains.
 
-References
-----------
-Ibarra LF, Medina RA, Krawinkler H (2005), Hysteretic models that incorporate strength and stiffness
-deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511.
-Lignos DG, Krawinkler H (2011), Deterioration modeling of steel components in support of collapse prediction
-of steel moment frames under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate
-rotation; theta_p and theta_pc).
-Ours: an excursion deteriorates :math:`k_u` once, however often it reverses, and by at most a half; only
-:math:`\Lambda = 0` switches a mode off.
+References ---------- Ibarra LF, Medina RA, Krawinkler H (2005), Hysteretic models that incorporate strength
+and stiffness deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511. Lignos DG, Krawinkler H
+(2011), Deterioration modeling of steel components in support of collapse prediction of steel moment frames
+under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate rotation; theta_p and
+theta_pc). Our choices: an excursion deteriorates :math:`k_u` only once, regardless of its number of
+reversals, and by at most a half; only :math:`\Lambda = 0` switches a mode off.
 """
 
 from __future__ import annotations
@@ -55,13 +52,13 @@ BRANCHES = BranchKind.OPEN.named(STRENGTHLESS)
 # and reloading; exponent c
 R, THETA_P, THETA_P_MINUS, THETA_PC, THETA_PC_MINUS, LAMBDA, THETA_U, THETA_U_MINUS = range(3, 11)
 ET_STRENGTH, ET_CAP, ET_UNLOADING, ET_RELOADING, C = range(11, 16)
-PARAMETERS = 16  #: number of them all; a rule's own parameters follow
+PARAMETERS = 16  #: number of these parameters; a rule's own parameters follow
 
 # internal variables: SIDE numbers of each side, then the unloading stiffness now and at the start of the
 # excursion, where it started, the energy of the finished excursions, and of the present one up to the
 # present branch, and where that was entered
 KU, KU_BEFORE, FOOT, DONE, SPENT, ENTERED = range(10, 16)
-FY_NOW, F_REF = 0, 1  #: first numbers of a side, mirrored: F_y and F_ref; the others are those of the rule
+FY_NOW, F_REF = 0, 1  #: first variables of a side, mirrored: F_y and F_ref; the others belong to the rule
 SIDE = 5
 
 
@@ -71,12 +68,14 @@ def variables_of_side(m: Numbers, s: float) -> Numbers:
 
 
 def replace_side(m: Numbers, s: float, of_side: Numbers) -> Numbers:
-    """Internal variables in which those of side `s` are replaced."""
+    """Return the internal variables with those of side `s` replaced."""
     return of_side + m[SIDE:] if s > 0.0 else m[:SIDE] + of_side + m[KU:]
 
 
 def virgin(p: Numbers, s: float) -> tuple[float, float, float, float]:
-    """Yield force, capping force and F_ref of a side at first, and the slope of the softening branch."""
+    """Return the initial yield force, capping force and F_ref of a side, and the slope of the softening
+    branch.
+    """
     k, r = p[K], p[R]
     if s > 0.0:
         fy, theta_p, theta_pc = p[FY], p[THETA_P], p[THETA_PC]
@@ -112,8 +111,8 @@ def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
 
 
 def deterioration(energy: float, before: float, capacity: float, c: float) -> float:
-    """Deterioration parameter beta of an excursion; 1 if the energy capacity is exhausted, 0 if the mode is
-    off.
+    """Return the deterioration parameter beta of an excursion: 1 if the energy capacity is exhausted, 0 if
+    the mode is off.
     """
     remaining = capacity - before - energy
     if capacity == 0.0 or energy <= 0.0:
@@ -122,13 +121,13 @@ def deterioration(energy: float, before: float, capacity: float, c: float) -> fl
 
 
 def add_work(line: Numbers, m: Numbers, d: float) -> Numbers:
-    """Internal variables after adding the work done on a branch up to `d`."""
+    """Return the internal variables after adding the work done on a branch up to `d`."""
     (k, _, f0), d0 = line[:3], m[ENTERED]
     return (*m[:SPENT], m[SPENT] + (0.5 * k * (d + d0) + f0) * (d - d0), d)
 
 
 def softened(p: Numbers, m: Numbers, f: float) -> float:
-    """Deteriorated unloading stiffness of a motion that reverses at the force `f`."""
+    """Return the deteriorated unloading stiffness of a motion that reverses at the force `f`."""
     before = m[KU_BEFORE]
     energy = m[SPENT] - 0.5 * f * f / before
     return before * (1.0 - min(deterioration(energy, m[DONE], p[ET_UNLOADING], p[C]), 0.5))
@@ -154,13 +153,13 @@ def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, 
 
 
 def recoverable_energy(p: Numbers, m: Numbers, line: Numbers, loading: bool, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     ku = softened(p, add_work(line, m, d), f) if loading else m[KU]
     return 0.5 * f * f / ku
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """Common parameters of the three rules, from a card's values.
+    """Return the common parameters of the three rules from a card's values.
 
     Raises
     ------
@@ -223,7 +222,9 @@ BACKBONE = (
 
 
 def fields(modes: str, most: int) -> tuple[Field, ...]:
-    """Fields of a card: the backbone, and energy capacities of at most `most` `modes` of deterioration."""
+    """Return the fields of a card: the backbone, and the energy capacities of at most `most` of the
+    `modes`.
+    """
     return (
         *BACKBONE,
         Field(

@@ -1,16 +1,17 @@
-r"""Ibarra-Medina-Krawinkler, bilinear: kinematic hardening inside a backbone that deteriorates.
+r"""Ibarra-Medina-Krawinkler, bilinear: kinematic hardening within a deteriorating backbone.
 
-Backbone :math:`B`, excursions and deterioration are those of `imk`.  Each side's force is bounded by
+The backbone :math:`B`, the excursions and the deterioration are those of `imk`.  The force of each side is
+bounded by
 
 .. math:: U(d) = \max\bigl(\lambda F_{y0},\ \min(F_y + \alpha_s k\,(d - F_y/k),\ F_{lim},\
           F_{ref} + k_c d)\bigr)
 
-at all deformations of both signs; inside the bounds the spring is elastic with :math:`k_u`.  The *strength
-limit* :math:`F_{lim}` is the smallest force at a transition from the falling or residual branch (at first
-the capping force): without it lost strength would be regained at smaller deformations.
+at all deformations of either sign; within the bounds the spring is elastic with :math:`k_u`.  The *strength
+limit* :math:`F_{lim}` is the smallest force so far at which the spring left the softening or residual
+branch (initially the capping force).  Without it, lost strength would be regained at smaller deformations.
 
-Internal variables beyond those of `imk`, of each side: the strength limit, and where the elastic line meets
-the bound (deformation, and the line there).
+Internal variables of each side in addition to those of `imk`: the strength limit, and where the elastic
+line meets the bound (the deformation, and the line of the bound).
 """
 
 from __future__ import annotations
@@ -45,12 +46,16 @@ from pound_solve.laws.hysteresis.imk import (
 from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
-LIMIT, MEETS, ONTO = 2, 3, 4  #: internal variables of a side: strength limit; place of meeting; line there
+LIMIT, MEETS, ONTO = (
+    2,
+    3,
+    4,
+)  #: internal variables of a side: strength limit; deformation and line of the bound met
 FAR = 1e300
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     sides = []
     for s in (1.0, -1.0):
         fy, cap, ref, _ = virgin(p, s)
@@ -59,7 +64,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
-    """Slope and (mirrored) force at zero deformation of a line of the bound."""
+    """Return the slope and the (mirrored) force at zero deformation of a line of the bound."""
     if kind == HARDENING:
         return hardening(p, s, m)
     if kind == LIMITED:
@@ -70,7 +75,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
 
 
 def next_line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
-    """Line of the bound after `kind`, and (mirrored) deformation where it begins."""
+    """Return the line of the bound after `kind`, and the (mirrored) deformation where it begins."""
     least, limit = residual(p, s), variables_of_side(m, s)[LIMIT]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     d_residual = (least - f2) / k2
@@ -90,7 +95,7 @@ def next_line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
 
 
 def bound_met(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
-    """Line of the bound that the elastic line from its foot meets, and where (mirrored)."""
+    """Return the line of the bound that the elastic line meets, and the (mirrored) deformation there."""
     ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), variables_of_side(m, s)[LIMIT]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     d_least = foot + least / ku
@@ -108,7 +113,7 @@ def bound_met(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic between the bounds, or along a line of a bound."""
+    """Return the branch: elastic between the bounds, or along a line of a bound."""
     if at == FAILED:
         return linear(0.0, 0.0)
     s = side(at)
@@ -126,7 +131,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield, pass to the next line of the bound, fail, reverse, or end an excursion."""
+    """Return the state after a yield, the end of a line, a failure, a reversal, or the end of an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
     present = branch(p, at, m)
@@ -155,7 +160,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     if at == FAILED:
         return 0.0
     return recoverable_energy(p, m, branch(p, at, m), at >= LEAST, d, f)
@@ -185,7 +190,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, parameters(values, k, fy_plus, fy_minus))
 
 

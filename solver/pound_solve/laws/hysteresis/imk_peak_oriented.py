@@ -1,6 +1,6 @@
 """Ibarra-Medina-Krawinkler, peak-oriented: the pinching rule without a break point (see `imk_pinching`).
 
-Reloading goes from zero force to the local peak, where that is stiffer, and to the peak.
+Reloading goes from zero force to the peak, via the local peak if that path is stiffer.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ NO_PINCHING: Numbers = (1.0, 0.0)  #: kappa_F and kappa_D without a break point
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), *NO_PINCHING))
 
 

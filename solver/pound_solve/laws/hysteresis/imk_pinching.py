@@ -1,31 +1,32 @@
-r"""Ibarra-Medina-Krawinkler, pinching: reloading is slack before it aims at the largest deformation.
+r"""Ibarra-Medina-Krawinkler, pinching: reloading is soft before it aims at the largest deformation.
 
-Backbone :math:`B`, excursions and deterioration are those of `imk`.  A side is loaded along its backbone up
-to a point that becomes its *peak*, the largest deformation so far (at first the yield point), with the
-force of the present backbone; every turning point is its *local peak*.  It unloads with :math:`k_u`
-from the local peak to zero force, the *foot* of the other side's excursion, which goes
+The backbone :math:`B`, the excursions and the deterioration are those of `imk`.  A side is loaded along its
+backbone up to its *peak*: the largest deformation so far (initially the yield point), with the force of the
+present backbone.  Its last turning point is its *local peak*.  It unloads with :math:`k_u` from the local
+peak to zero force.  This point is the *foot* of the excursion of the other side, which goes
 
 * to the *break point*, if the foot lies before it,
 
   .. math:: d_b = (1 - \kappa_d) (d_{peak} - B(d_{peak})/k_u), \qquad
             f_b = \kappa_f B(d_{peak}) \frac{d_b - d_{foot}}{d_{peak} - d_{foot}}
 
-* then to the local peak, where the line there is stiffer than that to the peak, though not stiffer than
-  :math:`k_u`, and the local peak lies below the peak and within the backbone,
-* then to the peak, where the backbone goes on.
+* then to the local peak, if the line to it is stiffer than the line to the peak but not stiffer than
+  :math:`k_u`, and if the local peak lies below the peak and within the backbone,
+* then to the peak, where the backbone continues.
 
-Reloading is never stiffer than :math:`k`: where a soft :math:`k_u` has brought the foot too near to the
-peak, or beyond it, the peak moves on to where a line of that stiffness meets the backbone.
+Reloading is never stiffer than :math:`k`.  If a soft :math:`k_u` has brought the foot too close to the
+peak, or beyond it, the peak moves to the point where a line with the stiffness :math:`k` meets the
+backbone.
 
-A motion that reverses before the peak unloads along :math:`k_u`.  If it reverses again, it goes from there
-to the break point or to the peak.
+A motion that reverses before the peak unloads with :math:`k_u`.  If it reverses again, it reloads from
+there to the break point or to the peak.
 
-Internal variables beyond those of `imk`: deformation of the peak, deformation and force of the local peak
-of each side.
+Internal variables in addition to those of `imk`: for each side, the deformation of the peak, and the
+deformation and force of the local peak.
 
 References
 ----------
-Beside those of `imk`: Clough RW, Johnston SB (1966), Effect of stiffness degradation on earthquake
+In addition to those of `imk`: Clough RW, Johnston SB (1966), Effect of stiffness degradation on earthquake
 ductility requirements, Proc. Japan Earthquake Engng Symp., Tokyo; Mahin SA, Bertero VV (1975), An
 evaluation of some methods for predicting seismic behavior of reinforced concrete buildings, EERC 75-5,
 Univ. of California, Berkeley (the local peak).
@@ -62,7 +63,7 @@ from pound_solve.laws.hysteresis.imk import (
 from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 ELASTIC, HARDENING, FALLING, RESIDUAL, UNLOADING = 1, 3, 5, 7, 9
-#: reloading, by the points between which it goes
+#: reloading branches, by their end points
 FOOT_BREAK, FOOT_LOCAL, FOOT_PEAK, BREAK_LOCAL, BREAK_PEAK, LOCAL_BREAK, LOCAL_PEAK = range(11, 25, 2)
 FAR = 1e300
 KAPPA_F, KAPPA_D = PARAMETERS, PARAMETERS + 1  #: parameters of a law after those of `imk`
@@ -72,7 +73,7 @@ Point = tuple[float, float]  #: deformation and force, mirrored
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic; the yield points are the peaks."""
+    """Return the virgin state: elastic; the yield points are the peaks."""
     sides = []
     for s in (1.0, -1.0):
         fy, _, ref, _ = virgin(p, s)
@@ -81,7 +82,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
-    """Force of the present backbone."""
+    """Return the force of the present backbone."""
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     return max(residual(p, s), min(k1 * d + f1, k2 * d + f2))
 
@@ -99,7 +100,7 @@ def local_peak(s: float, m: Numbers) -> Point:
 
 
 def break_point(p: Numbers, s: float, m: Numbers) -> tuple[bool, Point]:
-    """Whether this excursion is pinched, and the break point."""
+    """Return whether this excursion is pinched, and the break point."""
     kappa_f, kappa_d = p[KAPPA_F], p[KAPPA_D]
     d, f = peak(p, s, m)
     foot = s * m[FOOT]
@@ -124,7 +125,7 @@ def reloading_ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, 
 
 
 def passes_local_peak(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
-    """Whether the path from a point to the peak goes through the last turning point of that side."""
+    """Return whether the path from a point to the peak passes through the last turning point of that side."""
     (d1, f1), (d2, f2) = local_peak(s, m), peak(p, s, m)
     inside = d < d1 < d2 and f < f1 < f2 and f1 <= backbone(p, s, m, d1)
     return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)
@@ -150,7 +151,7 @@ def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
 
 
 def next_branch(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
-    """Branch that follows a loading branch (with the number of the positive side for both), and the
+    """Return the branch that follows a loading branch (numbered as on the positive side), and the
     deformation where it begins.
     """
     if kind == ELASTIC:
@@ -176,7 +177,7 @@ def next_branch(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float
 
 
 def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
-    """Slope and (mirrored) force at zero deformation of a branch."""
+    """Return the slope and the (mirrored) force at zero deformation of a branch."""
     if kind == ELASTIC:
         return p[K], 0.0
     if kind == HARDENING:
@@ -194,7 +195,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Along the backbone, back from it, or along a reloading path."""
+    """Return the branch: along the backbone, unloading from it, or along a reloading path."""
     if at == FAILED:
         return linear(0.0, 0.0)
     s = side(at)
@@ -227,7 +228,7 @@ def enter_side(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Go on to the next line of a path, fail, reverse, or end an excursion."""
+    """Return the state after the end of a line, a failure, a reversal, or the end of an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
     present = branch(p, at, m)
@@ -251,7 +252,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     if at == FAILED:
         return 0.0
     kind = at if at % 2 == 1 else at - 1
@@ -290,7 +291,7 @@ MODES = "basic strength, post-capping strength, unloading stiffness, accelerated
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     pinch = values["KAPPAF"], values["KAPPAD"]
     return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), *pinch))
 

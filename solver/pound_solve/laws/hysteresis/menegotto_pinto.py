@@ -1,22 +1,22 @@
 r"""Menegotto-Pinto: reinforcing and structural steel with a round knee, Bauschinger effect and hardening.
 
-Each half cycle leaves its reversal :math:`(d_r, f_r)` along the elastic line and approaches the yield line
-of its side; both meet at :math:`(d_0, f_0)`:
+Each half cycle leaves the reversal :math:`(d_r, f_r)` along the elastic line and approaches the yield line
+of its side; the two lines meet at :math:`(d_0, f_0)`:
 
 .. math:: \frac{f - f_r}{f_0 - f_r} = b\,\xi + \frac{(1 - b)\,\xi}{(1 + \xi^n)^{1/n}}, \qquad
           \xi = \frac{d - d_r}{d_0 - d_r}, \qquad
           n = R_0 \left(1 - \frac{c_1 \eta}{c_2 + \eta}\right)
 
-where :math:`\eta` is the distance from :math:`d_0` to the largest deformation of that side so far (at
-first that of yield), over the yield deformation.  The yield line of a side is
-:math:`f = b k d + (1 - b) F_y s`: isotropic hardening moves it outwards by
+where :math:`\eta` is the distance from :math:`d_0` to the largest deformation of that side so far
+(initially the yield deformation), divided by the yield deformation.  The yield line of a side is
+:math:`f = b k d + (1 - b) F_y s`.  Isotropic hardening moves it outwards by
 
 .. math:: s = 1 + a \left(\frac{d_{max} - d_{min}}{2 a' d_y}\right)^{0.8}
 
 with :math:`(a, a') = (a_1, a_2)` for negative and :math:`(a_3, a_4)` for positive motion, and the largest
 deformations of both sides so far.  The virgin curve has :math:`s = 1, n = R_0`.  A half cycle that begins
-inside another one does not return to its curve, so that after a small unloading the force may be larger
-than without it: a known trait of this model.
+within another one does not return to the curve of that one.  After a small unloading the force may
+therefore be larger than without it, which is a known property of this model.
 
 Internal variables: the reversal, the point where both lines meet, :math:`n`, and the largest deformations
 of both sides.
@@ -26,7 +26,7 @@ References
 Menegotto M, Pinto PE (1973), Method of analysis for cyclically loaded R.C. plane frames, IABSE Symposium,
 Lisbon (the curve and its exponent); Filippou FC, Popov EP, Bertero VV (1983), Effects of bond deterioration
 on hysteretic behavior of reinforced concrete joints, EERC 83-19, Berkeley (isotropic hardening), in the
-form of Steel02 of OpenSees.  Ours: unequal yield forces, each with its own yield deformation.
+form of Steel02 of OpenSees.  Our extension: unequal yield forces, each with a separate yield deformation.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
 LOADING, UNLOADING = 0, 1
-LEAST_R = 1.2  #: least exponent: at 1 the integral of the curve has another form
+LEAST_R = 1.2  #: smallest exponent: at 1 the integral of the curve has a different form
 # parameters of a law after K, FY, FY_MINUS, by their symbols
 B, R0, C1, C2, A1, A2, A3, A4 = range(3, 11)
 # internal variables: reversal, meeting point, exponent n, largest and smallest deformation
@@ -61,7 +61,7 @@ D_R, F_R, D_0, F_0, EXPONENT, HIGH, LOW = range(7)
 
 
 def knee(n: float, x: float) -> tuple[float, float]:
-    """Value and slope of x (1 + x^n)^(-1/n); for `x` up to zero, of x itself."""
+    """Return the value and slope of x (1 + x^n)^(-1/n) or, if `x` is not positive, of x itself."""
     if x <= 0.0:
         return x, 1.0
     if x <= 1.0:
@@ -73,7 +73,7 @@ def knee(n: float, x: float) -> tuple[float, float]:
 
 
 def pochhammer_sum(a: float, c: float, t: float) -> float:
-    """Sum of (a)_j / (c)_j t^j with Pochhammer symbols, t up to 1/2."""
+    """Return the sum of (a)_j / (c)_j t^j with Pochhammer symbols, for t up to 1/2."""
     j, term, total = 0.0, 1.0, 1.0
     while abs(term) > 1e-17:
         term *= (a + j) / (c + j) * t
@@ -83,14 +83,14 @@ def pochhammer_sum(a: float, c: float, t: float) -> float:
 
 
 def area_beyond_1(n: float, x: float) -> float:
-    """Antiderivative of the knee from 1 on."""
+    """Return an antiderivative of the knee for x of 1 and above."""
     small = x**-n
     inverse: float = (1.0 + small) ** (-1.0 / n)
     return x * inverse * pochhammer_sum(1.0 / n, 1.0 - 1.0 / n, small / (1.0 + small))
 
 
 def area(n: float, x: float) -> float:
-    """Integral of the knee from 0 to `x`, by hypergeometric series after Pfaff's transformation."""
+    """Return the integral of the knee from 0 to `x`, by hypergeometric series after Pfaff's transformation."""
     if x <= 0.0:
         return 0.5 * x * x
     up_to_1 = min(x, 1.0)
@@ -106,7 +106,7 @@ def area(n: float, x: float) -> float:
 
 
 def half_cycle(p: Numbers, s: float, high: float, low: float, d: float, f: float) -> Numbers:
-    """Internal variables of a motion in direction `s` from a reversal at (d, f)."""
+    """Return the internal variables of a motion in direction `s` from a reversal at (d, f)."""
     k, b, r0, c1, c2 = p[K], p[B], p[R0], p[C1], p[C2]
     fy, peak = (p[FY], high) if s > 0.0 else (-p[FY_MINUS], -low)
     a, a_per = (p[A3], p[A4]) if s > 0.0 else (p[A1], p[A2])
@@ -120,19 +120,19 @@ def half_cycle(p: Numbers, s: float, high: float, low: float, d: float, f: float
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin."""
+    """Return the virgin state."""
     return LOADING, half_cycle(p, 1.0, p[FY] / p[K], p[FY_MINUS] / p[K], 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Loading until the motion reverses, and unloading until it reverses again."""
+    """Return the branch: loading until the motion reverses, or unloading until it reverses again."""
     return linear(p[K], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force on the present half cycle."""
+    """Evaluate the force on the present half cycle."""
     k, b, n = p[K], p[B], m[EXPONENT]
     d_r, f_r = m[D_R], m[F_R]
     span = m[D_0] - d_r
@@ -145,19 +145,19 @@ def curve(
 
 
 def reversed_at(p: Numbers, at: int, m: Numbers, d: float, f: float) -> Numbers:
-    """Internal variables after a reversal."""
+    """Return the internal variables after a reversal."""
     s = -1.0 if at == LOADING else 1.0
     return half_cycle(p, s, max(m[HIGH], d), min(m[LOW], d), d, f)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Reverse."""
+    """Return the state after a reversal."""
     f = curve(p, at, m, d, d, 0.0)[0]
     return (UNLOADING if at == LOADING else LOADING), reversed_at(p, at, m, d, f)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered down to zero force, the place of which Newton's iteration finds."""
+    """Return the energy recovered down to zero force, which Newton's iteration locates."""
     if f == 0.0:
         return 0.0
     if (f > 0.0) == (at == LOADING):
@@ -185,12 +185,12 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces.
+    """Build the rule from a card's values, a stiffness and the two yield forces.
 
     Raises
     ------
     ValueError
-        No yield force on a side, R outside its limits, or a knee that becomes too round.
+        A side has no yield force, R is outside its limits, or the knee becomes too round.
     """
     need_both_sides(fy_plus, fy_minus)
     sharp, c1 = values["R0"], values["CR1"]

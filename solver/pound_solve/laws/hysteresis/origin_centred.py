@@ -2,8 +2,8 @@ r"""Origin-centred: below its peak each side is elastic along the line through t
 
 .. math:: f = \frac{F_m}{d_m}\, d
 
-with the largest deformation :math:`d_m` of that side and its force :math:`F_m` on the `backbone`.  Energy
-is lost only while a peak grows.
+with the largest deformation :math:`d_m` of that side and the force :math:`F_m` of the `backbone` there.
+Energy is dissipated only while a peak grows.
 
 Internal variables: those of `backbone`.
 
@@ -41,12 +41,14 @@ SECANT = 5
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, VIRGIN
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic, on the backbone, or on the line between the origin and a side's peak."""
+    """Return the branch: elastic, on the backbone, or on the line between the origin and the peak of a
+    side.
+    """
     if at == ELASTIC:
         return linear(p[K], 0.0, above(p[FY] / p[K]), below(p[FY_MINUS] / p[K]))
     if at < SECANT:
@@ -58,7 +60,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield; reverse; arrive at the peak, or pass through the origin."""
+    """Return the state after a yield, a reversal, an arrival at the peak, or a passage through the origin."""
     if at == ELASTIC:
         return enter_backbone(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
@@ -68,7 +70,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered down to the origin."""
+    """Return the energy recovered down to the origin."""
     return 0.5 * f * d
 
 
@@ -88,7 +90,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, parameters(values, k, fy_plus, fy_minus))
 
 

@@ -1,19 +1,20 @@
-r"""What CLOUGH, Q_HYST and TAKEDA share: reloading towards the peak.
+r"""Reloading towards the peak, common to CLOUGH, Q_HYST and TAKEDA.
 
-From the backbone (`backbone`) the spring unloads with :math:`k_u`.  Where its force is zero, at
-:math:`d_z`, it reloads the other side along the straight line from :math:`(d_z, 0)` to the target on that
-side's backbone, at the ductility
+From the backbone (`backbone`) the spring unloads with :math:`k_u`.  When its force is zero, at :math:`d_z`,
+it reloads the other side along the straight line from :math:`(d_z, 0)` to a target on the backbone of that
+side, at the ductility
 
 .. math:: x_t = \mu - \beta (\mu - 1)
 
-where :math:`\mu` is the largest ductility of that side (1 before it has yielded: its yield point); from the
-target on it follows the backbone.  A reversal before that unloads with :math:`k_u` again; if it reverses
-once more before the force is zero, it returns along the same line and goes on towards the target.
+where :math:`\mu` is the largest ductility of that side (1, the yield point, before it has yielded).  Beyond
+the target it follows the backbone.  A spring that reverses before the target unloads with :math:`k_u`
+again.  If it reverses once more before the force is zero, it returns along the same line and continues
+towards the target.
 
-A reloading line is never steeper than :math:`k_u` (ours): where the target lies steeply above the point, or
-behind it, as for large :math:`\beta`, the line has the slope :math:`k_u` up to the backbone.
+A reloading line is never steeper than :math:`k_u` (our choice).  If the target lies steeply above the
+point, or behind it, as for large :math:`\beta`, the line has the slope :math:`k_u` up to the backbone.
 
-Internal variables: those of `backbone`; the point is that of the last reversal, or of zero force.
+Internal variables: those of `backbone`; the point is the last reversal, or the point of zero force.
 """
 
 from __future__ import annotations
@@ -46,12 +47,12 @@ BETA, MIRRORED = PARAMETERS, PARAMETERS + 1
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, VIRGIN
 
 
 def reloading(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
-    """Slope of the reloading line of side `s`, and the ductility at which it meets the backbone."""
+    """Return the slope of the reloading line of side `s`, and the ductility at which it meets the backbone."""
     mu, fy = largest_ductility(m, s), yield_force(p, s)
     target = mu - p[BETA] * (mu - 1.0)
     steepest = unloading(p, mu)
@@ -62,7 +63,7 @@ def reloading(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic, on the backbone, unloading, or reloading."""
+    """Return the branch: elastic, on the backbone, unloading, or reloading."""
     if at == ELASTIC:
         return linear(p[K], 0.0, above(p[FY] / p[K]), below(p[FY_MINUS] / p[K]))
     if at < UNLOADING:
@@ -76,7 +77,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield; reverse; return to the last reversal, or reach zero force; arrive at the backbone."""
+    """Return the state after a yield, a reversal, a return to it, zero force, or an arrival at the
+    backbone.
+    """
     if at == ELASTIC:
         return enter_backbone(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
@@ -92,7 +95,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         if event == 1:
             d = d0 - f0 / unloading(p, largest_ductility(m, s))
             return on_side(RELOADING, -s), (plus, minus, d, 0.0, m[CHANGES])
-        # also after a reversal on the backbone: the reloading line from there ends where it begins
+        # also after a reversal on the backbone: the reloading line from there has no length
         return on_side(RELOADING, s), m
     k, end = reloading(p, m, s)
     if event == 1:
@@ -101,7 +104,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     if at == ELASTIC:
         return 0.5 * f * f / p[K]
     s = side(at)

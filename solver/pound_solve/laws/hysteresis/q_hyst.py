@@ -1,8 +1,9 @@
 r"""Q-HYST: reloading towards the largest ductility of either side.
 
-The rule of `peak_oriented` with :math:`\beta = 0` and one :math:`\mu` for both sides: a peak on one side
-moves the target of the other as well, and softens its unloading.  With unequal yield forces the two targets
-have the same ductility (ours; the published rule is symmetric).  Saiidi's own exponent is ALFA=0.5.
+The rule is that of `peak_oriented` with :math:`\beta = 0` and a common :math:`\mu` for both sides: a peak
+on one side also moves the target of the other side, and softens its unloading.  With unequal yield forces
+the two targets have the same ductility (our choice; the published rule is symmetric).  Saiidi's original
+exponent is ALFA=0.5.
 
 References
 ----------
@@ -23,7 +24,7 @@ from pound_solve.laws.hysteresis.peak_oriented import RULE
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), 0.0, 1.0))
 
 

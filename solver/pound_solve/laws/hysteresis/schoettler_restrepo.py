@@ -1,30 +1,30 @@
 r"""Schoettler-Restrepo: a pinched rule for concrete with a cracking point (Ruaumoko's rule 52).
 
-One side at a time (`mirror`), on the backbone of `cracking`.
+The formulas are for one side (`mirror`), on the backbone of `cracking`.
 
-* A side whose largest deformation ever is :math:`d_m` (at first the crack point), force :math:`F_m`,
-  unloads with :math:`k_u = \rho k (d_m/d_y)^{-\alpha}`.  It is not stiffer than :math:`k`, nor softer than
-  the secant :math:`F_m/d_m` (ours).
+* A side with the largest deformation so far :math:`d_m` (initially the crack point) and the force
+  :math:`F_m` there unloads with :math:`k_u = \rho k (d_m/d_y)^{-\alpha}`.  This stiffness is at most
+  :math:`k`, and at least the secant :math:`F_m/d_m` (our choice).
 * From zero force at :math:`d_0` the other side is loaded to the pinch point
 
   .. math:: d_P = \tfrac12 (d_m' - d_y'), \qquad F_P = \pi F_m
 
-  (:math:`d_m', d_y'` of the side just left, none below zero) and from there to :math:`(d_m, F_m)`, where
-  the backbone goes on; straight to :math:`(d_m, F_m)` where the pinch point lies behind, or not below that
-  line.
-* A reversal short of the pinch point (:math:`d < d_P`; before both sides have yielded :math:`F < \pi F_m`)
-  begins an inner loop: then either side is loaded to its *corner*, its last reversal, and on from there.  A
-  reversal before the corner changes nothing.  One beyond the corner becomes the corner; one that is also
-  beyond the pinch point ends the inner loop.
-* A motion that turns while it unloads returns along the same line.
+  (:math:`d_m', d_y'` are those of the side just left; :math:`d_P` is not negative) and from there to
+  :math:`(d_m, F_m)`, where the backbone continues.  It is loaded straight to :math:`(d_m, F_m)` if the
+  pinch point lies behind :math:`d_0`, or not below that line.
+* A reversal before the pinch point (:math:`d < d_P`; :math:`F < \pi F_m` until both sides have yielded)
+  begins an inner loop: then either side is loaded to its *corner*, which is its last reversal, and
+  continues from there.  A reversal before the corner changes nothing.  A reversal beyond the corner becomes
+  the new corner; if it is also beyond the pinch point, it ends the inner loop.
+* A motion that reverses while it unloads returns along the same line.
 
-The branches were found from the forces that the old program gives for one record, of ductilities up to 2.05
-(:math:`r = 0.06, F_{cr} = \rho = 0.99, \alpha = 0.4, \pi = 0.3`); the factor 1/2 of :math:`d_P` may stand
-for a parameter that was not varied.  The behaviour beyond the ductility DULT is not known: the backbone
-continues, and the report warns.
+The branches were inferred from the forces that the old program gives for one record, with ductilities up to
+2.05 (:math:`r = 0.06, F_{cr} = \rho = 0.99, \alpha = 0.4, \pi = 0.3`); the factor 1/2 of :math:`d_P` may
+stand for a parameter that was not varied.  The behaviour beyond the ductility DULT is unknown: the backbone
+continues, and the report gives a warning.
 
-Internal variables: largest deformation of each side; whether an inner loop is on; corner of each side; the
-point where the present line began; the last reversal, and the branch that it left.
+Internal variables: the largest deformation of each side; whether an inner loop is active; the corner of
+each side; the point where the present line began; the last reversal, and the branch on which it occurred.
 
 References
 ----------
@@ -62,18 +62,18 @@ from pound_solve.laws.hysteresis.cracking import (
 )
 from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
-# branches of the positive side, after those of the backbone; those of the negative side are one more
+# branches of the positive side, after those of the backbone; add one for the negative side
 UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 5, 7, 9, 11
 PINCH = PARAMETERS  #: parameter of a law, after those of the backbone
 # internal variables after the largest deformations: whether an inner loop is on; as mirrored points the
 # corners of both sides, where the present line began, and the last reversal; the branch that this left
 INNER, X_CORNER, F_CORNER, X_CORNER_MINUS, F_CORNER_MINUS = range(2, 7)
 X_ORIGIN, F_ORIGIN, X_REVERSAL, F_REVERSAL, LEFT = range(7, 12)
-NO_POINTS = (0.0,) * 10  #: these at first
+NO_POINTS = (0.0,) * 10  #: initial values of these
 
 
 def unloading(p: Numbers, s: float, x: float) -> float:
-    """Stiffness of unloading after a largest deformation `x`."""
+    """Return the unloading stiffness after a largest deformation `x`."""
     xy, fy = yield_point(p, s)
     if x <= crack_point(p, s)[0]:
         return p[K]
@@ -83,7 +83,7 @@ def unloading(p: Numbers, s: float, x: float) -> float:
 
 
 def unloading_of_side(p: Numbers, s: float, m: Numbers) -> float:
-    """Stiffness of unloading after the largest deformation of a side so far."""
+    """Return the unloading stiffness after the largest deformation of a side so far."""
     return unloading(p, s, largest_deformation(m, s))
 
 
@@ -93,7 +93,7 @@ def pinch(p: Numbers, s: float, m: Numbers) -> Point:
 
 
 def corner(s: float, m: Numbers) -> Point:
-    """Corner of an inner loop on a side, or without a loop its last reversal; (0, 0) if there was none."""
+    """Return the corner of an inner loop on a side or, without a loop, the last reversal; (0, 0) if none."""
     return (m[X_CORNER], m[F_CORNER]) if s > 0.0 else (m[X_CORNER_MINUS], m[F_CORNER_MINUS])
 
 
@@ -106,14 +106,14 @@ def before_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
 
 
 def passes_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
-    """Whether the path from a point to the peak goes through the pinch point."""
+    """Return whether the path from a point to the peak passes through the pinch point."""
     (xp, fp), (xt, ft) = pinch(p, s, m), peak(p, s, m)
     flatter = (fp - f) * (xt - x) < (ft - f) * (xp - x)
     return x < xp < xt and f <= fp < ft and flatter and ft - fp <= unloading_of_side(p, s, m) * (xt - xp)
 
 
 def loading_branch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
-    """Line that a side follows from a point on as it is loaded: to the pinch point or to the peak."""
+    """Return the loading line that a side follows from a point: to the pinch point or to the peak."""
     return on_side(TO_PINCH if passes_pinch(p, s, m, x, f) else TO_PEAK, s)
 
 
@@ -126,17 +126,17 @@ def loading_end(p: Numbers, m: Numbers, at: int) -> Point:
 
 
 def with_origin(m: Numbers, x: float, f: float) -> Numbers:
-    """Internal variables with the mirrored point at which a line begins."""
+    """Return the internal variables with the mirrored point at which a line begins."""
     return (*m[:X_ORIGIN], x, f, *m[X_REVERSAL:])
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: the crack points are the peaks."""
+    """Return the virgin state: the crack points are the peaks."""
     return ELASTIC, (crack_point(p, 1.0)[0], crack_point(p, -1.0)[0], *NO_POINTS)
 
 
 def loading_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
-    """Slope of a loading line, and its force at zero deformation, mirrored."""
+    """Return the slope of a loading line and its force at zero deformation, mirrored."""
     x0, f0 = m[X_ORIGIN], m[F_ORIGIN]
     x1, f1 = loading_end(p, m, at)
     slope = (f1 - f0) / (x1 - x0) if x1 > x0 else 0.0
@@ -144,7 +144,7 @@ def loading_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic, along the backbone, unloading, or on a line of loading."""
+    """Return the branch: elastic, along the backbone, unloading, or on a loading line."""
     if at < UNLOADING:
         return backbone_branch(p, at)
     s = side(at)
@@ -156,7 +156,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def begin_loading(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
-    """State at zero force, where a side begins to be loaded."""
+    """Return the state at zero force, where the loading of a side begins."""
     m = with_origin(m, x, 0.0)
     xc, fc = corner(s, m)
     if m[INNER] != 0.0 and x < xc and 0.0 < fc <= unloading_of_side(p, s, m) * (xc - x):
@@ -165,7 +165,7 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numb
 
 
 def reversed_at(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
-    """Internal variables after a reversal: largest deformation, inner loop, corner, the point itself."""
+    """Return the internal variables after a reversal: largest deformation, inner loop, corner, the point."""
     s = side(at)
     plus, minus, inner = m[:X_CORNER]
     if at < UNLOADING:
@@ -181,7 +181,7 @@ def reversed_at(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Crack, yield, reverse, return, reach zero force, or the end of a line."""
+    """Return the state after a crack, a yield, a reversal, a return, zero force or the end of a line."""
     if at == ELASTIC:
         s = 1.0 if event == 0 else -1.0
         return enter_backbone(p, m, s, crack_point(p, s)[0])
@@ -202,7 +202,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     if at == ELASTIC:
         return 0.5 * f * f / p[K]
     s = side(at)
@@ -237,7 +237,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), values["PINCH"]))
 
 

@@ -1,9 +1,9 @@
-r"""Modified Takeda (bilinear): reloading towards a point of the backbone short of the peak.
+r"""Modified Takeda (bilinear): reloading towards a point of the backbone before the peak.
 
 The rule of `peak_oriented`: unloading with :math:`k_u = k \mu^{-\alpha}`, reloading to the backbone at
 :math:`d_m - \beta (d_m - d_y)`, where :math:`d_m` is the peak and :math:`d_m - d_y` its plastic part.
-:math:`\beta = 0` aims at the peak.  Usual are ALFA=0.5 BETA=0 (thin loops, columns) to ALFA=0.3 BETA=0.6
-(fat loops, beams).
+:math:`\beta = 0` aims at the peak.  Usual values range from ALFA=0.5 BETA=0 (thin loops, columns) to
+ALFA=0.3 BETA=0.6 (fat loops, beams).
 
 Not implemented, because no available source states them exactly: Ruaumoko's KKK (unloading after Drain-2D
 or after Emori and Schnobrich 1978) and NF (power of the reloading; NF=1 is this straight line).
@@ -29,7 +29,7 @@ from pound_solve.laws.hysteresis.peak_oriented import RULE
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), values["BETA"]))
 
 

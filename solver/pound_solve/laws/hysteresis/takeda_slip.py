@@ -1,16 +1,18 @@
 r"""Takeda with slip: concrete members whose bars slip, or whose cracks slide.
 
-One side at a time (`mirror`), on the backbone of `cracking`; :math:`d_m, F_m` are the largest deformation
-of the side and its force, a prime marks the other side.
+The formulas are for one side (`mirror`), on the backbone of `cracking`; :math:`d_m, F_m` are the largest
+deformation of the side and the force there, and a prime denotes the other side.
 
 * It unloads from the backbone (Takeda's rules 1, 3 and 5) with
 
   .. math:: k_u = \frac{F_m + F_c'}{d_m + d_c'} \quad (d_m \le d_y), \qquad
             k_u = \frac{F_y + F_c'}{d_y + d_c'} \left(\frac{d_y}{d_m}\right)^{\alpha} \quad (d_m > d_y)
 
-  Up to yield this line points at the crack point of the other side; it is never softer than that (ours).
-* If the other side has not cracked, this line goes on to its crack force, and from there the backbone, if
-  this side has not yielded; else a straight line to the yield point of the other side (rule 6).
+  Up to yield this line points to the crack point of the other side; it is never softer than that (our
+  choice).
+* If the other side has not cracked, this line continues to the crack force of that side.  From there the
+  spring follows the backbone if this side has not yielded, otherwise a straight line to the yield point of
+  the other side (rule 6).
 * From zero force at :math:`d_0` a side that has cracked is loaded straight to :math:`(d_m, F_m)` (rule 4);
   before it has yielded, to its yield point, if that line is steeper.
 * Once it has gone beyond its yield point, and :math:`d_0` lies on the other side, it slips with
@@ -19,23 +21,22 @@ of the side and its force, a prime marks the other side.
             d_z' = d_m' - \frac{F_m'}{k_u'}
 
   until it meets the line from the origin to :math:`(d_m, F_m)`, and then follows that line.
-* A reversal on one of these lines unloads with :math:`b k_u`, but not softer than the line that it leaves
-  (rule 7, where :math:`b = 0.7`), nor than the straight line from :math:`d_0` (ours): no loop gives energy.
+* After a reversal on one of these lines the spring unloads with :math:`b k_u`, but not softer than the line
+  that it leaves (rule 7, where :math:`b = 0.7`), nor than the straight line from :math:`d_0` (our choice),
+  so that no loop generates energy.
 * A motion that turns while it unloads returns along the same line.
 
-Internal variables: largest deformation of each side (0: not cracked); of the side that is loaded or
-unloaded: :math:`d_0`, the point where its present line began, that of its last reversal, the stiffness of
-unloading from there, and the branch that it left.
+Internal variables: the largest deformation of each side (0: not cracked); for the side that is loaded or
+unloaded: :math:`d_0`, the point where the present line began, the last reversal, the unloading stiffness
+from there, and the branch on which the reversal occurred.
 
-References
-----------
-Takeda T, Sozen MA, Nielsen NN (1970), Reinforced concrete response to simulated earthquakes, J. Struct.
-Div. ASCE 96(12): 2557-2573 (numbers of the rules).
-Kabeyasawa T, Shiohara H, Otani S, Aoyama H (1983), Analysis of the full-scale seven-story reinforced
-concrete test structure, J. Faculty of Engng, Univ. of Tokyo 37(2): 431-478 (slip).  Not read: the branches
-are those of the material TakedaSlip of K. Ichinohe (2023) for OpenSees, where :math:`n = 3`.  That has no
-bounds of :math:`b k_u`, and in place of rule 6 a jump of the force to the line to the crack point.
-Ruaumoko has a rule of this name; its number and its parameters are not certain, so none is accepted.
+References ---------- Takeda T, Sozen MA, Nielsen NN (1970), Reinforced concrete response to simulated
+earthquakes, J. Struct.  Div. ASCE 96(12): 2557-2573 (numbers of the rules).  Kabeyasawa T, Shiohara H,
+Otani S, Aoyama H (1983), Analysis of the full-scale seven-story reinforced concrete test structure, J.
+Faculty of Engng, Univ. of Tokyo 37(2): 431-478 (slip).  This source was not read: the branches are those of
+the material TakedaSlip of K. Ichinohe (2023) for OpenSees, where :math:`n = 3`.  That material does not
+bound :math:`b k_u`, and instead of rule 6 its force jumps to the line to the crack point.  Ruaumoko has a
+rule of this name; its number and parameters are not certain, so no number is accepted.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ from pound_solve.laws.hysteresis.cracking import (
 )
 from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
-# branches of the positive side, after those of the backbone; those of the negative side are one more
+# branches of the positive side, after those of the backbone; add one for the negative side
 UNLOADING, SLIPPING, TO_PEAK = 5, 7, 9
 SLIP, INNER = PARAMETERS, PARAMETERS + 1  #: parameters of a law after those of the backbone: n and b
 # internal variables after the largest deformations, mirrored: d_0; the points where the present line began
@@ -76,7 +77,7 @@ ZERO, X_ORIGIN, F_ORIGIN, X_REVERSAL, F_REVERSAL, SLOPE, LEFT = range(2, 9)
 
 
 def unloading(p: Numbers, s: float, x: float) -> float:
-    """Stiffness of unloading from the backbone at a deformation `x`."""
+    """Return the unloading stiffness from the backbone at a deformation `x`."""
     (xy, fy), (xc, fc) = yield_point(p, s), crack_point(p, -s)
     to_crack: float = (backbone(p, s, x)[1] + fc) / (x + xc)
     if x <= xy:
@@ -100,7 +101,7 @@ def slips(p: Numbers, s: float, m: Numbers) -> bool:
 
 
 def loading_end(p: Numbers, m: Numbers, at: int) -> float:
-    """Deformation at which a loading line ends, mirrored."""
+    """Return the mirrored deformation at which a loading line ends."""
     s = side(at)
     x, f = peak(p, s, m)
     if at >= TO_PEAK:
@@ -110,7 +111,7 @@ def loading_end(p: Numbers, m: Numbers, at: int) -> float:
 
 
 def loading_line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
-    """Slope of a loading line, and its force at zero deformation, mirrored."""
+    """Return the slope of a loading line and its force at zero deformation, mirrored."""
     s = side(at)
     if at < TO_PEAK:
         k = slip_stiffness(p, s, m)
@@ -121,7 +122,7 @@ def loading_line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
 
 
 def inner_stiffness(p: Numbers, m: Numbers, at: int, x: float, f: float) -> float:
-    """Stiffness of unloading from a point of a loading line."""
+    """Return the unloading stiffness from a point of a loading line."""
     s = side(at)
     k = max(p[INNER] * unloading(p, s, largest_deformation(m, s)), loading_line(p, m, at)[0])
     if x > m[ZERO]:
@@ -130,20 +131,20 @@ def inner_stiffness(p: Numbers, m: Numbers, at: int, x: float, f: float) -> floa
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def end_of_unloading(p: Numbers, m: Numbers, s: float) -> float:
-    """Deformation at which the unloading line of a side ends: at zero force or, before the other side has
-    cracked, at its crack force; mirrored.
+    """Return the mirrored deformation at which the unloading line of a side ends: at zero force or, before
+    the other side has cracked, at its crack force.
     """
     f_crack = crack_point(p, -s)[1] if largest_deformation(m, -s) == 0.0 else 0.0
     return m[X_REVERSAL] - (m[F_REVERSAL] + f_crack) / m[SLOPE]
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic, along the backbone, unloading, or on a line of loading."""
+    """Return the branch: elastic, along the backbone, unloading, or on a loading line."""
     if at < UNLOADING:
         return backbone_branch(p, at)
     s = side(at)
@@ -155,14 +156,14 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def enter_at_crack(p: Numbers, m: Numbers, s: float) -> tuple[int, Numbers]:
-    """State on the backbone of a side at its crack point."""
+    """Return the state on the backbone of a side at its crack point."""
     x, _ = crack_point(p, s)
     return enter_backbone(p, (*deformations_with(m, s, x), *m[ZERO:]), s, x)
 
 
 def begin_loading(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tuple[int, Numbers]:
-    """State in which loading of a side begins: at zero force, or at its crack force after a line of slope
-    `k`.
+    """Return the state in which loading of a side begins: at zero force, or at its crack force after a line
+    with slope `k`.
     """
     zero = x - f / k
     xy, fy = yield_point(p, s)
@@ -175,7 +176,7 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float
 
 
 def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
-    """Internal variables after a reversal."""
+    """Return the internal variables after a reversal."""
     s = side(at)
     x_largest = largest_deformation(m, s)
     if at >= UNLOADING and (at < TO_PEAK or passes(x_largest, x, x_largest)):
@@ -184,7 +185,7 @@ def reversed_at(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Crack, yield, reverse, return, reach zero force, or the end of a line."""
+    """Return the state after a crack, a yield, a reversal, a return, zero force or the end of a line."""
     if at == ELASTIC:
         return enter_at_crack(p, m, 1.0 if event == 0 else -1.0)
     s = side(at)
@@ -208,7 +209,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered along the unloading line."""
+    """Return the energy recovered along the unloading line."""
     s = side(at)
     if at == ELASTIC:
         k = p[K]
@@ -239,7 +240,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), values["SLIP"], values["INNER"]))
 
 

@@ -1,22 +1,21 @@
 r"""Trilinear with kinematic hardening: two yield points on each side.
 
-A spring :math:`r_2 k` beside two elastic, perfectly plastic ones: one of stiffness :math:`(1 - r) k` that
-yields at the deformation :math:`d_1 = F_y / k`, one of :math:`(r - r_2) k` that yields at
+The rule is a spring :math:`r_2 k` in parallel with two elastic, perfectly plastic springs: one with the
+stiffness :math:`(1 - r) k` that yields at the deformation :math:`d_1 = F_y / k`, and one with
+:math:`(r - r_2) k` that yields at
 
 .. math:: d_2 = d_1 \left(1 + \frac{f_2 - 1}{r}\right), \qquad
           f = r_2 k d + (1 - r) k (d - p_1) + (r - r_2) k (d - p_2)
 
-so that the slopes are k, r k beyond :math:`F_y`, and :math:`r_2 k` beyond :math:`f_2 F_y`.  Because the
-first range lies within the second, the first spring always slips before the second; a reversal releases
-both.  Cycles obey Masing's rule.
+so that the slopes are k, then r k beyond :math:`F_y`, and :math:`r_2 k` beyond :math:`f_2 F_y`.  The
+elastic range of the first spring lies within that of the second, so the first spring always slips first; a
+reversal releases both.  Cycles obey Masing's rule.
 
 Internal variables: the slips :math:`p_1, p_2`.
 
-References
-----------
-Iwan WD (1966), A distributed-element model for hysteresis and its steady-state dynamic response, J. Appl.
-Mech. 33(4): 893-900.  In Ruaumoko under this name, but its number there is not certain, so none is
-accepted.
+References ---------- Iwan WD (1966), A distributed-element model for hysteresis and its steady-state
+dynamic response, J. Appl.  Mech. 33(4): 893-900.  Ruaumoko has a rule of this name, but its number is not
+certain, so no number is accepted.
 """
 
 from __future__ import annotations
@@ -39,17 +38,17 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.refusal import ItemError
 
 ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
-D1_PLUS = 3  #: place of d_1 and d_2 in the parameters of a law, each for both sides, after k, r and r_2
+D1_PLUS = 3  #: index of the parameters d_1 and d_2, each for both sides, after k, r and r_2
 P1, P2 = 0, 1  #: internal variables: slips of both springs
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: elastic."""
+    """Return the virgin state: elastic."""
     return ELASTIC, (0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic, the first spring slips, or both."""
+    """Return the branch: elastic, the first spring slips, or both slip."""
     k, r, r2, d1_plus, d1_minus, d2_plus, d2_minus = p[:7]
     first, second = (1.0 - r) * k, (r - r2) * k
     if at == ELASTIC:
@@ -64,7 +63,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Slip, slip more, or unload where the motion reverses."""
+    """Return the state after a slip of the first or second spring, or a reversal."""
     d1_plus, d1_minus, d2_plus, d2_minus = p[D1_PLUS:]
     if at == ELASTIC:
         return (FIRST_PLUS if event == 0 else FIRST_MINUS), m
@@ -91,12 +90,12 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two first yield forces.
+    """Build the rule from a card's values, a stiffness and the two first yield forces.
 
     Raises
     ------
     ValueError
-        The slopes do not fall: 1 > R > 0 and R > R2 are needed.
+        The slopes do not decrease: 1 > R > 0 and R > R2 are required.
     """
     r, r2, f2 = values["R"], values["R2"], values["F2"]
     if not 0.0 < r < 1.0 or r2 >= r:

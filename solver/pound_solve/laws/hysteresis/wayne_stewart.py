@@ -1,37 +1,36 @@
-r"""Wayne Stewart: nailed timber, pinched and softening, with slackness and a softening branch.
+r"""Wayne Stewart: nailed timber connections, with pinching, slackness and a softening branch.
 
 The *backbone* of the positive side starts at the slackness :math:`g`:
 
 .. math:: k\,(d - g) \text{ up to } F_y, \quad r k \text{ up to } F_u, \quad p_{tri}\,k \text{ beyond}
 
-(:math:`p_{tri} < 0`: it falls).  Once a side has yielded, both sides are pinched:
+(:math:`p_{tri} < 0`: it softens).  Once a side has yielded, both sides are pinched:
 
-* from the backbone it unloads with :math:`p_{unl}\,k`, to the *pinched line* of the other side;
+* from the backbone the spring unloads with :math:`p_{unl}\,k` to the *pinched line* of the other side;
 * the pinched lines are :math:`f = \pm F_i + r_p k d`: the nail slides in the hole that it has crushed;
 * the pinched line ends on the *reloading line* of slope
 
   .. math:: k_p = k \left(\frac{F_y/k}{\beta\,(d_{un} - g)}\right)^{\alpha}
 
-  through the backbone's point at :math:`g + \beta\,(d_{un} - g)`, with :math:`d_{un}` the largest
-  deformation of that side so far; there the backbone goes on.  A side that has not yielded reloads with
-  :math:`k` to its yield point;
+  through the point of the backbone at :math:`g + \beta\,(d_{un} - g)`, where :math:`d_{un}` is the largest
+  deformation of that side so far; from there the backbone continues.  A side that has not yielded reloads
+  with :math:`k` to its yield point;
 * a motion that reverses anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
   two sides.
 
-Where the softening branch reaches zero force, or the pinched line of the other side, the connection has
-failed: its force is zero from then on.
+If the softening branch reaches zero force, or the pinched line of the other side, the connection fails: its
+force is zero from then on.
 
 Internal variables: the largest deformations :math:`d_{un} - g` of both sides (mirrored); the foot
-:math:`d - f/k_u` of the present unloading line; for its upper and its lower end the branch there and the
-deformation.
+:math:`d - f/k_u` of the present unloading line; the branch and the deformation at its upper end and at its
+lower end.
 
-References
-----------
-Stewart WG (1987), The seismic design of plywood sheathed shear walls, PhD thesis, University of Canterbury;
-Ruaumoko's rule 9.  The power law of the reloading line as stated by Folz B and Filiatrault A (2001), Cyclic
-analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441, in which :math:`r_p` is a separate parameter
-(their r4).  Ours: deformations in the power law count from the slackness; the reloading line is never
-flatter than the one from the intercept :math:`F_i` to its target; failure.
+References ---------- Stewart WG (1987), The seismic design of plywood sheathed shear walls, PhD thesis,
+University of Canterbury; Ruaumoko's rule 9.  The power law of the reloading line is that stated by Folz B
+and Filiatrault A (2001), Cyclic analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441, in which
+:math:`r_p` is a separate parameter (their r4).  Our choices: deformations in the power law are measured
+from the slackness; the reloading line is never flatter than the line from the intercept :math:`F_i` to its
+target; and failure.
 """
 
 from __future__ import annotations
@@ -73,7 +72,9 @@ Line = tuple[float, float]  #: slope and force at zero deformation
 
 
 def is_slack(p: Numbers) -> bool:
-    """Whether there is a slack: at a width of zero, joints without mass would lose their hold at rest."""
+    """Return whether there is a slack; with a slack of zero width, massless joints would be a mechanism at
+    rest.
+    """
     return p[GAP_PLUS] > p[GAP_MINUS]
 
 
@@ -83,14 +84,16 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
-    """Slackness, deformations at yield and at the ultimate force, line to it and line beyond (mirrored)."""
+    """Return the slackness, the deformations at yield and at the ultimate force, and the lines before and
+    beyond the ultimate force (mirrored).
+    """
     k, r, tri = p[K], p[R], p[TRI]
     if s > 0.0:
         fy, fu, gap = p[FY], p[FU], p[GAP_PLUS]
     else:
         fy, fu, gap = -p[FY_MINUS], -p[FU_MINUS], -p[GAP_MINUS]
     dy = gap + fy / k
-    # without hardening the ultimate force is the yield force
+    # without hardening, the ultimate force is the yield force
     du = dy + (fu - fy) / (r * k) if r > 0.0 else dy
     return gap, dy, du, (r * k, fy - r * k * dy), (tri * k, fu - tri * k * du)
 
@@ -102,12 +105,12 @@ def first_yield(p: Numbers) -> tuple[float, float]:
 
 
 def pinched(p: Numbers) -> Line:
-    """Line that a side is reloaded along first."""
+    """Return the line along which a side first reloads."""
     return p[PINCH] * p[K], p[INTERCEPT]
 
 
 def unloading(p: Numbers) -> float:
-    """Stiffness of the lines that lead from the path of one side to that of the other."""
+    """Return the stiffness of the lines from the path of one side to that of the other."""
     return p[UNLOAD] * p[K]
 
 
@@ -117,7 +120,7 @@ def steepest(p: Numbers) -> float:
 
 
 def reloading(p: Numbers, s: float, m: Numbers) -> tuple[float, float, float]:
-    """Target deformation and the line towards it: slope and force at zero deformation."""
+    """Return the target deformation, and the slope and force at zero deformation of the line towards it."""
     k, beta, alpha = p[K], p[BETA], p[ALPHA]
     gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
     most = m[MOST] if s > 0.0 else m[MOST_MINUS]
@@ -131,8 +134,8 @@ def reloading(p: Numbers, s: float, m: Numbers) -> tuple[float, float, float]:
 
 
 def pinch_end(p: Numbers, s: float, m: Numbers) -> tuple[bool, float]:
-    """Whether the pinched line of a side ends on its reloading line (else on the falling backbone), and
-    where.
+    """Return whether the pinched line of a side ends on its reloading line (otherwise on the softening
+    backbone), and where.
     """
     slope, f0 = pinched(p)
     target, k, f = reloading(p, s, m)
@@ -143,7 +146,7 @@ def pinch_end(p: Numbers, s: float, m: Numbers) -> tuple[bool, float]:
 
 
 def upper_end(p: Numbers, s: float, m: Numbers, foot: float) -> tuple[float, float]:
-    """Branch and mirrored deformation where an unloading line from its foot meets the path of a side."""
+    """Return the branch and the mirrored deformation where an unloading line meets the path of a side."""
     ku = unloading(p)
     slope, f0 = pinched(p)
     onto_line, end = pinch_end(p, s, m)
@@ -152,14 +155,16 @@ def upper_end(p: Numbers, s: float, m: Numbers, foot: float) -> tuple[float, flo
         return float(on_side(PINCHED, s)), meets
     if onto_line:
         _, k, f = reloading(p, s, m)
-        # parallel only if the two coincide
+        # parallel only if the two lines coincide
         return float(on_side(RELOADING, s)), (f + ku * foot) / (ku - k) if ku > k * (1.0 + 1e-9) else meets
     _, _, _, _, (k2, f2) = backbone(p, s)
     return float(on_side(BEYOND, s)), (f2 + ku * foot) / (ku - k2)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Nothing; along the backbone; between the paths of both sides; along a side's pinched path."""
+    """Return the branch: without force, along the backbone, between the paths of both sides, or on a
+    pinched path.
+    """
     k = p[K]
     if at == SLACK:
         return linear(0.0, 0.0, above(p[GAP_PLUS]), below(p[GAP_MINUS]))
@@ -176,7 +181,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(k1, s * f1, turns_inward(s), outward(s, du))
     slope, f0 = pinched(p)
     if at < PINCHED:
-        # it fails at zero force or on the other side's pinched line, slope d - f0
+        # failure at zero force or on the pinched line of the other side, slope d - f0
         no_force = (-s * k2, 0.0, -f2)
         meets = (s * (slope - k2), 0.0, -f0 - f2)
         return linear(k2, s * f2, turns_inward(s), no_force, meets)
@@ -187,7 +192,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tuple[int, Numbers]:
-    """Reverse on a path of side `s` (branch `at`) at deformation `d` and force `f`."""
+    """Return the state after a reversal on a path of side `s` (branch `at`) at deformation `d`, force `f`."""
     foot = d - f / unloading(p)
     other, end = upper_end(p, -s, m, -s * foot)
     if s > 0.0:
@@ -196,7 +201,9 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Engage, yield, leave a side, pass the ultimate force, fail, reverse, or reach the next line."""
+    """Return the state after an engagement, a yield, the ultimate force, a failure, a reversal, or a new
+    line.
+    """
     if at == SLACK:
         return (ELASTIC if event == 0 else ELASTIC + 1), m
     if at == UNLOADING:
@@ -228,8 +235,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy recovered down to zero force: along an unloading line, and along the part of the other side's
-    pinched line where the force has the same sign.
+    """Return the energy recovered down to zero force: along an unloading line, and along the part of the
+    pinched line of the other side where the force has the same sign.
     """
     if at < UNLOADING or f == 0.0:
         return 0.0
@@ -270,7 +277,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
-    """Rule from a card's values, a stiffness and the two yield forces."""
+    """Build the rule from a card's values, a stiffness and the two yield forces."""
     need_both_sides(fy_plus, fy_minus)
     fu, slack, r, fi = values["FU"], values["SLACK"], values["R"], values["FI"]
     fu_minus = fu[1] if len(fu) == 2 else -fu[0]
