@@ -171,7 +171,9 @@ def joined_halves(a: Array, i: int, j: int) -> Numbers:
 
 @cache
 def from_place(length: int) -> RowPart:
-    """Return a function ``numbers(a, i, j)``: `length` numbers of row `i` from column `j` on, as a tuple."""
+    """Return a function ``numbers(a, i, j)``: `length` numbers of row `i` from column `j` on, as a
+    tuple.
+    """
     if length == 1:
         return single_number
     n = length // 2

@@ -296,7 +296,9 @@ def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
 
 
 def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Return the branch along the backbone until the motion reverses (event 0) or the line ends (event 1)."""
+    """Return the branch along the backbone until the motion reverses (event 0) or the line ends
+    (event 1).
+    """
     s = side(at)
     slope, f0, end = yield_line(p, at, m)
     if end == 0.0:
@@ -312,7 +314,9 @@ def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
 
 
 def reversed_at(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
-    """Return the internal variables after a reversal on the backbone at `d`: the ductilities and the point."""
+    """Return the internal variables after a reversal on the backbone at `d`: the ductilities and
+    the point.
+    """
     s = side(at)
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[K] / yield_force(p, s)

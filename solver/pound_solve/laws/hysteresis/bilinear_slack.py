@@ -44,7 +44,9 @@ P_PLUS, P_MINUS = 0, 1  #: internal variables: plastic deformations of both side
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Return the virgin state: slack, or on a side without slack (or with a prestress, a negative slack)."""
+    """Return the virgin state: slack, or on a side without slack (or with a prestress, a negative
+    slack).
+    """
     if p[GAP_PLUS] <= 0.0:
         return ELASTIC_PLUS, (0.0, 0.0)
     return (ELASTIC_MINUS if p[GAP_MINUS] >= 0.0 else SLACK), (0.0, 0.0)
@@ -56,7 +58,9 @@ def first_yield(p: Numbers) -> tuple[float, float]:
 
 
 def yield_line(p: Numbers, at: int) -> tuple[float, float, float]:
-    """Return gap, yield force and side (+1, -1) of a yield line; yielding back stays on the engaged side."""
+    """Return gap, yield force and side (+1, -1) of a yield line; yielding back stays on the
+    engaged side.
+    """
     plus, minus, gap_plus, gap_minus = p[FY:R]
     if at == YIELDING_PLUS:
         return gap_plus, plus, 1.0

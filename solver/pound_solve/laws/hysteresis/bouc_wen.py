@@ -191,7 +191,9 @@ def yield_deformation(p: Numbers, s: float) -> float:
 
 
 def motion_at(p: Numbers, s: float, x: float) -> tuple[float, float, float]:
-    """Return s z, dz/dd and the integral of z dd from z = 0, at position `x` of a motion in direction `s`."""
+    """Return s z, dz/dd and the integral of z dd from z = 0, at position `x` of a motion in
+    direction `s`.
+    """
     if x >= 0.0:
         dy = yield_deformation(p, s)
         y, slope, w = outward_curve(p, x / dy)

@@ -131,7 +131,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Return the state after a yield, the end of a line, a failure, a reversal, or the end of an excursion."""
+    """Return the state after a yield, the end of a line, a failure, a reversal, or the end of an
+    excursion.
+    """
     s = side(at)
     kind = at if s > 0.0 else at - 1
     present = branch(p, at, m)

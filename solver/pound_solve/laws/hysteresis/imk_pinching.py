@@ -125,7 +125,9 @@ def reloading_ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, 
 
 
 def passes_local_peak(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
-    """Return whether the path from a point to the peak passes through the last turning point of that side."""
+    """Return whether the path from a point to the peak passes through the last turning point of
+    that side.
+    """
     (d1, f1), (d2, f2) = local_peak(s, m), peak(p, s, m)
     inside = d < d1 < d2 and f < f1 < f2 and f1 <= backbone(p, s, m, d1)
     return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)

@@ -90,7 +90,9 @@ def area_beyond_1(n: float, x: float) -> float:
 
 
 def area(n: float, x: float) -> float:
-    """Return the integral of the knee from 0 to `x`, by hypergeometric series after Pfaff's transformation."""
+    """Return the integral of the knee from 0 to `x`, by hypergeometric series after Pfaff's
+    transformation.
+    """
     if x <= 0.0:
         return 0.5 * x * x
     up_to_1 = min(x, 1.0)

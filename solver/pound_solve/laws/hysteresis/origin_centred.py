@@ -60,7 +60,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Return the state after a yield, a reversal, an arrival at the peak, or a passage through the origin."""
+    """Return the state after a yield, a reversal, an arrival at the peak, or a passage through the
+    origin.
+    """
     if at == ELASTIC:
         return enter_backbone(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)

@@ -52,7 +52,9 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def reloading(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
-    """Return the slope of the reloading line of side `s`, and the ductility at which it meets the backbone."""
+    """Return the slope of the reloading line of side `s`, and the ductility at which it meets the
+    backbone.
+    """
     mu, fy = largest_ductility(m, s), yield_force(p, s)
     target = mu - p[BETA] * (mu - 1.0)
     steepest = unloading(p, mu)

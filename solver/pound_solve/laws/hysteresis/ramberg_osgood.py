@@ -104,7 +104,9 @@ def from_dropped(m: Numbers) -> bool:
 
 
 def outer_origin(m: Numbers) -> tuple[float, float]:
-    """Return the origin of the next curve outside a dropped one: the oldest reversal or its mirror image."""
+    """Return the origin of the next curve outside a dropped one: the oldest reversal or its mirror
+    image.
+    """
     return (-m[D2], -m[F2]) if m[OPEN] == 2.0 else (m[D3], m[F3])
 
 

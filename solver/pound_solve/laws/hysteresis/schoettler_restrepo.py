@@ -93,7 +93,9 @@ def pinch(p: Numbers, s: float, m: Numbers) -> Point:
 
 
 def corner(s: float, m: Numbers) -> Point:
-    """Return the corner of an inner loop on a side or, without a loop, the last reversal; (0, 0) if none."""
+    """Return the corner of an inner loop on a side or, without a loop, the last reversal; (0, 0)
+    if none.
+    """
     return (m[X_CORNER], m[F_CORNER]) if s > 0.0 else (m[X_CORNER_MINUS], m[F_CORNER_MINUS])
 
 
@@ -165,7 +167,9 @@ def begin_loading(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numb
 
 
 def reversed_at(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
-    """Return the internal variables after a reversal: largest deformation, inner loop, corner, the point."""
+    """Return the internal variables after a reversal: largest deformation, inner loop, corner, the
+    point.
+    """
     s = side(at)
     plus, minus, inner = m[:X_CORNER]
     if at < UNLOADING:

@@ -192,7 +192,9 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tuple[int, Numbers]:
-    """Return the state after a reversal on a path of side `s` (branch `at`) at deformation `d`, force `f`."""
+    """Return the state after a reversal on a path of side `s` (branch `at`) at deformation `d`,
+    force `f`.
+    """
     foot = d - f / unloading(p)
     other, end = upper_end(p, -s, m, -s * foot)
     if s > 0.0:
