@@ -1,12 +1,13 @@
-"""Tuples of arrays that compiled code receives as one address: an extension of numba.
+"""Tuples of arrays that compiled code receives as a single address: an extension of numba.
 
-In each call of a kernel by another, numba passes a named tuple as all its components, seven for every
-array: two thousand in the calls of a method, which take longer to compile than the bodies of the kernels,
-and slow down every run.  An `Addressed` tuple is passed as the address of its cells (`block.Block`), and
-its parts are read on use.  Kernels see no difference, but cannot create such a tuple.
+When one kernel calls another, numba passes every component of a named tuple separately, seven for every
+array.  The calls of a method then have two thousand arguments, which take longer to compile than the bodies
+of the kernels and slow down every run.  An `Addressed` tuple is passed as the address of its cells
+(`block.Block`), and its parts are read when they are used.  Kernels use it like any tuple, but cannot
+create one.
 
-Nothing writes to the cells while a kernel runs, as the loads state (``invariant.load``): a loop reads an
-address and a length once, however often it writes to arrays.
+The loads are marked ``invariant.load``, because nothing writes to the cells while a kernel runs.  A loop
+therefore reads an address and a length only once, even if it writes to arrays.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, lower_getattr_generic, unbox
 
 CELL = ir.IntType(64)
-OWNERS, PLACE = 2, 4  #: cells of an array: those before the number of its elements, and of its address
+OWNERS, PLACE = 2, 4  #: offsets of the number of elements and of the address among the cells of an array
 
 
 class Addressed(types.Type):
-    """A named tuple, by address.
+    """A named tuple that is passed by address.
 
     Parameters
     ----------
@@ -35,19 +36,21 @@ class Addressed(types.Type):
 
     def __init__(self, parts: Any) -> None:
         self.parts = parts
-        key = hashlib.sha256(str(parts).encode()).hexdigest()[:16]  # part of long names
+        key = hashlib.sha256(str(parts).encode()).hexdigest()[:16]  # becomes part of long names
         super().__init__(name=f"{parts.instance_class.__name__}-{key}")
 
 
 def addressed(kind: Any) -> Any:
-    """The type by which a kernel takes a value of a type: a named tuple comes by address, unless it has
-    functions in it.
+    """Return the type with which a kernel receives a value: a named tuple is passed by address unless it
+    contains functions.
     """
     return Addressed(kind) if isinstance(kind, types.BaseNamedTuple) and n_cells(kind) else kind
 
 
 def n_cells(kind: Any) -> int:
-    """Cells that a value of a type takes in a `block.Block`; 0 where it cannot stand there."""
+    """Return the number of cells of a value of this type in a `block.Block`; 0 if it cannot be stored
+    there.
+    """
     if isinstance(kind, types.Array):
         return 2 * kind.ndim + PLACE + 1 if kind.layout == "C" else 0
     if isinstance(kind, types.BaseTuple):
@@ -58,12 +61,12 @@ def n_cells(kind: Any) -> int:
 
 @register_default(Addressed)
 class AddressedModel(models.OpaqueModel):
-    """An address."""
+    """Data model of an address."""
 
 
 @unbox(Addressed)
 def from_address(kind: Any, number: Any, c: Any) -> Any:
-    """Take an address that Python hands to a kernel as an integer."""
+    """Unbox an address that Python passes to a kernel as an integer."""
     return NativeValue(c.pyapi.long_as_voidptr(number))
 
 
@@ -74,14 +77,14 @@ class PartTypes(AttributeTemplate):
     key = Addressed
 
     def generic_resolve(self, owner: Any, name: str) -> Any:
-        """Type of the part of that name; None where there is none."""
+        """Return the type of the part `name`, or None if there is no such part."""
         fields = owner.parts.fields
         return addressed(owner.parts.types[fields.index(name)]) if name in fields else None
 
 
 @lower_getattr_generic(Addressed)
 def part(context: Any, builder: Any, owner: Any, address: Any, name: str) -> Any:
-    """Code that reads the named part of an addressed tuple."""
+    """Generate code that reads the named part of an addressed tuple."""
     number = owner.parts.fields.index(name)
     before = sum(n_cells(other) for other in owner.parts.types[:number])
     place = builder.gep(builder.bitcast(address, CELL.as_pointer()), [CELL(before)])
@@ -92,7 +95,7 @@ def part(context: Any, builder: Any, owner: Any, address: Any, name: str) -> Any
 
 
 def read(context: Any, builder: Any, kind: Any, place: Any) -> Any:
-    """Code that reads a value of a type from the cells that begin at a place."""
+    """Generate code that reads a value of a type from the cells that start at `place`."""
     if isinstance(kind, types.Array):
         return read_array(context, builder, kind, place)
     if isinstance(kind, types.BaseTuple):
@@ -107,7 +110,7 @@ def read(context: Any, builder: Any, kind: Any, place: Any) -> Any:
 
 
 def read_array(context: Any, builder: Any, kind: Any, place: Any) -> Any:
-    """Code that reads an array: its address and its shape, from which all else follows."""
+    """Generate code that reads the address and shape of an array, which determine all its other fields."""
     layout = context.get_value_type(kind)
     shape = [load(builder, builder.gep(place, [CELL(PLACE + 1 + n)])) for n in range(kind.ndim)]
     size = context.get_abi_sizeof(context.get_data_type(kind.dtype))
@@ -129,7 +132,7 @@ def read_array(context: Any, builder: Any, kind: Any, place: Any) -> Any:
 
 
 def load(builder: Any, place: Any) -> Any:
-    """Code that loads a cell, marked as constant for the compiler."""
+    """Generate code that loads a cell and marks it as constant for the compiler."""
     value = builder.load(place)
     value.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value

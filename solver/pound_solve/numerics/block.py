@@ -1,4 +1,4 @@
-"""Arguments of a kernel as they lie in memory, for compiled code."""
+"""The memory layout of kernel arguments for compiled code."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pound_solve.numerics.types import Array, Index
 
 
 class Block:
-    """Arguments of a kernel as numbers of 64 bits.
+    """Arguments of a kernel as 64-bit numbers.
 
-    An array is laid out as in compiled code: two owners, which kernels do not know; the number of its
-    elements and the size of one; its address, shape and strides.  A record is its address, a function of a
-    rule its number.
+    An array has the layout of compiled code: two owners, which kernels do not use; the number of elements
+    and the size of one element; the address, shape and strides.  A record is stored as its address, and a
+    function of a rule as its number.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class Block:
     ----------
     cells : list of int or float
     types : list of str
-        One for every argument and part of one.
+        One for every argument and for every part of an argument.
     """
 
     def __init__(self, arguments: Sequence[Any], numbers: Mapping[str, int]) -> None:
@@ -73,14 +73,14 @@ class Block:
         self.types.append(f"{a.dtype.str}{a.ndim}")
 
     def packed(self) -> bytes:
-        """The numbers as they lie in memory."""
+        """Return the numbers as bytes in memory order."""
         return struct.pack(
             "=" + "".join("d" if isinstance(x, float) else "q" for x in self.cells), *self.cells
         )
 
 
 def with_numbers(value: tuple[Any, ...], numbers: Mapping[str, int]) -> tuple[Any, ...] | Index:
-    """The tuple itself or, for one of functions, an array of their numbers."""
+    """Return the tuple itself or, for a tuple of functions, an array of their numbers."""
     if not value or not callable(value[0]):
         return value
     return np.array([numbers[f.__qualname__] for f in value], np.int64)

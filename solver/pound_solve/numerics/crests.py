@@ -1,11 +1,11 @@
 r"""Extremes of sampled quantities between their samples.
 
-A quantity y is known at instants, and smooth over the *cell* between two of them.  Its cells are examined
-twice.  First the samples alone show in which cells y may exceed its known extremes: in a cell of at most
-2.5 radians of an oscillation, y exceeds the larger of two samples by no more than its largest change over
-the adjacent cells.  Only in those cells is y sampled at the
-`NODES` of Chebyshev, whose polynomial is right to about :math:`J_{13}(1.25) \approx 4\cdot 10^{-13}` of the
-fastest part; its extreme is found on a fine grid and by Newton's method.
+A quantity y is known at instants, and is smooth over the *cell* between two of them.  The search has two
+stages.  First, the samples alone show in which cells y may exceed its known extremes: in a cell of at most
+2.5 radians of an oscillation, y exceeds the larger of its two end samples by no more than the largest
+change of y over the adjacent cells.  Second, only in those cells y is sampled at the Chebyshev `NODES`.
+The error of the interpolating polynomial is about :math:`J_{13}(1.25) \approx 4\cdot 10^{-13}` of the
+fastest part; the extreme is found on a fine grid and by Newton's method.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ import numpy as np
 from pound_solve.numerics.types import Array, Flags, Index
 
 DEGREE = 12  #: of the polynomial over a cell
-GROUP = 16  #: cells that are judged together
-AT_ONCE = 2**16  #: samples of several quantities that are looked at together, which a cache holds
-GRID_CELLS = 48  #: cells of the grid on which the extreme of a polynomial is looked for
-NEWTON_ITERATIONS = 3  #: iterations to it
-SAMPLES_BESIDE = 2  #: samples before and after them that tell how the quantity bends
-MARGIN = 1.5  #: over the change over a cell, by which a quantity may exceed its samples
+GROUP = 16  #: cells that share one bound
+AT_ONCE = 2**16  #: number of samples that are examined at once, few enough for a cache
+GRID_CELLS = 48  #: cells of the grid on which the extreme of a polynomial is searched
+NEWTON_ITERATIONS = 3  #: iterations from the grid to the extreme
+SAMPLES_BESIDE = 2  #: additional samples on either side, which show the curvature
+MARGIN = 1.5  #: factor on the change over a cell, for the amount by which a quantity may exceed its samples
 EXCESS = (
     0.5  #: fraction of a quantity's changes from node to node, by which it may exceed the largest there
 )
-CURVATURE_MARGIN = 1.5  #: over the range of its second differences, by which it may bend more
+CURVATURE_MARGIN = 1.5  #: factor on the range of the second differences, for the largest curvature
 
 _AROUND = np.arange(-SAMPLES_BESIDE, GROUP + SAMPLES_BESIDE + 1)
 
 _TURN = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
-#: places of the nodes in (0, 1): without the ends, at which a quantity may jump
+#: positions of the nodes in (0, 1), without the ends, where a quantity may jump
 NODES = 0.5 * (1.0 - np.cos(_TURN))
-#: coefficients of Chebyshev's polynomials from values at the nodes
+#: matrix from values at the nodes to coefficients of Chebyshev polynomials
 _FIT = 2.0 / (DEGREE + 1) * np.cos(np.arange(DEGREE + 1)[:, None] * (np.pi - _TURN))
 _FIT[0] *= 0.5
 _GRID = np.linspace(-1.0, 1.0, GRID_CELLS + 1)
@@ -42,12 +42,14 @@ _ON_GRID = np.polynomial.chebyshev.chebvander(_GRID, DEGREE) @ _FIT
 
 
 def on_nodes(places: Array) -> Array:
-    """Values at places in [0, 1] of the polynomials through values at the `NODES`, shape (..., n_nodes)."""
+    """Return the matrix from values at the `NODES` to values at `places` in [0, 1], shape (...,
+    n_nodes).
+    """
     return np.asarray(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, DEGREE) @ _FIT)
 
 
 def some_rows(values: Array) -> Iterator[slice]:
-    """Rows of an array, some at a time."""
+    """Yield the rows of an array in batches."""
     count = max(AT_ONCE // max(values.shape[1], 1), 1)
     for first in range(0, len(values), count):
         yield slice(first, first + count)
@@ -86,14 +88,14 @@ class Doubts(NamedTuple):
 
 
 def may_exceed(values: Array, low: Array, high: Array) -> Doubts:
-    """Which quantities may exceed their known extremes, and in which cells.
+    """Return which quantities may exceed their known extremes, and in which cells.
 
     Parameters
     ----------
     values : ndarray, shape (n, n_times)
-        At the starts of the cells; the end of one is the start of the next.
+        At the starts of the cells; the end of a cell is the start of the next.
     low, high : ndarray, shape (n,)
-        Smallest and largest values so far, these among them.
+        Smallest and largest values so far, including these.
     """
     doubts = [Doubts(np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))]
     for some in some_rows(values):
@@ -109,7 +111,9 @@ def may_exceed(values: Array, low: Array, high: Array) -> Doubts:
 
 
 def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: Index) -> Iterator[Doubts]:
-    """Entries for quantities, with their `numbers`, that may exceed the `best` values on either side."""
+    """Yield entries for quantities, with their `numbers`, that may exceed the `best` values on
+    either side.
+    """
     count = values.shape[1]
     starts = np.arange(0, count, GROUP)
     reach = MARGIN * _beside(np.maximum.reduceat(change, starts, axis=1))
@@ -125,7 +129,7 @@ def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: In
 
 
 def near(values: Array, best: Array) -> Flags:
-    """Which quantities may exceed `best` within a cell, by their values at the `NODES`, shape (n,
+    """Return which quantities may exceed `best` within a cell, judged by `values` at the `NODES`, shape (n,
     n_nodes).
     """
     change = np.abs(np.diff(values, axis=1))
@@ -137,8 +141,8 @@ def near(values: Array, best: Array) -> Flags:
 
 
 def _bounds(values: Array) -> Array:
-    """Bounds of quantities over `GROUP` cells from their values at the starts and ends of these, with
-    `SAMPLES_BESIDE` more samples on either side, shape (n, GROUP).
+    """Return bounds of quantities over `GROUP` cells, shape (n, GROUP), from their values at the starts and
+    ends of the cells and at `SAMPLES_BESIDE` additional samples on either side.
     """
     slope = values[:, 1:] - values[:, :-1]
     bend = slope[:, 1:] - slope[:, :-1]  # at all samples but the first and the last
@@ -161,7 +165,7 @@ def _beside(x: Array) -> Array:
 
 
 def crests(values: Array) -> tuple[Array, Array]:
-    """Largest values over some cells, and their places in [0, 1], shape (n,) each.
+    """Return the largest values over some cells, and their positions in [0, 1], shape (n,) each.
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ import numpy as np
 
 
 def next_trial(a: float, b: float, c: float, ga: float, gb: float, gc: float) -> float:
-    """Next trial for a zero of g between `a` and `b`, where its signs differ, by inverse quadratic
-    interpolation with `c`, tried before; by the secant where `gc` is not known.
+    """Return the next trial for a zero of g between `a` and `b`, where g has opposite signs, by inverse
+    quadratic interpolation with the earlier trial `c`, or by the secant if `gc` is unknown.
     """
     share = ga / (ga - gb)
     if gc == gc:
@@ -16,13 +16,13 @@ def next_trial(a: float, b: float, c: float, ga: float, gb: float, gc: float) ->
 
 
 def cubic_peak(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
-    """Place and value of the maximum of a cubic that rises at 0 and falls at `h`."""
+    """Return the position and value of the maximum of a cubic that rises at 0 and falls at `h`."""
     a = 2.0 * (g0 - g1) / (h * h * h) + (s0 + s1) / (h * h)
     b = 3.0 * (g1 - g0) / (h * h) - (2.0 * s0 + s1) / h
     q = b * b - 3.0 * a * s0
     at = -1.0
     if q >= 0.0:
-        # of the two forms of the root the one without cancellation
+        # the form of the root without cancellation
         if b < 0.0:
             at = s0 / (np.sqrt(q) - b)
         elif a != 0.0:
@@ -33,14 +33,14 @@ def cubic_peak(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[fl
 
 
 def cubic_value(g0: float, g1: float, s0: float, s1: float, h: float, t: float) -> float:
-    """The cubic with values `g0`, `g1` and slopes `s0`, `s1` at 0 and `h`, at `t`."""
+    """Return the value at `t` of the cubic with values `g0`, `g1` and slopes `s0`, `s1` at 0 and `h`."""
     a = 2.0 * (g0 - g1) / (h * h * h) + (s0 + s1) / (h * h)
     b = 3.0 * (g1 - g0) / (h * h) - (2.0 * s0 + s1) / h
     return ((a * t + b) * t + s0) * t + g0
 
 
 def cubic_rise(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
-    """First place where a cubic that is not above zero at 0 and above it at `h` rises through zero."""
+    """Return where a cubic that is at most zero at 0 and positive at `h` first rises through zero."""
     if g0 >= 0.0 and s0 > 0.0:
         return 0.0
     a = 2.0 * (g0 - g1) / (h * h * h) + (s0 + s1) / (h * h)

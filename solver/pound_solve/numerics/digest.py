@@ -1,4 +1,4 @@
-"""The version of the kernels' source, by which compiled code is known to belong to it."""
+"""A digest of the source of the kernels, which identifies the compiled code that belongs to it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-#: files of the kernels and of their dependencies
+#: files of the kernels and their dependencies
 KERNELS = (
     "numerics/*.py",
     "laws/**/*.py",

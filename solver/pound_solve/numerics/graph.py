@@ -1,8 +1,8 @@
 """Connected components: which unknowns are coupled, directly or through others.
 
-Plain numpy, because small decks do not import scipy (its `connected_components` would take longer to import
-than these decks to run): in every round each component takes the lowest label next to it, which halves the
-number of unfinished components at least.
+This is plain numpy, because small decks do not import scipy (importing its `connected_components` would
+take longer than running these decks).  In every round each component takes the lowest adjacent label, which
+at least halves the number of unfinished components.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from pound_solve.numerics.types import Index
 
 
 def components(n: int, matrices: Iterable[Matrix] = (), groups: Iterable[Index] = ()) -> Index:
-    """Connected component of every vertex, denoted by its lowest vertex, shape (n,).
+    """Return the connected component of every vertex, identified by its lowest vertex, shape (n,).
 
     Parameters
     ----------
     n : int
         Number of vertices.
     matrices : iterable of Matrix, shape (n, n)
-        An entry other than zero couples its row and its column.
+        A non-zero entry couples its row and its column.
     groups : iterable of ndarray of int
         Vertices that are coupled to each other.
     """

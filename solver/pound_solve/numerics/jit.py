@@ -1,9 +1,9 @@
-"""Compilation by numba: scalar kernels are compiled where the extra `fast` is installed,
-else they run as Python.
+"""Compilation by numba: scalar kernels are compiled if the extra `fast` is installed, and otherwise run as
+Python.
 
-A kernel is plain Python.  Nothing is compiled, nor numba imported, before the first request here.
-The compiled code is kept between runs (`kernel_cache`), in a separate folder for each version of the
-kernels' source: numba itself does not notice a change in a function that another one calls.
+A kernel is plain Python.  Nothing is compiled, and numba is not imported, before the first request to this
+module.  The compiled code is kept between runs (`kernel_cache`), in a separate folder for each version of
+the kernels' source: numba itself does not notice a change in a function that another one calls.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ FASTMATH = {"contract", "reassoc"}  #: reorderings that `reorder_sums` allows
 
 @cache
 def numba() -> Any:
-    """numba, with the cache folder set; None where it cannot be imported."""
+    """Return numba with the cache folder set, or None if it cannot be imported."""
     try:
         import numba as found
     except ImportError:
@@ -42,15 +42,16 @@ def numba() -> Any:
     return found
 
 
-INNER = "_inner"  #: end of the names of kernels that only other kernels call
+INNER = "_inner"  #: suffix of the names of kernels that only other kernels call
 
 
 @cache
 def lighten(module: Any) -> None:
-    """Let numba neither optimise nor emit code of inner kernels, from the first call on.
+    """Prevent numba from optimising and emitting code of inner kernels, from the first call on.
 
-    It would optimise each of them with all that it calls, and again in every kernel that calls it.  Their
-    plain code is linked into the outermost kernel, which alone is optimised and emitted: once.
+    Numba would optimise each of them together with its callees, and again in every kernel that calls it.
+    Instead, their unoptimised code is linked into the outermost kernel, and only that kernel is optimised
+    and emitted.
     """
     library, engine = module.core.codegen.JITCodeLibrary, module.core.codegen.JITCPUCodegen
     optimise, emit = library._optimize_final_module, library._finalize_final_module
@@ -78,7 +79,7 @@ def lighten(module: Any) -> None:
 
 
 def subscripts(function: Function) -> set[str]:
-    """Names of global variables that are indexed in a function."""
+    """Return the names of global variables that are indexed in a function."""
     code = itertools.pairwise(dis.get_instructions(function))
     return {
         load.argval
@@ -88,24 +89,24 @@ def subscripts(function: Function) -> set[str]:
 
 
 def reorder_sums(function: Function) -> Function:
-    """Mark a kernel whose sums may be taken in another order, several terms at once."""
+    """Mark a kernel in which numba may reorder sums, to add several terms at once."""
     vars(function)["reorder_sums"] = True
     return function
 
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Context with numba's settings for calls in which a kernel may be compiled."""
+    """Set up numba for calls in which a kernel may be compiled, as a context manager."""
     module = numba()
     if module is None:
         yield
         return
     config = module.config
     before = config.OPT
-    # rows of a sparse matrix are loops of one or two turns: unrolled, as higher levels do, they run slower
+    # loops over rows of a sparse matrix have one or two iterations; higher levels unroll them: slower
     config.OPT = type(before)(1)
     try:
-        with warnings.catch_warnings():  # that functions as values are new
+        with warnings.catch_warnings():  # functions as values are experimental in numba
             warnings.simplefilter("ignore", module.core.errors.NumbaExperimentalFeatureWarning)
             yield
     finally:
@@ -113,28 +114,28 @@ def compiling() -> Iterator[None]:
 
 
 def cold(function: Function) -> bool:
-    """Whether numba has yet to compile a kernel, each of which is compiled in one version only."""
+    """Return whether numba has not yet compiled a kernel; each kernel is compiled in one version only."""
     folder = kernel_cache.cache_folder().folder
     return folder is None or not any(folder.rglob(f"*.{function.__name__}-*.nbc"))
 
 
 @cache
 def compiled(function: Function, signature: Any = None, inner: bool = False) -> Function:
-    """Compile a kernel and, first, the functions of this program that it calls.
+    """Compile a kernel, after the functions of this program that it calls.
 
     Parameters
     ----------
     function : callable
-        A kernel: numbers, tuples, arrays and other kernels only.
+        A kernel, which uses only numbers, tuples, arrays and other kernels.
     signature : numba signature, as text or not, or None
-        Compile for these types at once, so that the function can be handed on as a value.
+        Types to compile for immediately, so that the function can be passed as a value.
     inner : bool
-        Only other kernels call it.
+        Whether only other kernels call it.
 
     Returns
     -------
     callable
-        The function itself where there is no numba.
+        The function itself if numba is not available.
     """
     module = numba()
     if module is None:
@@ -144,14 +145,14 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
             scope[used] = compiled(value, inner=True)
-        elif type(value) is int and used not in indices:  # a callee would be compiled anew for every int,
-            scope[used] = np.int64(value)  # while only by an int a tuple may be indexed at no cost
+        elif type(value) is int and used not in indices:  # a callee would be recompiled for every int,
+            scope[used] = np.int64(value)  # but only an int can index a tuple without cost
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
-    # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
+    # the caller owns the arrays: reference counts are unnecessary and would cost more than the work
     kept = kernel_cache.cache_folder().folder is not None
     how = {"cache": kept, "error_model": "numpy", "_nrt": False}
-    if inner:  # Python never calls it: it needs no wrapper, but a separate name in the cache
+    if inner:  # Python never calls it, so it needs no wrapper, but it needs a separate name in the cache
         twin.__qualname__ += INNER
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
     if "reorder_sums" in vars(function):
@@ -162,20 +163,20 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
 
 
 def kinds_of(arguments: Iterable[Any]) -> tuple[Any, ...]:
-    """numba's types of the arguments of a kernel, which takes named tuples by address where it can."""
-    from pound_solve.numerics.addressed import addressed  # it imports numba
+    """Return numba's types of a kernel's arguments; named tuples are passed by address where possible."""
+    from pound_solve.numerics.addressed import addressed  # this imports numba
 
     typeof = numba().typeof
     return tuple(addressed(typeof(value)) for value in arguments)
 
 
 class Numba:
-    """Kernels that numba compiles, see `providers.Provider`.
+    """Provider of kernels that numba compiles, see `providers.Provider`.
 
     Parameters
     ----------
     notice : str
-        What a user has to know before every run.
+        Message for the user before every run.
     """
 
     fast, loading = True, 1.0
@@ -196,7 +197,7 @@ class Numba:
 
 
 class Called:
-    """A kernel that numba compiles at the first call and calls from then on.
+    """A kernel that numba compiles at the first call.
 
     Parameters
     ----------
@@ -206,18 +207,18 @@ class Called:
     def __init__(self, dispatcher: Any) -> None:
         self._dispatcher, self._entry = dispatcher, dispatcher
         self._given: tuple[Any, ...] = ()
-        self._taken: list[Any] = []  # the same, of some their addresses
+        self._taken: list[Any] = []  # the same, some as addresses
         self._cells: list[Array] = []  # contents of these addresses
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call it."""
+        """Call the kernel."""
         same = len(self._given) == len(arguments) and all(x is y for x, y in zip(self._given, arguments))
-        if not same:  # numba's dispatch on types takes longer than many a call
+        if not same:  # numba's dispatch on types takes longer than many calls
             self._take(arguments)
         return self._entry(*self._taken)
 
     def _take(self, arguments: tuple[Any, ...]) -> None:
-        """Adopt new arguments."""
+        """Prepare new arguments."""
         with compiling():
             kinds = kinds_of(arguments)
             self._entry = self._dispatcher.compile(kinds)

@@ -1,8 +1,9 @@
-"""Where compiled kernels are kept between runs: one folder for each version of their source.
+"""The cache of compiled kernels between runs: one folder for each version of their source.
 
-The folder is in POUND_CACHE, if the environment names it, else in the user's cache folder, else in a folder
-of the user in the temporary one.  Compiled code that is loaded runs: the last two must therefore belong to
-the user and be closed to others.  Whoever names a folder vouches for it.
+The folder is in POUND_CACHE if the environment sets it, otherwise in the user's cache folder, or in a
+folder of the user within the temporary folder.  Compiled code from the cache is executed, so the last two
+must belong to the user and be inaccessible to others.  A user who sets POUND_CACHE is responsible for that
+folder.
 """
 
 from __future__ import annotations
@@ -24,12 +25,14 @@ NAME, VARIABLE = "pound-solve", "POUND_CACHE"
 CURE = f"set {VARIABLE} to a folder that you may write to"
 NOT_KEPT = f"compiled kernels cannot be kept, every run compiles for a minute or two: {CURE}"
 ELSEWHERE = f"compiled kernels cannot be kept in {VARIABLE}={{}}, but in {{}}"
-MAX_AGE = 30 * 86400.0  #: age from which on a version that no run has used is deleted [s]
-OF_A_VERSION = re.compile("[0-9a-f]{16}(-old-.*)?")  #: names of its folder, and of one being deleted
+MAX_AGE = 30 * 86400.0  #: age at which an unused version is deleted [s]
+OF_A_VERSION = re.compile(
+    "[0-9a-f]{16}(-old-.*)?"
+)  #: name of the folder of a version, or of one being deleted
 
 
 class CacheFolder(NamedTuple):
-    """Folder of the compiled kernels, None without one, and a message about it to the user."""
+    """Folder of the compiled kernels (None if there is none), and a message about it for the user."""
 
     folder: Path | None
     notice: str = ""
@@ -37,7 +40,9 @@ class CacheFolder(NamedTuple):
 
 @cache
 def cache_folder() -> CacheFolder:
-    """Create the folder of this version and return it; folders of versions no longer used are deleted."""
+    """Create the folder of this version and return it; delete folders of versions that are no
+    longer used.
+    """
     asked = os.environ.get(VARIABLE)
     for root in roots(asked):
         folder = root / digest()
@@ -52,23 +57,23 @@ def cache_folder() -> CacheFolder:
 
 
 def roots(asked: str | None) -> Iterator[Path]:
-    """Folders that may hold those of the versions, best first."""
+    """Yield folders that may contain the folders of the versions, best first."""
     if asked:
         yield Path(asked)
-    with suppress(RuntimeError):  # there is no home
+    with suppress(RuntimeError):  # no home folder
         yield user_cache()
-    with suppress(OSError):  # nor a temporary folder
+    with suppress(OSError):  # no temporary folder
         temporary = tempfile.gettempdir()
         yield Path(temporary, f"{NAME}-{os.getuid()}" if hasattr(os, "getuid") else NAME)
 
 
 def user_cache() -> Path:
-    """The program's folder in the user's cache, by the rules of the platform.
+    """Return the program's folder in the user's cache, according to the platform's rules.
 
     Raises
     ------
     RuntimeError
-        The user has no home.
+        The user has no home folder.
     """
     try:
         from platformdirs import user_cache_path
@@ -81,24 +86,24 @@ def user_cache() -> Path:
 
 
 def claim(folder: Path, trusted: bool = False) -> None:
-    """Make a folder, closed to others, and mark it as used.
+    """Create a folder that is inaccessible to others, and mark it as used.
 
     Parameters
     ----------
     folder : Path
     trusted : bool
-        It may be another user's, and others may write to it.
+        Whether the folder may belong to another user and be writable by others.
 
     Raises
     ------
     OSError
-        It cannot be made or written, or belongs to another user.
+        The folder cannot be created or written, or belongs to another user.
     """
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     if not trusted and hasattr(os, "getuid"):
         if {folder.lstat().st_uid, folder.stat().st_uid} != {
             os.getuid()
-        }:  # a link's owner chose its target
+        }:  # the owner of a link chose its target
             raise PermissionError(f"{folder} is another user's")
         if folder.stat().st_mode & 0o022:
             folder.chmod(0o700)
@@ -107,10 +112,10 @@ def claim(folder: Path, trusted: bool = False) -> None:
 
 
 def prune(root: Path) -> None:
-    """Delete versions that no run has used for long.
+    """Delete versions that no run has used for a long time.
 
-    A folder is renamed first: of several processes that prune, one gets it.  A run that begins to use it at
-    this moment makes it anew.
+    A folder is renamed first, so that only one of several concurrent processes deletes it.  A run that
+    starts to use the folder at this moment creates it again.
     """
     limit = time.time() - MAX_AGE
     for old in root.iterdir():
@@ -118,5 +123,5 @@ def prune(root: Path) -> None:
             if not OF_A_VERSION.fullmatch(old.name) or old.is_symlink() or old.stat().st_mtime > limit:
                 continue
             shutil.rmtree(old.rename(root / f"{old.name[:16]}-old-{os.getpid()}"))
-        except OSError:  # another process was faster, or the folder is another user's
+        except OSError:  # another process was faster, or the folder belongs to another user
             continue

@@ -1,9 +1,9 @@
-r"""Sparse :math:`A = L D L^T` on a fixed pattern, with updates of rank one.
+r"""Sparse :math:`A = L D L^T` factorisation on a fixed pattern, with rank-one updates.
 
-The unknowns are ordered once for little fill; the pattern of L follows from that of A, and every
-factorisation after it is a walk over known positions.  A spring that changes its stiffness by
-:math:`\delta` along the row b changes A by :math:`\delta\, b b^T`, and its factor only along the path
-from b's first unknown to the root of the elimination tree.
+The unknowns are ordered once, for little fill.  The pattern of L follows from that of A, and every further
+factorisation only visits known positions.  A spring that changes its stiffness by :math:`\delta` along the
+row b changes A by :math:`\delta\, b b^T`.  This changes the factor only along the path from the first
+unknown of b to the root of the elimination tree.
 
 References
 ----------
@@ -22,12 +22,12 @@ from pound_solve.numerics import ordering
 from pound_solve.numerics.matrices import MAX_DENSE
 from pound_solve.numerics.types import Array, Index
 
-#: positions of entries: without a sign, so that none is counted from the end, for which a kernel would look
-#: at each before it reads or writes there
+#: positions of entries: unsigned, so that kernels need not test every index for negative values, which count
+#: from the end
 Positions = NDArray[np.uint32]
 
 
-SPARE_ENTRIES = 0.05  #: entries that the factor may gain, an unknown, for the sake of diagonals
+SPARE_ENTRIES = 0.05  #: additional entries per unknown that are accepted for an order with few diagonals
 
 
 class Pattern(NamedTuple):
@@ -53,16 +53,17 @@ class Pattern(NamedTuple):
 
 
 def order(n: int, i: Index, j: Index) -> Index:
-    """Order of elimination with little fill, shape (n,).
+    """Return an order of elimination with little fill, shape (n,).
 
-    Along a line (reverse Cuthill-McKee), from both its ends in turn so that two eliminations need not wait
-    for each other, where that fills hardly more than minimum degree: entries then lie on few diagonals.
+    The order follows a line (reverse Cuthill-McKee) if that fills hardly more than minimum degree; the
+    entries then lie on few diagonals.  It takes unknowns alternately from both ends of the line, so that
+    two eliminations do not depend on each other.
 
     Parameters
     ----------
     n : int
     i, j : ndarray, shape (n_pairs,)
-        Which of the unknowns are coupled; each pair may come once or often.
+        Pairs of coupled unknowns; a pair may occur more than once.
     """
     if n <= MAX_DENSE:
         return _order_of_few(n, i, j)
@@ -74,7 +75,7 @@ def order(n: int, i: Index, j: Index) -> Index:
     rows, columns = np.concatenate([i, j, every]), np.concatenate([j, i, every])
     a = csc_array((np.ones(len(rows)), (rows, columns)), (n, n))
     a.data[:] = 1.0
-    a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
+    a.setdiag(n + 1.0)  # the values are irrelevant, because pivots are never exchanged
     symmetric = {"SymmetricMode": True}
     by_degree = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
     line = from_both_ends(reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64))
@@ -85,7 +86,7 @@ def order(n: int, i: Index, j: Index) -> Index:
 
 
 def _order_of_few(n: int, i: Index, j: Index) -> Index:
-    """Order of elimination as by `order`, for few unknowns."""
+    """Return the result of `order` for few unknowns."""
     near: list[set[int]] = [set() for _ in range(n)]
     for a, b in zip(i.tolist(), j.tolist()):
         if a != b:
@@ -102,14 +103,14 @@ def from_both_ends(line: Index) -> Index:
 
 
 def _fill(near: Sequence[set[int]], order: Index) -> int:
-    """Number of entries of the factor in an order of elimination."""
+    """Return the number of entries of the factor for an order of elimination."""
     place = np.argsort(order).tolist()
     coupled = [{place[x] for x in near[k] if place[x] > column} for column, k in enumerate(order.tolist())]
     return sum(map(len, filled(coupled)))
 
 
 def analyse(n: int, i: Index, j: Index) -> Pattern:
-    """Pattern of a matrix in its order of elimination, and of its factor; see `order`."""
+    """Return the pattern of a matrix in its order of elimination, and of its factor; see `order`."""
     coupled: list[set[int]] = [set() for _ in range(n)]
     for a, b in zip(np.maximum(i, j).tolist(), np.minimum(i, j).tolist()):
         if a != b:
@@ -127,7 +128,7 @@ def analyse(n: int, i: Index, j: Index) -> Pattern:
 
 
 def filled(columns: Sequence[set[int]]) -> list[list[int]]:
-    """Symbolic factorisation: rows of L below the diagonal, column by column.
+    """Perform the symbolic factorisation: return the rows of L below the diagonal, column by column.
 
     A column of L has the entries of A and those of its children in the elimination tree.
 
@@ -147,17 +148,17 @@ def filled(columns: Sequence[set[int]]) -> list[list[int]]:
 
 
 def pointers(lists: Sequence[Sized]) -> Positions:
-    """Where each of some lists begins when they are concatenated, and where the last ends."""
+    """Return where each list begins when the lists are concatenated, and where the last one ends."""
     return np.concatenate([[0], np.cumsum([len(x) for x in lists])]).astype(np.uint32)
 
 
 def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Positions, Positions]:
-    """Pointers and entries of a list of lists in one array."""
+    """Return the pointers and entries of a list of lists in one array."""
     return pointers(lists), np.array([x for row in lists for x in row], np.uint32)
 
 
 def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: E741
-    """Factorise A with the values `a` into L and D, its pivots; `w` is zero before and after.
+    """Factorise A with the values `a` into L and the pivots D; `w` is zero before and after.
 
     Parameters
     ----------
@@ -169,7 +170,7 @@ def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: 
     Returns
     -------
     int
-        -1, or the first unknown whose pivot vanishes.
+        The first unknown whose pivot vanishes, or -1.
     """
     for j in range(len(d)):
         for y in range(s.ap[j], s.ap[j + 1]):
@@ -195,12 +196,13 @@ def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: 
 
 
 def update(s: Pattern, l: Array, d: Array, w: Array, first: int, change: float) -> bool:  # noqa: E741
-    """Add ``change * w w^T`` to the factored matrix; `w`, which begins at unknown `first`, is zeroed.
+    """Add ``change * w w^T`` to the factorised matrix; `w`, which starts at unknown `first`, is set to
+    zero.
 
     Returns
     -------
     bool
-        False where a pivot (nearly) vanishes: the factor must be made anew.
+        False if a pivot (nearly) vanishes: the matrix must be factorised again.
     """
     j, n = first, len(d)
     good = True

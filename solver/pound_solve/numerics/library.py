@@ -1,7 +1,7 @@
-"""Kernels compiled ahead of time: a shared library beside this module, in the wheel of a platform.
+"""Kernels compiled ahead of time: a shared library next to this module, in platform-specific wheels.
 
-`ahead_of_time` builds it from the same source.  A kernel has a door in it, which takes one block of
-numbers: the arguments one after the other, see `block.Block`.
+`ahead_of_time` builds it from the same source.  Every kernel has an entry point in it, which takes one
+block of numbers: all arguments in order, see `block.Block`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pound_solve.numerics.block import Block
 from pound_solve.numerics.digest import digest
 from pound_solve.numerics.jit import Function
 
-FOLDER = Path(__file__).parent  #: where a wheel puts libraries
-STEM = "kernels-"  #: of a library's file; the digest of the source follows
+FOLDER = Path(__file__).parent  #: folder of the libraries in a wheel
+STEM = "kernels-"  #: start of the name of a library file; the digest of the source follows
 CONTENTS = "contents"  #: function in a library that returns its contents, see `Library`
 REFUSED = (
     "the compiled kernels here are not of this program and machine: install it anew, or, in a checkout, "
@@ -24,8 +24,8 @@ REFUSED = (
 
 
 class Library:
-    """A library, whose contents are lines of words: ``kernel``, its name and the types of its arguments;
-    ``function`` and the name of a rule's function, the number of which is its place among them.
+    """A library.  Its contents are lines of words: ``kernel``, its name and the types of its arguments; or
+    ``function`` and the name of a rule's function, whose number is its position among these lines.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Library:
     Raises
     ------
     OSError
-        The platform's loader does not take it.
+        The loader of the platform rejects it.
     """
 
     name, fast, loading = "compiled, from the library of the wheel", True, 0.0
@@ -71,7 +71,7 @@ class Library:
 
 
 def load(folder: Path) -> Library | None:
-    """The library of this version of the source; None where there is none that this machine can load."""
+    """Return the library of this version of the source, or None if this machine can load none."""
     for path in folder.glob(f"{STEM}{digest()}.*"):
         try:
             return Library(path)
@@ -81,5 +81,5 @@ def load(folder: Path) -> Library | None:
 
 
 def present(folder: Path) -> bool:
-    """Whether there are libraries, of whatever version."""
+    """Return whether there are libraries of any version."""
     return any(folder.glob(f"{STEM}*"))

@@ -1,8 +1,8 @@
-"""Matrices of a structure: plain arrays while they are small, sparse rows (CSR) beyond.
+"""Matrices of a structure: plain arrays if they are small, otherwise sparse rows (CSR).
 
-A sparse matrix pays from some hundred DOFs on; below, it costs more than it saves, and a deck with few
-DOFs need not even import it.  What works on both (``@``, ``+``, ``.T``, slices, ``numpy.ix_``) is
-written as for arrays; the rest is here.
+A sparse matrix is faster from a few hundred DOFs on.  Below that it costs more than it saves, and a deck
+with few DOFs does not even import scipy.sparse.  Operations that both types support (``@``, ``+``, ``.T``,
+slices, ``numpy.ix_``) are written as for arrays; this module contains the others.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from pound_solve.numerics.types import Array, Flags, Index
 #: an ndarray, or a scipy.sparse.csr_array
 Matrix = Any
 
-MAX_DENSE = 300  #: rows and columns of a plain array
+MAX_DENSE = 300  #: largest number of rows and columns of a plain array
 
 
 def gathered(
     shape: tuple[int, int], rows: Any, columns: Any, values: Any, *, most_dense: int = MAX_DENSE
 ) -> Matrix:
-    """Matrix of that shape whose entries are sums of `values` at (`rows`, `columns`)."""
+    """Return the matrix whose entries are sums of `values` at (`rows`, `columns`)."""
     i, j, x = np.asarray(rows, np.int64), np.asarray(columns, np.int64), np.asarray(values, float)
     if max(shape) <= most_dense:
         matrix = np.zeros(shape)
         np.add.at(matrix, (i, j), x)
         return matrix
-    from scipy.sparse import coo_array  # not for small decks: slow to import
+    from scipy.sparse import coo_array  # slow to import, and not needed for small decks
 
     return coo_array((x, (i, j)), shape).tocsr()
 
@@ -45,7 +45,7 @@ def dense(a: Matrix) -> Array:
 
 
 def entries(a: Matrix) -> tuple[Index, Index, Array]:
-    """Rows, columns and values of the non-zero entries, row by row."""
+    """Return the rows, columns and values of the non-zero entries, row by row."""
     if isinstance(a, np.ndarray):
         i, j = np.nonzero(a)
         return i.astype(np.int64), j.astype(np.int64), np.asarray(a[i, j], float)
@@ -100,7 +100,7 @@ def is_diagonal(a: Matrix) -> bool:
 
 
 def scaled(a: Matrix, factors: Array) -> Matrix:
-    """Row i and column i times ``factors[i]``."""
+    """Return the matrix with row i and column i multiplied by ``factors[i]``."""
     if isinstance(a, np.ndarray):
         return factors[:, None] * a * factors
     from scipy.sparse import diags_array
@@ -110,7 +110,7 @@ def scaled(a: Matrix, factors: Array) -> Matrix:
 
 
 def weighted(rows: Matrix, weights: Sequence[float] | Array) -> Matrix:
-    """``rows^T diag(weights) rows``."""
+    """Return ``rows^T diag(weights) rows``."""
     if isinstance(rows, np.ndarray):
         return (rows.T * np.asarray(weights, float)) @ rows
     from scipy.sparse import diags_array
@@ -119,7 +119,7 @@ def weighted(rows: Matrix, weights: Sequence[float] | Array) -> Matrix:
 
 
 def least_squares(a: Matrix, b: Matrix, rcond: float | None = None) -> Array:
-    """Solution of ``a x = b`` for a symmetric `a`; of a singular one that of least size."""
+    """Return the solution of ``a x = b`` for a symmetric `a`, with the least norm if `a` is singular."""
     if not isinstance(a, np.ndarray):
         try:
             return Factor(a).solve(dense(b))
@@ -129,7 +129,7 @@ def least_squares(a: Matrix, b: Matrix, rcond: float | None = None) -> Array:
 
 
 def bordered(a: Matrix, right: Array, below: Array, b: Array) -> Array:
-    """Solution of ``[[a, right], [below^T, 0]] x = b``; NaN where there is none.
+    """Return the solution of ``[[a, right], [below^T, 0]] x = b``, or NaN if there is none.
 
     Parameters
     ----------
@@ -154,23 +154,23 @@ def bordered(a: Matrix, right: Array, below: Array, b: Array) -> Array:
 
 
 class Factor:
-    """Sparse symmetric :math:`A = L D L^T` in an order of little fill, without exchange of pivots.
+    """Sparse symmetric :math:`A = L D L^T` factorisation in an order with little fill, without pivoting.
 
     Parameters
     ----------
     a : csr_array
     least : float
-        Share of n times its diagonal that a pivot must have.
+        Smallest allowed pivot, as a fraction of n times its diagonal entry.
 
     Attributes
     ----------
     pivots : ndarray, shape (n,)
-        D, by unknown.  As many are negative as eigenvalues of A are (Sylvester).
+        D, by unknown.  The number of negative pivots equals that of negative eigenvalues of A (Sylvester).
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        A pivot is zero, or next to nothing beside its diagonal.
+        A pivot is zero, or negligible compared with its diagonal entry.
     """
 
     def __init__(self, a: Matrix, least: float = 1e-15) -> None:

@@ -1,5 +1,5 @@
-"""Results of earlier calls with the same arguments: the runs of one structure, as those of a study or the
-two of AUTO, order its unknowns and find its modes once.
+"""A cache of results by the content of the arguments: several runs of one structure, as in a study or with
+AUTO, order its unknowns and compute its modes only once.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ R = TypeVar("R")
 
 
 def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Cache the results of a function for its last arguments, compared by content.
+    """Cache the results of a function for its most recent arguments, compared by content.
 
-    The results are shared: whoever is given one must not change it.
+    The results are shared, so a caller must not modify them.
 
     Parameters
     ----------
     most : int
-        Results that are kept.
+        Number of results to keep.
 
     Returns
     -------
@@ -34,12 +34,12 @@ def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """
 
     def remember(function: Callable[P, R]) -> Callable[P, R]:
-        kept: dict[bytes, R] = {}  # the latest last
+        kept: dict[bytes, R] = {}  # the most recent last
 
         @wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> R:
             key = digest([*args, *kwargs.items()])
-            result = kept.pop(key, None)  # other threads may ask meanwhile: they compute their own
+            result = kept.pop(key, None)  # other threads that need it meanwhile compute it again
             if result is None:
                 result = function(*args, **kwargs)
             kept[key] = result
@@ -53,7 +53,7 @@ def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def digest(values: Any) -> bytes:
-    """Digest of numbers, texts, arrays and matrices, and of sequences of them."""
+    """Return a digest of numbers, texts, arrays and matrices, and of sequences of these."""
     hasher = hashlib.sha256()
     for value in values:
         if isinstance(value, list | tuple):

@@ -3,9 +3,10 @@ r"""Free vibration: :math:`(K - \omega^2 M)\,\phi = 0` on the DOFs that have sti
 Massless DOFs are condensed first, which is exact for free vibration.  Modes are scaled to
 :math:`\phi^T M \phi = 1` with the largest component positive.
 
-Of a sparse K only the slowest modes are found, by Lanczos' method on :math:`(K - \sigma M)^{-1} M`, which
-needs no condensation (Ericsson and Ruhe 1980).  The number of negative pivots of :math:`K - \mu M` is the
-number of modes below :math:`\mu` (Sylvester's law of inertia): counting them shows that no mode was missed.
+For a sparse K only the slowest modes are computed, by the Lanczos method on :math:`(K - \sigma M)^{-1} M`,
+which needs no condensation (Ericsson and Ruhe 1980).  The number of negative pivots of :math:`K - \mu M` is
+the number of modes below :math:`\mu` (Sylvester's law of inertia), so a count shows whether a mode was
+missed.
 
 References
 ----------
@@ -23,8 +24,8 @@ from pound_solve.numerics import matrices
 from pound_solve.numerics.matrices import Factor, Matrix, dense, diagonal, scaled, used_rows
 from pound_solve.numerics.types import Array, Flags
 
-MAX_REPEATS = 8  #: most repetitions of the search for missed modes
-TINY_PIVOT = 1e-15  #: of a diagonal of ones: keeps pivots from being zero
+MAX_REPEATS = 8  #: largest number of repetitions of the search for missed modes
+TINY_PIVOT = 1e-15  #: smallest pivot of a matrix with unit diagonal; it prevents zero pivots
 EXTRA_MODES = 4  #: modes beyond those requested, to find a gap after them
 
 
@@ -45,19 +46,19 @@ class Modes:
 
 
 def massless(m: Matrix) -> Flags:
-    """Which DOFs have no mass at all, shape (n,)."""
+    """Return which DOFs have no mass, shape (n,)."""
     return ~used_rows(m)
 
 
 def scaling(k: Matrix) -> Array:
-    """Factors that make a diagonal of ones of K, shape (n,)."""
+    """Return the factors that scale K to a unit diagonal, shape (n,)."""
     stiffness = np.abs(diagonal(k))
     return 1.0 / np.sqrt(np.where(stiffness > 0.0, stiffness, 1.0))
 
 
 def softest(a: Matrix) -> tuple[float, Array]:
-    """Smallest eigenvalue of a positive semidefinite matrix with a diagonal of ones, and its vector;
-    of a sparse matrix 0 or 1: whether it is singular.
+    """Return the smallest eigenvalue of a positive semidefinite matrix with unit diagonal, and its
+    eigenvector; for a sparse matrix the value is 0 if it is singular, otherwise 1.
     """
     if isinstance(a, np.ndarray):
         values, vectors = np.linalg.eigh(a)
@@ -67,28 +68,28 @@ def softest(a: Matrix) -> tuple[float, Array]:
 
 
 def _generic(n: int) -> Array:
-    """A fixed vector that is orthogonal to a mode by chance only, shape (n,)."""
+    """Return a fixed vector that could be orthogonal to a mode only by chance, shape (n,)."""
     return np.random.default_rng(0).standard_normal(n)
 
 
 class Held:
-    """A symmetric stiffness, scaled to a diagonal of ones, that may be singular or indefinite.
+    """A symmetric stiffness, scaled to unit diagonal, that may be singular or indefinite.
 
-    A sparse one that is a mechanism is held where its pivots vanish, which makes it regular; the motions V
-    that K does not resist are then :math:`(K + E E^T)^{-1} E`, for :math:`K V = 0`, and under loads that
-    are orthogonal to them the holds carry nothing.
+    A sparse K that is a mechanism is restrained where its pivots vanish, which makes it regular.  The
+    motions V that K does not resist (:math:`K V = 0`) are then :math:`(K + E E^T)^{-1} E`.  Loads
+    orthogonal to them cause no forces in the restraints.
 
     Attributes
     ----------
     slack : ndarray, shape (n, n_slack)
-        Motions that it does not resist, orthonormal.
+        Motions that K does not resist, orthonormal.
     negative : ndarray, shape (n,), or None
         A motion with negative stiffness, if there is one.
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        A sparse K is beyond that.
+        A sparse K has more than these defects.
     """
 
     def __init__(self, k: Matrix) -> None:
@@ -110,18 +111,18 @@ class Held:
             tiny = TINY_PIVOT * matrices.selection(n, np.arange(n))
             pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY_PIVOT * max(n, 10)
         weak = np.flatnonzero((pivots < least) & (pivots > -1e-10))
-        if len(weak):  # the motion when a hold is released is one that K does not resist
+        if len(weak):  # K does not resist the motion due to the release of a restraint
             self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
             self.slack = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
         assert self._factor is not None
         if self._factor.negative:
             x = _generic(k.shape[0])
-            for _ in range(20):  # a pivot near zero, as of a structure that has just collapsed
+            for _ in range(20):  # a pivot near zero, as in a structure that has just collapsed
                 x = self._factor.solve(x / np.linalg.norm(x))
             self.negative = x
 
     def solve(self, push: Array) -> Array:
-        """Displacements under a load, none of them slack, shape (n,)."""
+        """Return the displacements under a load, orthogonal to the slack motions, shape (n,)."""
         if isinstance(self.k, np.ndarray):
             if not self.slack.shape[1]:
                 return np.asarray(np.linalg.solve(self.k, push))
@@ -137,25 +138,25 @@ class Held:
 
 
 def deficiency(k: Array) -> int:
-    """How many independent motions K, scaled to a diagonal of ones,
-    does not resist (mechanisms, rigid bodies).
+    """Return the number of independent motions that K, scaled to unit diagonal, does not resist
+    (mechanisms, rigid bodies).
 
-    Pivots, not eigenvalues, distinguish a mechanism from a slender mesh: those of a cantilever
-    of n members fall as n^-3 (its eigenvalues as n^-4), those of a mechanism are rounding.
-    Without pivoting rounding may grow as n^3.
+    Pivots distinguish a mechanism from a slender mesh better than eigenvalues: the pivots of a cantilever
+    with n members decrease as n^-3 (its eigenvalues as n^-4), and those of a mechanism are rounding errors.
+    Without pivoting, rounding errors may grow as n^3.
     """
     try:
         if np.diag(np.linalg.cholesky(k)).min(initial=1.0) ** 2 > 1e-7:
             return 0
     except np.linalg.LinAlgError:
         pass
-    from scipy.linalg.lapack import dpstrf  # with pivoting; slow to import and seldom needed
+    from scipy.linalg.lapack import dpstrf  # with pivoting; slow to import and rarely needed
 
     return len(k) - int(dpstrf(k, tol=1e-15 * max(len(k), 10))[2])
 
 
 def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
-    """Sum of the effective masses of all modes, for each row of `ground` = M r, shape (n_rows,).
+    """Return the sum of the effective masses of all modes, for each row of `ground` = M r, shape (n_rows,).
 
     Masses at DOFs without stiffness belong to no mode.
     """
@@ -166,9 +167,10 @@ def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
 
 
 def condense(k: Matrix, out: Flags) -> Array:
-    """Map from the kept DOFs to all, with those of `out` following statically, shape (n, n_kept).
+    """Return the map from the kept DOFs to all DOFs, where those of `out` follow statically, shape (n,
+    n_kept).
 
-    DOFs of `out` without any stiffness stay at zero.
+    DOFs of `out` without stiffness stay at zero.
 
     Raises
     ------
@@ -187,14 +189,14 @@ def condense(k: Matrix, out: Flags) -> Array:
 
 
 def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
-    """Return all modes of the DOFs that have mass and are tied to any stiffness.
+    """Return all modes of the DOFs that have mass and are connected to any stiffness.
 
     Parameters
     ----------
     k, m : Matrix, shape (n, n)
         Stiffness [F/L] and mass [F T^2/L].
     count : int or None
-        Number of modes that are needed, the slowest; more may come. None: all.
+        Number of slowest modes that are needed; more may be returned.  None: all.
 
     Raises
     ------
@@ -215,8 +217,8 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
     if not len(kk):
         return Modes(np.zeros(0), np.zeros((k.shape[0], 0)))
     if np.any(mm - np.diag(np.diag(mm))):
-        # a mass on a slaved node acts along fewer directions than its master has:
-        # the rest is massless, too
+        # a mass on a slaved node acts in fewer directions than its master has:
+        # the others are massless, too
         root = 1.0 / np.sqrt(np.diag(mm))
         share, basis = np.linalg.eigh(root[:, None] * mm * root)
         if share[0] < 1e-13 * len(share):
@@ -228,13 +230,17 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
 
 
 def _signed(shapes: Array) -> Array:
-    """Shapes with reproducible signs: the first component that is, to 1e-9, the largest is positive."""
+    """Return the shapes with reproducible signs: the first component that is the largest to 1e-9 is
+    positive.
+    """
     big = np.abs(shapes) > (1 - 1e-9) * np.abs(shapes).max(axis=0)
     return np.asarray(shapes * np.sign(shapes[np.argmax(big, axis=0), np.arange(shapes.shape[1])]))
 
 
 def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
-    """The `count` slowest modes of sparse matrices; None where some cannot be separated from others."""
+    """Return the `count` slowest modes of sparse matrices, or None if they cannot be separated
+    from others.
+    """
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
     n, at = k.shape[0], np.flatnonzero(used_rows(k))
@@ -244,7 +250,7 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     try:
         if Factor(k).negative:
             raise np.linalg.LinAlgError("negative stiffness")
-    except np.linalg.LinAlgError:  # rigid bodies: a small stiffness at the masses makes them slow modes
+    except np.linalg.LinAlgError:  # rigid bodies become slow modes through a small stiffness at the masses
         shift = 1e-8 / float(diagonal(m).max())
     factor = Factor(k + shift * m)
     if factor.negative:
@@ -264,12 +270,12 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
             )
         except ArpackError:
             return None
-        x = factor.solve(m @ x)  # without massless components
+        x = factor.solve(m @ x)  # removes massless components
         x /= np.sqrt((x * (m @ x)).sum(axis=0))
         values, shapes = np.append(values, eigenvalues), np.hstack([shapes, x])
         order = np.argsort(values, kind="stable")
         values, shapes = values[order], shapes[:, order]
-        # the widest gap after those requested, and whether as many modes lie below it
+        # find the widest gap after the requested modes, and test whether as many modes lie below it
         gap = wanted - 1 + int(np.argmax(np.diff(values[wanted - 1 :] + shift) / (values[wanted:] + shift)))
         below = Factor(k - 0.5 * (values[gap] + values[gap + 1]) * m, 0.0).negative
         if below == gap + 1:
@@ -285,7 +291,9 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
 
 
 def fastest(k: Matrix, m: Matrix) -> float:
-    """Highest circular frequency [rad/T] of a structure all of whose DOFs have mass; 0 without any."""
+    """Return the highest circular frequency [rad/T] of a structure whose DOFs all have mass; 0 without
+    DOFs.
+    """
     if isinstance(k, np.ndarray):
         return float(solve(k, m).omega.max(initial=0.0))
     # above the highest frequency all pivots of w^2 M - K are positive
@@ -300,7 +308,7 @@ def fastest(k: Matrix, m: Matrix) -> float:
 
 
 def _above(k: Matrix, m: Matrix, square: float) -> bool:
-    """Whether a squared frequency lies above all those of K and M."""
+    """Return whether a squared frequency lies above all those of K and M."""
     try:
         return not Factor(square * m - k, 0.0).negative
     except np.linalg.LinAlgError:
@@ -308,9 +316,10 @@ def _above(k: Matrix, m: Matrix, square: float) -> bool:
 
 
 def generalised(k: Array, m: Array) -> tuple[Array, Array]:
-    """Squared frequencies, ascending, and mass-normalised shapes of K and a positive definite M.
+    """Return the squared frequencies, ascending, and the mass-normalised shapes of K and a positive
+    definite M.
 
-    All values carry the rounding of the largest.
+    All values have the rounding error of the largest one.
     """
     if not np.any(m - np.diag(np.diag(m))):
         root = 1.0 / np.sqrt(np.diag(m))
@@ -322,15 +331,19 @@ def generalised(k: Array, m: Array) -> tuple[Array, Array]:
 
 
 def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
-    """`generalised`, with rigid-body modes separated from slow ones, and these refined."""
+    """Return the result of `generalised` with rigid-body modes separated from slow modes, which are
+    refined.
+    """
     values, shapes = generalised(k, m)
     size = scaling(k)
     scaled = size[:, None] * k * size
-    rigid = np.arange(len(k)) < deficiency(scaled)  # rounding leaves them at +-1e-16 of the largest value
+    rigid = np.arange(len(k)) < deficiency(
+        scaled
+    )  # with rounding errors they are +-1e-16 of the largest value
     values = np.where(rigid, 0.0, np.maximum(values, 0.0))
     low = values < 1e-5 * values[-1]
     if low.any() and not rigid.any():
-        # values far below the largest have lost digits to it: sharpen them by one step of inverse iteration
+        # values far below the largest have lost digits: one step of inverse iteration refines them
         push = m @ shapes[:, low]
         x = size[:, None] * np.linalg.solve(scaled, size[:, None] * push)
         scale = 1.0 / np.linalg.norm(x, axis=0)
@@ -339,6 +352,6 @@ def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
         lower = np.linalg.inv(np.linalg.cholesky(0.5 * (work + work.T)))
         squares, y = np.linalg.eigh(lower @ energy @ lower.T)  # of 1 / omega^2
         squares, y = squares[::-1], lower.T @ y[:, ::-1]
-        if squares[-1] > 1e-14 * squares[0]:  # else rounding is all that is left of some of them
+        if squares[-1] > 1e-14 * squares[0]:  # otherwise some of them contain only rounding errors
             values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
     return values, shapes

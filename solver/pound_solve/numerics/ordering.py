@@ -1,6 +1,6 @@
-"""Orders of elimination of a small symmetric matrix, from the neighbours of every unknown.
+"""Elimination orders of a small symmetric matrix, from the neighbours of every unknown.
 
-Plain Python, because small decks do not import scipy, which takes longer than the orders.
+This is plain Python, because small decks do not import scipy, which would take longer than the ordering.
 
 References
 ----------
@@ -17,8 +17,8 @@ Neighbours = Sequence[set[int]]
 
 
 def levels(near: Neighbours, start: int) -> list[list[int]]:
-    """Unknowns by their distance in the graph from `start`; within each level those with few neighbours
-    first.
+    """Return the unknowns grouped by their distance in the graph from `start`; within each level, those
+    with few neighbours come first.
     """
     tiers, seen = [[start]], {start}
     while True:
@@ -33,12 +33,12 @@ def levels(near: Neighbours, start: int) -> list[list[int]]:
 
 
 def along_a_line(near: Neighbours) -> list[int]:
-    """Reverse Cuthill-McKee order: level by level, from one end of every component."""
+    """Return the reverse Cuthill-McKee order: level by level, from one end of every component."""
     order: list[int] = []
     left = set(range(len(near)))
     while left:
         tiers = levels(near, min(left, key=lambda x: (len(near[x]), x)))
-        while True:  # a start that is farther away, until there is none
+        while True:  # find a start that is farther away, until there is none
             end = min(tiers[-1], key=lambda x: (len(near[x]), x))
             again = levels(near, end)
             if len(again) <= len(tiers):
@@ -51,8 +51,8 @@ def along_a_line(near: Neighbours) -> list[int]:
 
 
 def minimum_degree(near: Neighbours) -> list[int]:
-    """Minimum-degree order: next is always the unknown coupled to the fewest remaining ones, which it
-    couples.
+    """Return the minimum-degree order: the next unknown is always the one coupled to the fewest remaining
+    ones; its elimination couples these.
     """
     graph = [set(coupled) for coupled in near]
     left, order = set(range(len(graph))), []

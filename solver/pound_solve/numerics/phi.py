@@ -1,10 +1,10 @@
-r"""Two families of integrals of the exponential against powers, for complex arguments.
+r"""Two families of integrals of the exponential function times powers, for complex arguments.
 
 .. math:: K_k(z) = \int_0^1 e^{z(1-x)} x^k\,dx, \qquad J_k(z) = \int_0^1 e^{zx} x^k\,dx
 
-:math:`K_k = k!\,\varphi_{k+1}(z)` answers a mode under a force :math:`t^k` (Duhamel);
-:math:`J_k` integrates a mode against :math:`t^k`.  Both are summed as power series near zero and by their
-upward recurrences elsewhere: :math:`K_k = (k K_{k-1} - 1)/z`, :math:`J_k = (e^z - k J_{k-1})/z`.
+:math:`K_k = k!\,\varphi_{k+1}(z)` is the response of a mode to a force :math:`t^k` (Duhamel); :math:`J_k`
+is the integral of a mode times :math:`t^k`.  Both are summed as power series near zero and by their upward
+recurrences elsewhere: :math:`K_k = (k K_{k-1} - 1)/z`, :math:`J_k = (e^z - k J_{k-1})/z`.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from pound_solve.numerics.types import Array, Complex
 
 
 def _near(degree: int) -> tuple[float, int]:
-    """Return the radius within which the series is used, and its number of terms for 1e-17 there.
+    """Return the radius within which the series is used, and its number of terms for an error of 1e-17.
 
-    The recurrence multiplies rounding by k!/|z|^k; the series loses e^|z| for a negative argument.
+    The recurrence multiplies rounding errors by k!/|z|^k; for a negative argument the series multiplies
+    them by e^|z|.
     """
     return (0.3, 13) if degree <= 1 else (1.5, 25) if degree <= 3 else (4.0, 38)
 
 
 @cache
 def _series(degree: int, of_duhamel: bool) -> Array:
-    """Coefficients of the power series of all K_k or J_k, lowest power first, shape (n_terms, degree + 1).
+    """Return the power-series coefficients of all K_k or J_k, lowest power first, (n_terms, degree + 1).
 
     ``K_k = k! sum z^n / (n + k + 1)!`` and ``J_k = sum z^n / (n! (n + k + 1))``; see `_near`.
     """
@@ -52,7 +53,7 @@ def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
 
 
 def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:
-    """Return ``K_0 .. K_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
+    """Return ``K_0 .. K_degree``, shape ``(degree + 1, *z.shape)``; see the module docstring."""
     z = np.asarray(z, complex)
     integrals = np.empty((degree + 1, *z.shape), complex)
     small = np.abs(z) < _near(degree)[0]
@@ -66,7 +67,7 @@ def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:
 
 
 def moments(z: Complex, degree: int) -> Complex:
-    """Return ``J_0 .. J_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
+    """Return ``J_0 .. J_degree``, shape ``(degree + 1, *z.shape)``; see the module docstring."""
     z = np.asarray(z, complex)
     integrals = np.empty((degree + 1, *z.shape), complex)
     small = np.abs(z) < _near(degree)[0]

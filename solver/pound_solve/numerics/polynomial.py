@@ -12,21 +12,21 @@ from pound_solve.numerics.types import Array
 
 @cache
 def _binomials(n: int) -> tuple[Array, Array]:
-    """Binomials C(k, i) at [i, k], and the powers k - i (0 where the binomial is 0)."""
+    """Return the binomials C(k, i) at [i, k], and the powers k - i (0 where the binomial is 0)."""
     table = np.array([[comb(k, i) for k in range(n)] for i in range(n)], float)
     return table, np.maximum(np.arange(n)[None, :] - np.arange(n)[:, None], 0)
 
 
 @cache
 def _falling(n: int, order: int) -> Array:
-    """Factors k (k-1) ... (k-order+1) that `order` derivatives leave
-    before each coefficient from `order` on.
+    """Return the factors k (k-1) ... (k-order+1) of each coefficient from `order` on after `order`
+    derivatives.
     """
     return np.array([perm(k, order) for k in range(order, n)], float)
 
 
 def shift(coefs: Array, t: float | Array) -> Array:
-    """Coefficients of the same polynomials about an origin `t` later.
+    """Return the coefficients of the same polynomials about an origin shifted by `t`.
 
     Parameters
     ----------
@@ -43,14 +43,16 @@ def shift(coefs: Array, t: float | Array) -> Array:
         table, power = _binomials(len(coefs))
         return np.asarray((table * float(t) ** power) @ coefs.reshape(len(coefs), -1)).reshape(coefs.shape)
     shifted = np.array(coefs)
-    for k in range(len(shifted) - 1):  # Horner's divisions, which need no room beside the coefficients
+    for k in range(len(shifted) - 1):  # Horner's divisions work in place
         for i in range(len(shifted) - 2, k - 1, -1):
             shifted[i] += t * shifted[i + 1]
     return shifted
 
 
 def value(coefs: Array, t: float, order: int = 0) -> Array:
-    """Value at `t` of polynomials, or of their derivative of some order, shape ``coefs.shape[1:]``."""
+    """Return the value at `t` of polynomials, or of their `order`-th derivatives, shape
+    ``coefs.shape[1:]``.
+    """
     n = len(coefs)
     if order >= n:
         return np.zeros(coefs.shape[1:])
@@ -62,7 +64,7 @@ def value(coefs: Array, t: float, order: int = 0) -> Array:
 
 
 def on(coefs: Array, t: Array, order: int = 0) -> Array:
-    """`value` of several sets of polynomials, each at separate times.
+    """Return the `value` of several sets of polynomials, each at separate times.
 
     Parameters
     ----------
@@ -86,7 +88,7 @@ def on(coefs: Array, t: Array, order: int = 0) -> Array:
 
 
 def values(coefs: Array, t: Array, order: int = 0) -> Array:
-    """`value` of one set of polynomials at each time.
+    """Return the `value` of one set of polynomials at each time.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""Kernels ready to be called: from the library compiled ahead of time, compiled by numba, or as Python.
+"""Providers of callable kernels: from the library compiled ahead of time, compiled by numba, or as Python.
 
-The first of the three that there is serves the whole process.  POUND_COMPILE=0 in the environment asks for
+The whole process uses the first of the three that is available.  POUND_COMPILE=0 in the environment selects
 the last.
 """
 
@@ -22,11 +22,11 @@ _RESIDENT: Final = ContextVar("resident", default=False)
 
 
 class Provider(Protocol):
-    """A way to make kernels ready to be called."""
+    """A way to obtain callable kernels."""
 
     @property
     def name(self) -> str:
-        """How kernels run, for the report."""
+        """How kernels run, in words for the report."""
 
     @property
     def fast(self) -> bool:
@@ -34,22 +34,22 @@ class Provider(Protocol):
 
     @property
     def loading(self) -> float:
-        """Approximate time that a process takes to load the kernels [s]."""
+        """Approximate time in which a process loads the kernels [s]."""
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
-        """The kernel ready to be called; with a signature of numba, ready to be handed to kernels."""
+        """Return the callable kernel; with a numba signature, it can also be passed to kernels."""
 
     def notice(self, kernel: Function) -> str:
-        """What a user has to know before a run of this kernel; empty if nothing."""
+        """Return a message for the user before a run of this kernel; empty if there is none."""
 
 
 class Interpreter:
-    """Kernels as Python.
+    """Provider of kernels that run as Python.
 
     Parameters
     ----------
     notice : str
-        What a user has to know of it.
+        Message for the user.
     """
 
     fast, loading = False, 0.0
@@ -69,7 +69,7 @@ class Interpreter:
 
 @cache
 def provider() -> Provider:
-    """The way in which this process makes kernels ready."""
+    """Return the provider of this process."""
     if os.environ.get("POUND_COMPILE") == "0":
         return Interpreter("")
     loaded = library.load(library.FOLDER)
@@ -83,7 +83,7 @@ def provider() -> Provider:
 
 @contextmanager
 def resident() -> Iterator[None]:
-    """Context in which a process carries out many runs, so that the loading time is not charged to each."""
+    """Enter a context of many runs, in which the loading time is not charged to each run."""
     token = _RESIDENT.set(True)
     try:
         yield
@@ -92,5 +92,5 @@ def resident() -> Iterator[None]:
 
 
 def loading() -> float:
-    """Approximate time that the kernels of a run take to load [s]; zero while they are `resident`."""
+    """Return the approximate loading time of the kernels of a run [s]; zero while they are `resident`."""
     return 0.0 if _RESIDENT.get() else provider().loading

@@ -1,4 +1,4 @@
-"""Array types by element type; the program computes in double precision only."""
+"""Array types by element type; all computations are in double precision."""
 
 from __future__ import annotations
 
