@@ -1,9 +1,9 @@
-r"""Search for possible extremes in cells of a course whose neighbours give no bound.
+r"""Search for possible extremes in cells whose adjacent cells give no bound.
 
 If adjacent cells are contiguous and of equal length, the samples around a cell bound a quantity within it
-(`numerics.crests`).  Around an event they do not: a step ends there, the next one differs in length, and
-accelerations and forces may jump, so that the sample at the start of the next cell is not the value at the
-end of this one.  The same applies at both ends of a course and at gaps that belong to another course.
+(`numerics.crests`).  Around an event they do not: a step ends there, the next step has a different length,
+and accelerations and forces may jump.  The sample at the start of the next cell is then not the value at
+the end of this one.  The same applies at both ends of a course, and at gaps that belong to another course.
 
 Such a cell is sampled at the `NODES`, the first of which is already known.  If it spans at most 2.5 radians
 of an oscillation, the interpolating polynomial has an error of a few hundredths of the amplitude, and its
@@ -17,11 +17,11 @@ import numpy as np
 from pound_solve.numerics.crests import SAMPLES_BESIDE, Doubts
 from pound_solve.numerics.types import Array, Flags, Index
 
-#: places in a cell, the last one just before its end, where a quantity may jump
+#: positions in a cell; the last one is just before the end, where a quantity may jump
 NODES = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 0.99])
 GRID = 8  #: subdivisions of a cell at which its polynomial is evaluated
-EXCESS = 0.05  #: margin for values between these points, as a share of the polynomial's range
-EQUAL = 1e-6  #: tolerance for equal lengths of adjacent cells, as a share
+EXCESS = 0.05  #: margin for values between these points, as a fraction of the range of the polynomial
+EQUAL = 1e-6  #: relative tolerance for equal lengths of adjacent cells
 AT_ONCE = 2**17  #: samples of several quantities that are examined together
 
 _FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * NODES - 1.0, len(NODES) - 1))
@@ -33,19 +33,19 @@ _LOOKS = np.vstack([_GRID @ _FIT, _FIT[-2:]])
 # and at least one less that sum. A row for a coefficient sums to zero, and gives as much to either side.
 _UP = np.maximum(_LOOKS, 0.0).sum(axis=1)
 _GRID_UP, _REST_UP = _UP[:-2].max(), _UP[-2:].sum()
-#: largest excess of a possible value over the largest sample, as a share of the samples' range: from the
-#: polynomial, its last coefficients and the margin
+#: largest excess of a possible value over the largest sample, as a fraction of the range of the samples: from
+#: the polynomial, its last coefficients and the margin
 _MOST = (_GRID_UP - 1.0) + _REST_UP + EXCESS * (2.0 * _GRID_UP - 1.0)
 
 
 def among_equals(t: Array, lengths: Array) -> Flags:
-    """Which cells follow `SAMPLES_BESIDE` cells of equal length and precede another one, without a gap,
-    shape (n,).
+    """Return which cells follow `SAMPLES_BESIDE` cells of equal length and precede another one, without a
+    gap, shape (n,).
 
     Parameters
     ----------
     t, lengths : ndarray, shape (n,)
-        Starts of the cells, rising, and times up to which the motion from there is smooth [T].
+        Starts of the cells, ascending, and lengths over which the motion from there is smooth [T].
     """
     slack, width = EQUAL * lengths[:-1], 2 * SAMPLES_BESIDE + 1
     joined = (np.abs(np.diff(lengths)) <= slack) & (np.abs(np.diff(t) - lengths[:-1]) <= slack)
@@ -57,15 +57,15 @@ def among_equals(t: Array, lengths: Array) -> Flags:
 
 
 def may_exceed_alone(values: Array, cells: Index, low: Array, high: Array) -> Doubts:
-    """Which quantities may exceed their known extremes in some cells, judged by values within these cells
-    alone.
+    """Return which quantities may exceed their known extremes in some cells, judged only by values within
+    these cells.
 
     Parameters
     ----------
     values : ndarray, shape (n_nodes, n, n_cells)
         At the `NODES` of the cells.
     cells : ndarray of int, shape (n_cells,)
-        Their numbers.
+        Numbers of the cells.
     low, high : ndarray, shape (n,)
         Smallest and largest values so far.
     """

@@ -1,5 +1,5 @@
-"""Close-ups: the motion at the method's own instants while a contact is pressed, and at every peak of its
-force, so that a stored history resolves collisions however coarse its samples are.
+"""Close-ups: the motion at the instants of the method while a contact is pressed, and at every peak of its
+force.  A stored history thus resolves collisions even if its samples are coarse.
 
 If the memory limit is reached, every second instant of all collisions is dropped, repeatedly if needed. The
 largest force peak of each collision is always kept.
@@ -24,7 +24,7 @@ BLOCK: Final = 1024  #: largest number of instants per block
 
 @dataclass(frozen=True, eq=False)
 class ContactPeaks:
-    """The motion at peaks of the contacts' forces.
+    """The motion at peaks of the contact forces.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class ContactPeaks:
     at_step: Flags
 
     def at(self, chosen: Index | Flags) -> ContactPeaks:
-        """The chosen peaks."""
+        """Return the chosen peaks."""
         return ContactPeaks(
             _at(self.motion, chosen),
             self.contact[chosen],
@@ -54,7 +54,7 @@ class ContactPeaks:
         )
 
     def largest(self) -> ContactPeaks:
-        """The largest peak of each collision."""
+        """Return the largest peak of each collision."""
         order = np.lexsort((self.height, self.collision, self.contact))
         last = np.append(np.diff(self.contact[order]) | np.diff(self.collision[order]) != 0, True)
         return self.at(np.sort(order[last]))
@@ -92,7 +92,7 @@ class Closeups:
         return Closeups(self.contacts, self.room)
 
     def widen(self, other: Closeups) -> None:
-        """Include the contents of another one."""
+        """Include the contents of other close-ups."""
         self._instants += other._instants
         self.every, self.full = max(self.every, other.every), min(self.full, other.full)
         for peaks in other._peaks:
@@ -140,8 +140,8 @@ class Closeups:
             self.every *= 2
 
     def _peaks_of(self, course: Course, forces: Array, collisions: Index) -> ContactPeaks:
-        """The motion at the peaks of the contact forces: at an instant or, if the course knows the motion
-        between instants, between two.
+        """Return the motion at the peaks of the contact forces: at an instant or, if the course provides
+        the motion between instants, between two instants.
         """
         wide = np.pad(forces, ((0, 0), (1, 1)), constant_values=-np.inf)
         row, top = np.nonzero((forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:]))
@@ -176,7 +176,7 @@ class Closeups:
         return joined_peaks([peaks.at(~inner), between])
 
     def blocks(self) -> Iterator[Motion]:
-        """The kept instants and peaks, in the order of time."""
+        """Yield the kept instants and peaks, in order of time."""
         kept = list(self._instants)
         if self._peaks:
             peaks = joined_peaks(self._peaks)

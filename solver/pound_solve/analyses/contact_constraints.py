@@ -1,4 +1,4 @@
-r"""Closed rigid contacts in statics: constraints on the unknowns, and the forces of the contacts.
+r"""Closed rigid contacts in statics: constraints on the unknowns, and contact forces.
 
 With the rows B of the closed contacts, rates of displacement obey :math:`B\dot u = 0`.  In each row one
 unknown follows the others, :math:`\dot u = Z\dot v`, and for loads :math:`\lambda p` equilibrium along the
@@ -16,7 +16,7 @@ import numpy as np
 from pound_solve.numerics.matrices import Matrix, gathered
 from pound_solve.numerics.types import Array, Index
 
-DEPENDENT = 1e-12  #: fraction of a row that is left of one that depends on others
+DEPENDENT = 1e-12  #: largest fraction of a row that remains if it depends on others
 
 
 class ContactConstraints:
@@ -61,21 +61,23 @@ class ContactConstraints:
         return len(self.laws)
 
     def reduced_matrix(self, matrix: Matrix) -> Matrix:
-        """A matrix of the unknowns, shape (n, n), reduced to the motions that are free: Z^T A Z."""
+        """Reduce a matrix of the unknowns, shape (n, n), to the free motions: Z^T A Z."""
         return self.basis.T @ matrix @ self.basis if len(self) else matrix
 
     def reduced_vector(self, force: Array) -> Array:
-        """Forces on the unknowns, shape (n,), reduced to the motions that are free: Z^T p."""
+        """Reduce forces on the unknowns, shape (n,), to the free motions: Z^T p."""
         return np.asarray(self.basis.T @ force) if len(self) else force
 
     def expand(self, u: Array) -> Array:
-        """Motions of all unknowns from those that are free, shape (n,) or (n, count): Z u."""
+        """Return the motions of all unknowns from the free motions, shape (n,) or (n, count): Z u."""
         return np.asarray(self.basis @ u) if len(self) else u
 
     def forces(self, residual: Array) -> Array:
-        """Forces of the contacts, shape (n_closed,), that balance the force `residual` on the unknowns."""
+        """Return the contact forces, shape (n_closed,), that balance the force `residual` on the
+        unknowns.
+        """
         return np.asarray(self._forces @ residual)
 
     def magnitudes(self, terms: Array) -> Array:
-        """Magnitudes of those forces' terms for the absolute `terms` of the forces on the unknowns."""
+        """Return the magnitudes of the terms of these forces, for the absolute `terms` of the residual."""
         return np.asarray(np.abs(self._forces) @ terms)

@@ -29,7 +29,7 @@ Sides = tuple[float, float]  #: positive and negative side
 
 NONE: Sides = (0.0, 0.0)  #: a spring that does not yield
 
-FAR = 10.0  #: how far unloading is followed, in deformations and elastic deformations
+FAR = 10.0  #: range of unloading, as a multiple of the deformation plus the elastic deformation
 
 
 class Damage(NamedTuple):
@@ -47,12 +47,13 @@ class Damage(NamedTuple):
 
 
 def holds(strength: float) -> bool:
-    """Whether a side has a strength; 0 and NaN mean none."""
+    """Return whether a side has a strength; 0 and NaN mean none."""
     return abs(strength) > 0.0
 
 
 def ductility(largest: Sides, yields: Sides | None) -> float:
-    """Ductility: largest deformation over that at first yield, for the governing side; NaN without yield.
+    """Return the ductility of the governing side: largest deformation over yield deformation; NaN if none
+    yields.
 
     Parameters
     ----------
@@ -63,7 +64,8 @@ def ductility(largest: Sides, yields: Sides | None) -> float:
 
 
 def plastic(largest: Sides, yields: Sides | None) -> float:
-    """Largest deformation beyond first yield, for the governing side, [L] or [rad]; NaN without yield.
+    """Return the largest deformation beyond first yield of the governing side, [L] or [rad]; NaN without
+    yield.
 
     Parameters
     ----------
@@ -76,8 +78,8 @@ def plastic(largest: Sides, yields: Sides | None) -> float:
 
 
 def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> tuple[float, float]:
-    """Plastic path [L] or [rad] over which a force of the mean of the strengths dissipates `loss`, and its
-    ratio to the mean deformation at yield.
+    """Return the plastic path [L] or [rad] over which a force equal to the mean strength dissipates `loss`,
+    and its ratio to the mean yield deformation.
 
     Parameters
     ----------
@@ -99,9 +101,9 @@ def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> 
 
 
 def residual(law: Law, state: State, d: float) -> float:
-    """Deformation that remains after slow unloading from `d`, [L] or [rad].
+    """Return the deformation that remains after slow unloading from `d`, [L] or [rad].
 
-    NaN if the force does not reach zero.
+    It is NaN if the force does not reach zero.
     """
     force = law.force(state, d)[0]
     if force == 0.0:
@@ -119,7 +121,7 @@ def residual(law: Law, state: State, d: float) -> float:
 def park_ang(
     largest: Sides, loss: float, strengths: Sides, yields: Sides, ultimate: Sides, beta: float
 ) -> Damage:
-    """Damage index of one component.
+    """Return the damage index of one component.
 
     Parameters
     ----------
@@ -143,6 +145,8 @@ def park_ang(
 
 
 def overall(indices: Sequence[float], losses: Sequence[float]) -> float:
-    """Index of the structure: the mean weighted by dissipated energies; NaN without dissipation."""
+    """Return the index of the structure: the mean weighted by dissipated energies; NaN without
+    dissipation.
+    """
     total = sum(losses)
     return sum(d * e for d, e in zip(indices, losses)) / total if total else math.nan

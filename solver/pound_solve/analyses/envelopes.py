@@ -1,4 +1,4 @@
-"""Largest and smallest motion of nodes and forces of members, and when they occur."""
+"""Largest and smallest values of node motions and member forces, and their times."""
 
 from __future__ import annotations
 
@@ -44,15 +44,15 @@ class Envelope:
                 value[higher], time[higher] = part[new, at], t[at]
 
     def part(self, which: slice) -> Envelope:
-        """Envelope of some of the quantities, which shares its arrays with this one."""
+        """Return the envelope of some of the quantities; it shares the arrays of this one."""
         shared = copy.copy(self)
         for name, values in vars(self).items():
             setattr(shared, name, values[which])
         return shared
 
     def best(self, which: Index, sign: Array) -> Array:
-        """Known extremes of some quantities times `sign`: the largest value for a positive sign, the
-        smallest for a negative one, shape (n,).
+        """Return the known extremes of some quantities, multiplied by `sign`: the largest value for a
+        positive sign, the smallest for a negative sign, shape (n,).
         """
         return np.where(sign > 0.0, self.high[which], -self.low[which])
 
@@ -60,7 +60,7 @@ class Envelope:
         """Include extremes of some quantities, multiplied by `sign`, and their times."""
         for side, best, time in ((1.0, self.high, self.t_high), (-1.0, self.low, self.t_low)):
             order = np.flatnonzero((sign == side) & (top > side * best[which]))
-            order = order[np.argsort(top[order], kind="stable")]  # the largest of each comes last
+            order = order[np.argsort(top[order], kind="stable")]  # the largest value of each comes last
             best[which[order]], time[which[order]] = side * top[order], t[order]
 
     def widen(self, other: Envelope) -> None:
@@ -70,11 +70,11 @@ class Envelope:
         self.low[lower], self.t_low[lower] = other.low[lower], other.t_low[lower]
 
     def rows(self) -> list[tuple[float, float, float, float]]:
-        """Largest value and its time, smallest value and its time, of each quantity."""
+        """Return the largest value and its time, and the smallest value and its time, of each quantity."""
         return list(zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist()))
 
     def largest(self) -> list[tuple[float, float]]:
-        """Largest absolute value of each quantity, and its time."""
+        """Return the largest absolute value of each quantity, and its time."""
         rows = self.rows()
         return [max((high, t_high), (-low, t_low), key=lambda x: x[0]) for high, t_high, low, t_low in rows]
 
@@ -104,11 +104,11 @@ class ResponseEnvelopes:
     extremes : IntervalExtremes
         Within the intervals of the samples.
     node : dict of Envelope
-        Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
+        Of displacements "u", velocities "v" (both relative to the ground if all supports move alike) and
         accelerations "a" (total).
     output : Envelope
     sums : dict of Envelope
-        Of the sums, by their names.
+        Of the sums, by name.
     enveloped_unknowns : ndarray of bool, shape (n,)
         Unknowns that the envelopes depend on.
     enveloped_laws : ndarray of int, shape (n_enveloped,)
@@ -164,8 +164,8 @@ class ResponseEnvelopes:
         return other
 
     def peaks(self) -> tuple[Array, list[str]]:
-        """Largest and smallest translational accelerations of nodes and forces of members, and the kind of
-        each; all of one kind share a unit.
+        """Return the largest and smallest translational accelerations of nodes and forces of members, and
+        the kind of each; all values of one kind have the same unit.
         """
         motion = self.node["a"]
         whole = np.arange(len(motion.high)) % 3 < 2
@@ -174,9 +174,9 @@ class ResponseEnvelopes:
         return np.concatenate(values), kinds
 
     def imbalance(self, buildings: Sequence[Building]) -> float:
-        """Largest difference between the two ways to compute the forces of a building on the ground, over
-        the largest of these forces, its inertia and its driving forces; a moment is also compared with the
-        force times the reach of the building.
+        """Return the largest difference between two ways to compute the forces of a building on the ground,
+        divided by the largest of these forces, its inertia and its driving forces.  A moment is also
+        compared with the force times the extent of the building.
         """
         off, base = (np.array([x for x, _ in self.sums[name].largest()]) for name in ("imbalance", "base"))
         off, *others = off.reshape(3, -1, 3)
@@ -223,8 +223,8 @@ class ResponseEnvelopes:
             self._search(course, doubts)
 
     def _doubts(self, course: Course, values: Array) -> Doubts:
-        """Which quantities may exceed their known extremes, and in which cells. The test uses values at the
-        starts of cells or, if adjacent cells give no bound, values within the cell.
+        """Return which quantities may exceed their known extremes, and in which cells.  The test uses
+        values at the starts of cells or, if adjacent cells give no bound, values within the cell.
         """
         quantities, lone = self.quantities, ~among_equals(course.motion.t, course.lengths)
         low, high = self._all.low[quantities.place], self._all.high[quantities.place]
@@ -276,11 +276,13 @@ class ResponseEnvelopes:
         return self.split_by_kind(whole)
 
     def values(self, motion: Motion) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Motion of nodes, forces of members and sums, as from `take`, at instants between samples."""
+        """Return the motion of nodes, forces of members and sums as `take` does, at instants between
+        samples.
+        """
         return self.split_by_kind(self._whole(motion, self.quantities.inputs(motion.t)))
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:
-        """Values of all quantities, the constant ones included, shape (n, nt)."""
+        """Return the values of all quantities, including constant ones, shape (n, nt)."""
         values = np.zeros((self.quantities.count, len(motion.t)))
         values[self.quantities.place] = self.quantities.values(motion, s)
         return values

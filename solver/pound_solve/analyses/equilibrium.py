@@ -1,4 +1,4 @@
-"""Forces of the ground on a structure: reactions, base shear, and the balance of all forces."""
+"""Forces of the ground on a structure: reactions, base shear, and the equilibrium of all forces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.equations import fixed_dofs, rigid_motions
 from pound_solve.structure.structure import Structure
 
-#: fraction of the terms of a sum of forces that is the rounding of a solution
+#: rounding error of a solution, as a fraction of the terms of a sum of forces
 SOLUTION_ROUNDING = 16 * 2.2e-16
 SUM_ROUNDING = 1e-9  #: fraction of the largest term below which a sum of forces is zero
 
@@ -49,14 +49,14 @@ class SupportReactions:
         self.linear, self.nonlinear = self._resistance()
 
     def _at(self, u: Array, states: Sequence[State]) -> tuple[Array, Array]:
-        """Displacements of all columns, and the laws' forces."""
+        """Return the displacements of all columns, and the forces of the laws."""
         full = np.append(u, np.zeros(self.structure.dofs.size - self.n))
         d = (self.structure.law_rows @ full).tolist()
         force = [s.force(x, at, 0.0) for s, x, at in zip(self.laws, states, d)]
         return full, np.array(force)
 
     def reactions(self, u: Array, states: Sequence[State]) -> dict[Dof, float]:
-        """Forces of the supports on the structure [F], [F L].
+        """Return the forces of the supports on the structure [F], [F L].
 
         Parameters
         ----------
@@ -69,8 +69,8 @@ class SupportReactions:
         return {f: float(x) for f, x in zip(s.dofs.moved, whole[self.n :])}
 
     def shear(self, u: Array, states: Sequence[State], d: int, nodes: Sequence[int] | None) -> float:
-        """Force on the ground along direction `d` [F]: at the supports `nodes`, or at all supports of the
-        building and all its elements that end at the ground.
+        """Return the force on the ground in direction `d` [F]: at the supports `nodes`, or at all supports
+        of the building and all its elements that end at the ground.
         """
         reactions = self.reactions(u, states)
         if nodes is not None:
@@ -79,7 +79,9 @@ class SupportReactions:
         return float(total[d]) - sum(r for (n, at), r in reactions.items() if at == d and n in self.nodes)
 
     def balance(self, u: Array, states: Sequence[State]) -> list[tuple[Any, ...]]:
-        """Rows of the table ``equilibrium``: forces along x and y and moments about the origin."""
+        """Return the rows of the table ``equilibrium``: forces along x and y and moments about the
+        origin.
+        """
         s, (full, force) = self.structure, self._at(u, states)
         reactions = self.rigid[:, self.n :] @ np.array(list(self.reactions(u, states).values()))
         grounded, couples = self._held(full, force)
@@ -95,8 +97,9 @@ class SupportReactions:
         return [(name, *map(float, x)) for name, x in rows]
 
     def imbalance(self, rows: Sequence[tuple[Any, ...]], u: Array, states: Sequence[State]) -> float:
-        """Sum of the rows of `balance`, less the rounding of its terms, as a share of the largest row; a
-        moment is also compared with the largest force at the far end of the structure.
+        """Return the sum of the rows of `balance`, less the rounding error of its terms, as a fraction of
+        the largest row.  A moment is also compared with that of the largest force at the far end of the
+        structure.
         """
         values = np.abs(np.array([row[1:] for row in rows]))
         force = values[:-1, :2].max()
@@ -107,15 +110,15 @@ class SupportReactions:
         return float(max(off[:2].max() / (force or 1.0), off[2] / (moment or 1.0)))
 
     def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
-        """Force and moment of the elements that resist a rigid motion of the structure, shape (3,) each:
-        elements of the building that end at the ground, and elements between nodes.
+        """Return the forces and moment of the elements that resist a rigid motion of the structure, shape
+        (3,) each: elements of the building that end at the ground, and elements between nodes.
         """
         held = np.array([rows @ full + force @ laws for rows, laws in zip(self.linear, self.nonlinear)])
         return held[0], held[1]
 
     def _resistance(self) -> tuple[Array, Array]:
-        """Rows of those forces and moments, shape (2, 3, n), and their factors of each law's force, shape
-        (2, n_laws, 3).
+        """Return the rows of these forces and moments, shape (2, 3, n), and their factors of the force of
+        each law, shape (2, n_laws, 3).
         """
         s = self.structure
         linear = np.zeros((2, *self.rigid.shape))
@@ -133,7 +136,9 @@ class SupportReactions:
         return linear, nonlinear
 
     def _place(self, number: int) -> int | None:
-        """0 for an element of the building that ends at the ground, 1 for one between nodes, else None."""
+        """Return 0 for an element of the building that ends at the ground, 1 for one between nodes, or
+        None.
+        """
         element = self.structure.model.elements[number]
         if element.j is None:
             return 0 if element.i in self.nodes else None
@@ -141,6 +146,6 @@ class SupportReactions:
 
 
 def _above_rounding(a: Array, b: Array) -> Array:
-    """a @ b, with entries that are only rounding set to zero."""
+    """Return ``a @ b`` with entries that are only rounding errors set to zero."""
     product = a @ b
     return np.where(np.abs(product) > SUM_ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)

@@ -1,8 +1,8 @@
-"""Extremes: the smallest and the largest value of every quantity within intervals of time, so that a stored
-history covers the motion between its samples, however coarse they are.
+"""Extremes: the smallest and largest values of every quantity within intervals of time.  A stored history
+thus covers the motion between its samples, even if they are coarse.
 
-Values are taken at the method's own instants; the envelopes hold the peaks of the whole history.  If there
-are too many sample intervals for the memory limit, 2, 4, 8, ... of them are merged.
+Values are taken at the instants of the method; the envelopes contain the peaks of the whole history.  If
+there are too many sample intervals for the memory limit, 2, 4, 8, ... of them are merged.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ BYTES = 16  #: of a quantity in an interval
 
 
 def intervals(times: Array, count: int, room: float) -> Array:
-    """Bounds of the intervals, shape (n + 1,), or (0,) if there are none.
+    """Return the bounds of the intervals, shape (n + 1,), or (0,) if there are none.
 
     Parameters
     ----------
     times : ndarray, shape (n_times,)
         Of the samples [T].
     count : int
-        Quantities.
+        Number of quantities.
     room : float
-        Bytes at most.
+        Memory limit [bytes].
     """
     joined, samples = 1, len(times) - 1
     if samples < 1 or room < BYTES * count or not count:
@@ -40,14 +40,14 @@ class IntervalExtremes:
     Parameters
     ----------
     bounds : ndarray, shape (n_intervals + 1,) or (0,)
-        Ends of the intervals, rising [T].
+        Ends of the intervals, ascending [T].
     count : int
-        Quantities.
+        Number of quantities.
 
     Attributes
     ----------
     low, high : ndarray, shape (count, n_intervals)
-        Infinite without values.
+        Infinite if there are no values.
     """
 
     def __init__(self, bounds: Array, count: int) -> None:

@@ -32,13 +32,13 @@ from pound_solve.structure import reduction
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
-RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
+RESIDUAL = "largest energy residual over the largest energy"  #: name of this check
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
 CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: allowed height of a crest between two steps, at ten steps per period
-DISPLACEMENT_ROUNDING = 1e-13  #: fraction of the size of a structure below which a displacement is rounding
-BEARING = 0.25  #: height over that of the highest storey below which a drift belongs to a bearing
+DISPLACEMENT_ROUNDING = 1e-13  #: fraction of the size of a structure below which a displacement is zero
+BEARING = 0.25  #: fraction of the height of the highest storey below which a drift belongs to a bearing
 ROWS = 1000  #: approximate rows of stored histories, if OUTPUT gives no interval
 
 SPEC = Spec(
@@ -82,7 +82,7 @@ SPEC = Spec(
 
 
 class Loading(NamedTuple):
-    """The excitation of a structure, and the state from which a history with RESTART continues (else
+    """The excitation of a structure, and the state from which a history with RESTART continues (otherwise
     empty).
     """
 
@@ -122,11 +122,11 @@ class HistoryResult:
     recorder : HistoryRecorder
         Envelopes, energies and the last sample.
     outcome : Outcome or None
-        What the method returned; None where it stopped before.
+        Result of the method; None if it stopped before the end.
     springs : list of SpringResponse
-        Of all springs and hinges, with an outcome only.
+        Of all springs and hinges; empty without an outcome.
     stop : Stop or None
-        Why it ended early, if it did.
+        Reason for an early end, if any.
     every : float
         Interval of the stored histories [T].
     seconds, cpu_seconds : float
@@ -143,34 +143,34 @@ class HistoryResult:
 
     @property
     def returned(self) -> Outcome:
-        """The outcome, where the method returned one."""
+        """The outcome, if the method returned one."""
         assert self.outcome is not None
         return self.outcome
 
     @property
     def overall_damage(self) -> float:
-        """Damage index of the structure; NaN where no component has one."""
+        """Damage index of the structure; NaN if no component has one."""
         damaged = [(r.damage.total, r.loss) for r in self.springs if r.damage is not None]
         return overall([index for index, _ in damaged], [loss for _, loss in damaged])
 
     @property
     def checks(self) -> list[Check]:
-        """Self-checks: energy balance, equilibrium of the buildings, hinge peaks, memory of the close-ups,
-        and those of the method.
+        """Return the self-checks: energy balance, equilibrium of the buildings, hinge peaks, memory of the
+        close-ups, and the checks of the method.
         """
         checks = [self._energy(), *self._balance(), *self._hinges(), *self._closeups()]
         return checks + self.returned.checks
 
     @property
     def figures(self) -> dict[str, object]:
-        """Figures of the method, and the thinning factor of the close-ups."""
+        """Return the figures of the method, and the thinning factor of the close-ups."""
         every = self.recorder.envelopes.closeups.every
         thinned = {"close-ups": f"peaks, and one instant of {every}"} if every > 1 else {}
         return {**self.returned.figures, **thinned}
 
     def _rounding(self) -> float:
-        """Energy below which motion is rounding [F L]: the largest force of a spring or contact times a
-        share `DISPLACEMENT_ROUNDING` of the structure's size.
+        """Return the energy below which motion is rounding error [F L]: the largest force of a spring or
+        contact times the fraction `DISPLACEMENT_ROUNDING` of the size of the structure.
         """
         nodes = self.system.structure.model.nodes.values()
         size = float(np.ptp([(n.x, n.y) for n in nodes], axis=0).max())
@@ -179,13 +179,15 @@ class HistoryResult:
 
     @property
     def _allowed(self) -> float:
-        """Allowed residual as a share of the largest value: for rounding, or for the errors of steps."""
+        """Return the allowed residual as a fraction of the largest value: for rounding, or for the errors
+        of steps.
+        """
         return 1e-9 if self.returned.exact else 1e-2
 
     def _energy(self) -> Check:
-        """Compare the energy input with the stored and lost energy."""
+        """Compare the energy input with the stored and dissipated energy."""
         energy = self.recorder.energy
-        # not relative to the final input, which a free body may have returned
+        # not relative to the final input, which a free body may have given back
         if energy.largest <= self._rounding():
             remark = "nothing moves: there is no energy to compare"
             return Check(Subject.ENERGY, RESIDUAL, 0.0, Bound.MOST, self._allowed, remark=remark)
@@ -196,7 +198,7 @@ class HistoryResult:
         return at_most(Subject.ENERGY, RESIDUAL, ratio, self._allowed, "energy is lost or made")
 
     def _closeups(self) -> Iterator[Check]:
-        """Report close-ups that had no memory left for their peaks."""
+        """Report close-ups that had insufficient memory for their peaks."""
         full, end = self.recorder.envelopes.closeups.full, self.recorder.reached
         if full < math.inf:
             unit = self.system.structure.model.units.time
@@ -210,8 +212,8 @@ class HistoryResult:
             yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, remedy)
 
     def _hinges(self) -> Iterator[Check]:
-        """Compare the peaks of hinges, which the method tracks between steps too, with the envelopes of
-        their members, which derive from the motion of the nodes.
+        """Compare the peaks of hinges, which the method also tracks between steps, with the envelopes of
+        their members, which follow from the motion of the nodes.
         """
         largest = self.recorder.envelopes.output.largest()
         members = {(o.element, o.quantity): peak for o, (peak, _) in zip(self.items.outputs, largest)}
@@ -220,7 +222,7 @@ class HistoryResult:
             for law, peak in zip(self.system.structure.laws, self.returned.peaks.force)
             if (end := (law.element, law.component.replace("hinge", "moment"))) in members
         ]
-        least = 1e-3 * max((moment for _, moment in both), default=0.0)  # rounding below
+        least = 1e-3 * max((moment for _, moment in both), default=0.0)  # smaller ones are rounding
         if least > 0.0:
             above = max(max(0.0, hinge - moment) / max(moment, least) for hinge, moment in both)
             yield at_most(
@@ -228,7 +230,7 @@ class HistoryResult:
             )
 
     def drift_ratios(self) -> list[tuple[str, float]]:
-        """Name and largest absolute ratio of every drift; NaN if it has no height."""
+        """Return the name and the largest absolute ratio of every drift; NaN if it has no height."""
         return [
             (name, max(abs(e.high), abs(e.low)) / height)
             for name, e, height in zip(
@@ -239,8 +241,8 @@ class HistoryResult:
         ]
 
     def storey_drift_ratios(self) -> list[tuple[str, float]]:
-        """The known `drift_ratios` of storeys.  Bearings are left out: they are far lower than a storey and
-        may move by more than their height.
+        """Return the known `drift_ratios` of storeys.  Bearings are excluded: they are much lower than a
+        storey and may move by more than their height.
         """
         heights = list(drift_heights(self.system.structure.model))
         storeys = [float(h) for b in self.items.buildings for h in np.diff(b.levels)]
@@ -259,7 +261,7 @@ class HistoryResult:
 
 
 def drift_heights(model: Model) -> Iterator[float]:
-    """Storey height of every drift [L]; NaN if the deck does not determine it."""
+    """Yield the storey height of every drift [L]; NaN if the deck does not determine it."""
     for c in model.drifts:
         i, j = model.nodes[c["I"]], model.nodes[c["J"]]
         across = abs(j.y - i.y) if c["DIRECTION"] == "X" else abs(j.x - i.x)
@@ -267,7 +269,7 @@ def drift_heights(model: Model) -> Iterator[float]:
 
 
 def monitored(structure: Structure, system: ReducedSystem) -> MonitoredOutputs:
-    """Rows of the DRIFT cards over the reduced system's unknowns."""
+    """Return the rows of the DRIFT cards over the unknowns of the reduced system."""
     cards = structure.model.drifts
     ways = ["XY".index(c["DIRECTION"]) for c in cards]
     rows = structure.dofs.rows(
@@ -277,8 +279,8 @@ def monitored(structure: Structure, system: ReducedSystem) -> MonitoredOutputs:
 
 
 def output_interval(model: Model, loading: Loading, end: float) -> float:
-    """Interval of the stored histories [T]: EVERY of OUTPUT, else a multiple of the shortest step of the
-    records that gives about `ROWS` rows.
+    """Return the interval of the stored histories [T]: EVERY of OUTPUT, or a multiple of the shortest step
+    of the records that gives about `ROWS` rows.
     """
     every: float | None = model.output["EVERY"]
     if every is None:
@@ -290,7 +292,7 @@ def output_interval(model: Model, loading: Loading, end: float) -> float:
 
 
 def output_times(every: float, end: float) -> Array:
-    """Instants of the stored histories from 0 to `end`, which is always included [T]."""
+    """Return the instants of the stored histories from 0 to `end`, which is always included [T]."""
     count = int(np.floor(end / every * (1 + 1e-12)))
     times = every * np.arange(count + 1)
     return np.append(times, end) if end - times[-1] > 1e-9 * end else np.append(times[:-1], end)
@@ -333,7 +335,7 @@ def run(
     with suppress(KeyboardInterrupt), undisturbed() as answer_now:
 
         def tell(t: float, doing: str) -> None:
-            answer_now()  # a signal ends the motion here, where the record is complete
+            answer_now()  # a signal ends the run here, where the record is complete
             output.progress(t, end, doing)
 
         recorder = HistoryRecorder(items, output.append, tell, start.times, first_energy)
@@ -346,7 +348,7 @@ def run(
         except Stop as err:
             stop = err
             parts += [err.outcome] if err.outcome is not None else []
-        except KeyboardInterrupt:  # before a method took its first step, or between two
+        except KeyboardInterrupt:  # before the first step of a method, or between two methods
             stop = Stop("A506", max(recorder.reached, 0.0), INTERRUPTED)
         seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
         recorder.flush()
@@ -365,7 +367,9 @@ def _prepared(
     times: Array,
     like: RecordedItems | None,
 ) -> tuple[Start, RecordedItems, Array | None]:
-    """Start of a history, its recorded items, and the energies at its original start if it resumes."""
+    """Return the start of a history, its recorded items, and the energies at its original start if it
+    resumes.
+    """
     end = float(times[-1])
     u0, v = initial(structure)
     u = state.u + u0
@@ -411,7 +415,7 @@ def _integrate(
 
 
 def _state(recorder: HistoryRecorder, part: Outcome) -> restart.Saved:
-    """State at the end of a part of a history."""
+    """Return the state at the end of a part of a history."""
     t, (u, v, works) = recorder.reached, recorder.last
     system = recorder.items.system
     n = system.structure.n_free
@@ -420,5 +424,5 @@ def _state(recorder: HistoryRecorder, part: Outcome) -> restart.Saved:
 
 
 def _until(times: Array, end: float) -> Array:
-    """The times up to `end`, inclusive."""
+    """Return the times up to `end`, inclusive."""
     return np.append(times[times < end * (1 - 1e-12)], end)

@@ -14,11 +14,11 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
-GAP_ROUNDING = 1e-12  #: fraction of a deformation by which a rigid contact may be short of its gap
+GAP_ROUNDING = 1e-12  #: fraction of a deformation by which a touching rigid contact may miss its gap
 
 
 def initial(structure: Structure) -> tuple[Array, Array]:
-    """Displacement and velocity of the unknowns from the INITIAL cards, shape (n_free,) each."""
+    """Return the displacement and velocity of the unknowns from the INITIAL cards, shape (n_free,) each."""
     n = structure.n_free
     column = {f: i for i, f in enumerate(structure.dofs.free)}
     u, v = np.zeros(n), np.zeros(n)
@@ -41,7 +41,9 @@ def begin(
     u_static: Array,
     times: Array,
 ) -> Start:
-    """State at t = 0: the static state plus INITIAL, with the laws driven from one to the other."""
+    """Return the state at t = 0: the static state plus INITIAL, with the laws driven along the
+    difference.
+    """
     keep = system.columns
     u0, v0 = u[keep], v[keep]
     _lead_massless(system, u0, u0 - u_static[keep])
@@ -58,7 +60,9 @@ def begin(
 
 
 def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
-    """State of a law that is driven from deformation `d0` to `d1`, where it has the rate given."""
+    """Return the state of a law that is driven from deformation `d0` to `d1`, where it has the
+    rate `rate`.
+    """
     if law.rigid:  # it stays closed unless pulled open, and its force follows from the motion
         closed = law.branch(state).constrains and d1 - law.p[GAP] >= -GAP_ROUNDING * max(
             abs(d0), law.p[GAP]
@@ -68,8 +72,8 @@ def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
 
 
 def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
-    """Let massless undamped unknowns that INITIAL does not move follow those that it moves, by the
-    stiffness at rest: nothing else determines them.
+    """Move massless undamped unknowns without INITIAL values with those that have them, by the stiffness at
+    rest: nothing else determines these unknowns.
     """
     laws = system.structure.laws
     idle = massless(system.mass) & (pushed == 0.0) & ~used_rows(system.damping)

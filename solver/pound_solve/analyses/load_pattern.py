@@ -61,17 +61,19 @@ class LoadPattern:
             self.forces = self._of(np.array(height))
 
     def _share(self, shape: Array) -> Array:
-        """Forces in proportion to mass times a shape, on the pushed DOFs."""
+        """Return forces proportional to mass times a shape, on the pushed DOFs."""
         return np.asarray(self.pushed * (self.structure_mass @ (self.along * shape)))
 
     def _of(self, shape: Array) -> Array:
-        """Forces in proportion to mass times a shape, with unit sum."""
+        """Return forces proportional to mass times a shape, with unit sum."""
         p = self._share(shape)
         total = float(p.sum())
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
 
     def follow(self, path: EquilibriumPath) -> Array:
-        """Forces at the present point of a path; a modal PATTERN follows the present tangent stiffness."""
+        """Return the forces at the present point of a path; a modal PATTERN follows the present tangent
+        stiffness.
+        """
         if self.by_mode:
             try:
                 reduced = path.constraints.reduced_matrix
@@ -79,7 +81,7 @@ class LoadPattern:
             except np.linalg.LinAlgError:
                 return self.forces  # a part without mass has become a mechanism
             stiff = path.constraints.expand(vibration.shapes[:, vibration.omega > 0.0])
-            if stiff.shape[1] >= self._stiff:  # otherwise a motion has lost its resistance
+            if stiff.shape[1] >= self._stiff:  # otherwise some motion has no resistance any more
                 self._stiff = stiff.shape[1]
                 effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2
                 self.forces = self._of(stiff[:, int(np.argmax(effective))])

@@ -5,8 +5,8 @@ For a ground direction with influence vector r:
 .. math:: \Gamma_n = \phi_n^T M r, \qquad m_n^* = \Gamma_n^2, \qquad
           \xi_n = \frac{\phi_n^T C\,\phi_n}{2\omega_n}
 
-for mass-normalised shapes; the effective masses of all modes add up to the mass
-that the direction can move.
+for mass-normalised shapes.  The effective masses of all modes add up to the mass that can move in the
+direction.
 
 References
 ----------
@@ -28,7 +28,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import buildings, columns_of
 from pound_solve.structure.structure import Structure
 
-TELLING: Final = 0.1  #: fraction of a mode's kinetic energy below which a building is not named [%]
+TELLING: Final = 0.1  #: smallest share of the kinetic energy of a mode for which a building is listed [%]
 SPEC = Spec(
     "analysis",
     "MODAL",
@@ -64,13 +64,13 @@ class Mode(NamedTuple):
     omega, frequency, period : float
         [rad/T], [1/T], [T]
     damping : float
-        Share of critical damping [%]; NaN for a motion without stiffness.
+        Fraction of critical damping [%]; NaN for a motion without stiffness.
     gamma_x, gamma_y : float
         Participation factors for unit modal mass.
     mass_x, mass_y : float
         Effective masses [F T^2/L].
     share_x, share_y : float
-        Effective masses over the mass that the direction can move [%].
+        Effective masses as a fraction of the mass that can move in the direction [%].
     """
 
     number: int
@@ -106,7 +106,7 @@ class ModalResult:
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
         With a largest component of 1; None if not requested.
     loaded : bool
-        Whether the stiffness is the tangent one of the static state.
+        Whether the stiffness is the tangent stiffness of the static state.
     """
 
     modes: list[Mode]
@@ -116,7 +116,7 @@ class ModalResult:
 
 
 def run(structure: Structure, state: static.StaticState, card: Card) -> ModalResult:
-    """Natural modes as requested by a card of `SPEC`."""
+    """Compute the natural modes that a card of `SPEC` requests."""
     loaded = card["AFTER"] == "STATIC"
     if loaded:
         structure = static.after(structure, state)
@@ -126,7 +126,7 @@ def run(structure: Structure, state: static.StaticState, card: Card) -> ModalRes
 
 
 def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
-    """The lowest modes of a structure.
+    """Return the lowest modes of a structure.
 
     Parameters
     ----------
@@ -150,14 +150,14 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
         row = [w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
         for d in range(2):
             gamma = float(shape @ ground[d])
-            gamma = 0.0 if gamma**2 < 1e-20 * total[d] else gamma  # rounding of a mode that takes no part
+            gamma = 0.0 if gamma**2 < 1e-20 * total[d] else gamma  # rounding of an inactive mode
             row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
         modes.append(Mode(i + 1, *row))
     return modes
 
 
 def kinetic_shares(structure: Structure, count: int) -> list[Share]:
-    r"""Shares of the buildings in the kinetic energy of the lowest modes.
+    r"""Return the shares of the buildings in the kinetic energy of the lowest modes.
 
     .. math:: \frac{\phi_b^T (M\phi)_b}{\phi^T M\phi}
 
@@ -177,7 +177,9 @@ def kinetic_shares(structure: Structure, count: int) -> list[Share]:
 
 
 def mode_shapes(structure: Structure, count: int) -> Array:
-    """Shapes of the lowest modes at every node, shape (count, n_nodes, 3), largest component 1."""
+    """Return the shapes of the lowest modes at every node, shape (count, n_nodes, 3), largest
+    component 1.
+    """
     shapes = structure.vibration(count).shapes
     every = structure.dofs.matrix([(node, d) for node in structure.model.nodes for d in range(3)])
     pad = len(structure.dofs.moved)

@@ -14,8 +14,8 @@ With linear branches the path is a chain of straight segments.  Along each of th
 and the point is moved exactly to the first event of a law.  If several events coincide, the event of the
 first law is processed first and the rates are recomputed; this terminates if the stiffness is positive
 definite (Murty 1974: the least-index pivots of a linear complementarity problem).  A force that a law
-releases suddenly (it fractures) is redistributed to the others at constant control.  Curved laws make the
-segments curved: Newton's method finds their points, and the events are bracketed.
+releases suddenly (by fracture) is redistributed to the other laws at constant control.  Curved laws make
+the segments curved: Newton's method finds their points, and the events are bracketed.
 
 A closed rigid contact constrains its nodes (see `contact_constraints`); its event occurs when its force
 falls to zero.  If a loaded mechanism moves towards a touching contact, that contact closes first: the
@@ -45,17 +45,17 @@ from pound_solve.numerics.modes import scaling
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
-RATE_ROUNDING = 1e-12  #: fraction of its terms below which a rate is rounding
-#: fraction of the fastest rate that is rounding, scaled by roots of stiffness
+RATE_ROUNDING = 1e-12  #: fraction of its terms below which a rate is rounding error
+#: rounding error of rates as a fraction of the fastest rate, scaled by roots of stiffness
 SOLUTION_ROUNDING = 1e-14
-FORCE_JUMP = 1e-12  #: fraction of its terms above which a force has changed at once
+FORCE_JUMP = 1e-12  #: fraction of its terms above which a change of force is a jump
 EVENT_REACHED = 1e-13  #: fraction of its terms below which an event is reached
 JUST_CLOSED = 1e-6  #: fraction of its final stiffness below which a curved contact has only just closed
-INCREMENTS = 20  #: least number of increments to the first mark with curved laws
+INCREMENTS = 20  #: smallest number of increments to the first mark with curved laws
 #: Newton iterations for one point; the error in a contact with force overlap^n shrinks by 1 - 1/n at each
 ITERATIONS = 80
 MAX_CHANGES = 10_000
-MAX_RETURNS = 5  #: of all laws to the same branches at one point
+MAX_RETURNS = 5  #: largest number of returns of all laws to the same branches at one point
 
 
 class Mark(NamedTuple):
@@ -114,7 +114,7 @@ class EquilibriumPath:
     control : ndarray, shape (n_free,), or None
         Row of the displacement that is controlled; None for the load factor.
     sign : float
-        1.0 or -1.0: whether that grows or falls.
+        1.0 or -1.0: whether the control grows or decreases.
     lead : ndarray, shape (n_laws,), or None
         Deformations that vanish as the load factor goes from 0 to 1.
 
@@ -141,7 +141,7 @@ class EquilibriumPath:
         self.k, self.rows = structure.stiffness[:n, :n], structure.law_rows[:, :n]
         self.u, self.states, self.applied, self.load = u.copy(), list(states), applied.copy(), load
         self.control, self.sign = control, sign
-        # b b^T of every law, entry by entry: a row involves few unknowns
+        # entries of b b^T of every law: a row involves few unknowns
         pairs = [
             (law, i, j, x * y)
             for law, row in enumerate(by_rows(self.rows))
@@ -163,12 +163,12 @@ class EquilibriumPath:
         self.constraints = self._closed()
 
     def deformations(self, u: Array, factor: float) -> Array:
-        """Deformation of every law, shape (n_laws,)."""
+        """Return the deformation of every law, shape (n_laws,)."""
         d: Array = self.rows @ u + (1.0 - factor) * self.lead
         return d
 
     def _deformation_terms(self, u: Array) -> Array:
-        """Sum of the absolute terms of each deformation, on which its rounding depends."""
+        """Return the sum of the absolute terms of each deformation, on which its rounding error depends."""
         return np.asarray(np.abs(self.rows) @ np.abs(u) + np.abs(self.lead))
 
     def forces(self, d: Array) -> tuple[Array, Array]:
@@ -178,8 +178,8 @@ class EquilibriumPath:
         return both[:, 0], both[:, 1]
 
     def _stiffnesses(self, d: Array) -> Array:
-        """Stiffness of every law for the next iteration from deformations `d`, shape (n_laws,): the tangent
-        or, if a curved contact has only just closed, the secant.
+        """Return the stiffness of every law for the next iteration from deformations `d`, shape (n_laws,):
+        the tangent or, if a curved contact has only just closed, the secant.
         """
         if not self.curved:
             return np.array([b.stiffness for b in self.branches], float)
@@ -195,13 +195,13 @@ class EquilibriumPath:
         return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
 
     def unbalanced(self) -> float:
-        """Largest residual force, as a share of the largest force applied so far."""
+        """Return the largest residual force as a fraction of the largest force applied so far."""
         residual, size = self._residual(self.u, self.factor)
         return _relative_size(residual, np.append(size, self._largest_load))
 
     def step(self, marks: Sequence[Mark]) -> PathEvent | int | None:
-        """Move to the first event of a law, to the first mark (its index), or, after a law has released a
-        force, to the point where the others have taken it over (None).
+        """Move to the first event of a law or to the first mark (its index); after a law has released a
+        force, move to the point where the others have taken it over (None).
 
         Raises
         ------
@@ -233,7 +233,7 @@ class EquilibriumPath:
         self.states[i] = law.transition(self.states[i], event.event, d)
         self.branches[i] = law.branch(self.states[i])
         released = force - law.force(self.states[i], d)[0]
-        if law.rigid:  # it opens without force
+        if law.rigid:  # it opens when its force is zero
             self.constraints = self._closed()
         elif abs(released) > FORCE_JUMP * (
             abs(force) + abs(law.p[K]) * float(self._deformation_terms(self.u)[i])
@@ -281,7 +281,9 @@ class EquilibriumPath:
         return hit if isinstance(hit, PathEvent) and distance < 1.0 else None
 
     def _first_ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
-        """Rates of displacements and load factor, the first mark or event, and the distance to it."""
+        """Return the rates of displacements and load factor, the first mark or event, and the distance to
+        it.
+        """
         try:
             du, factor_rate, rate, noise = self.rates(self.u, self.factor)
         except InstabilityError as err:
@@ -304,7 +306,7 @@ class EquilibriumPath:
         return du, factor_rate, distance, hit
 
     def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float]]:
-        """Events ahead at these rates of their arguments, and their distances."""
+        """Yield the events ahead at these rates of their arguments, and the distances to them."""
         now, size = self._arguments(self.u, self.factor)
         for i, (branch, x, v, least, terms) in enumerate(
             zip(self.branches, now.tolist(), rate.tolist(), noise.tolist(), size.tolist())
@@ -319,7 +321,9 @@ class EquilibriumPath:
                     yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
 
     def _blocking(self, motion: Array) -> PathEvent | None:
-        """Event of the first touching open contact that the motion of a mechanism closes, if any."""
+        """Return the event of the first touching open contact that the motion of a mechanism closes, if
+        any.
+        """
         rate, noise = self.rows @ motion, RATE_ROUNDING * (np.abs(self.rows) @ np.abs(motion))
         rate[[not s.role.collides or b.constrains for s, b in zip(self.laws, self.branches)]] = 0.0
         # the motion does not move pressed contacts, except by rounding
@@ -327,8 +331,8 @@ class EquilibriumPath:
         return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
 
     def _arguments(self, u: Array, factor: float) -> tuple[Array, Array]:
-        """Arguments of the event functions of each law, shape (n_laws,), and the sums of their absolute
-        terms: its deformation or, of a closed rigid contact, its force.
+        """Return the argument of the event functions of each law, shape (n_laws,), and the sum of its
+        absolute terms.  The argument is the deformation or, for a closed rigid contact, the force.
         """
         now, size = self.deformations(u, factor), self._deformation_terms(u)
         if len(self.constraints):
@@ -336,7 +340,9 @@ class EquilibriumPath:
         return now, size
 
     def _reactions(self, u: Array, factor: float) -> tuple[Array, Array]:
-        """Forces of the closed rigid contacts, shape (n_closed,), and the magnitudes of their terms."""
+        """Return the forces of the closed rigid contacts, shape (n_closed,), and the magnitudes of their
+        terms.
+        """
         residual, terms = self._residual(u, factor)
         known = np.array([self.branches[i].force0 for i in self.constraints.laws])
         return known - self.constraints.forces(residual + self._released), self.constraints.magnitudes(
@@ -344,15 +350,15 @@ class EquilibriumPath:
         )
 
     def _closed(self) -> ContactConstraints:
-        """Constraints of the rigid contacts that are closed."""
+        """Return the constraints of the closed rigid contacts."""
         constrained = np.array([i for i, b in enumerate(self.branches) if b.constrains], np.intp)
         return ContactConstraints(constrained, dense(self.rows[constrained]))
 
     def rates(self, u: Array, factor: float) -> Rates:
-        """Rates of displacements, load factor and event arguments (see `_arguments`), with the rounding
-        errors of the last.
+        """Return the rates of displacements, load factor and event arguments (see `_arguments`), and the
+        rounding errors of the last.
 
-        With piecewise linear laws the rates stay the same until a stiffness, the load or the control
+        With piecewise linear laws the rates are constant until a stiffness, the load or the control
         changes; a transition between equally stiff branches changes none of these.
         """
         stiffness = self._stiffnesses(self.deformations(u, factor))
@@ -365,7 +371,7 @@ class EquilibriumPath:
         return self._rates
 
     def _rates_with(self, u: Array, stiffness: Array) -> Rates:
-        """`rates` with the stiffnesses of the laws."""
+        """Return the `rates` for given stiffnesses of the laws."""
         du, factor_rate = self._linear(
             u, stiffness, self._released, 0.0 if self._released.any() else self.sign
         )
@@ -435,7 +441,9 @@ class EquilibriumPath:
         return events[first - len(marks)]
 
     def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
-        """Functions that rise to zero at marks, then at events of all laws; rounding counts as zero."""
+        """Return functions that rise to zero at marks, then at events of all laws; rounding errors count as
+        zero.
+        """
         now_at, sizes = self._arguments(u, factor)
         _, _, rate, noise = self.rates(u, factor)
         values = [float(row @ u) + share * factor - value for row, share, value in marks]
@@ -455,8 +463,8 @@ class EquilibriumPath:
     def _equilibrium(
         self, span: float, du: Array, factor_rate: float, marks: Sequence[Mark]
     ) -> tuple[tuple[Array, float], list[float]] | None:
-        """Displacements and load factor at a distance along the path, by Newton's method,
-        with the `_values` there; None if there is no stable equilibrium.
+        """Return the displacements and load factor at a distance along the path, by Newton's method, with
+        the `_values` there; None if there is no stable equilibrium.
         """
         u, factor = self.u + span * du, self.factor + span * factor_rate
         last = np.inf
@@ -476,7 +484,7 @@ class EquilibriumPath:
         return None
 
     def _residual(self, u: Array, factor: float) -> tuple[Array, Array]:
-        """Residual forces, and the sum of the absolute terms of each equation."""
+        """Return the residual forces, and the sum of the absolute terms of each equation."""
         force = self.forces(self.deformations(u, factor))[0]
         applied = self.applied + (factor - self.factor) * self.load
         size = np.abs(self.k) @ np.abs(u) + np.abs(self.rows.T) @ np.abs(force) + np.abs(applied)
@@ -489,7 +497,9 @@ class EquilibriumPath:
         return k + self.corotational.stiffness(u) if self.corotational else k
 
     def _linear(self, u: Array, stiffness: Array, force: Array, change: float) -> tuple[Array, float]:
-        """Changes of displacements and load factor for a `force` and a `change` of the control."""
+        """Return the changes of displacements and load factor for a `force` and a `change` of the
+        control.
+        """
         k = self._stiffness(u, stiffness)
         constraints = self.constraints
         k, force = constraints.reduced_matrix(k), constraints.reduced_vector(force)
@@ -508,12 +518,14 @@ class EquilibriumPath:
         return self.constraints.expand(x), factor_rate
 
     def _unit_load(self, stiffness: Array) -> Array:
-        """Force per load factor, including that of the applied deformations, shape (n_free,)."""
+        """Return the force per load factor, including that of the applied deformations, shape (n_free,)."""
         return np.asarray(self.load + self.rows.T @ (stiffness * self.lead))
 
 
 def _secant(law: Law, state: State, size: float) -> float:
-    """Stiffness of a contact from no force to one of that size; zero if it is open or not curved."""
+    """Return the secant stiffness of a contact from zero force to a force `size`; zero if it is open or
+    linear.
+    """
     if law.rule.powers is None:
         return 0.0
     k, n = law.rule.powers(law.p, state[0], state[3])[:2]
@@ -526,5 +538,5 @@ def _relative_size(residual: Array, size: Array) -> float:
 
 
 def _crossed(before: Sequence[float], after: Sequence[float]) -> list[int]:
-    """Numbers of the values that rose above zero."""
+    """Return the indices of the values that rose above zero."""
     return [j for j, (a, b) in enumerate(zip(before, after)) if a <= 0.0 < b]

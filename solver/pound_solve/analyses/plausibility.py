@@ -1,6 +1,6 @@
 """Checks for implausible results and for results beyond the model's validity, one function each.
 
-Such results are not computational errors; the units, strengths or the model are in doubt.
+Such results are not computational errors; they raise doubts about the units, the strengths or the model.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from pound_solve.structure.structure import Structure
 
 RESPONSE: Final = Subject.RESPONSE
 
-LARGEST_DRIFT: Final = 0.1  #: drift over height; frames lose their vertical capacity earlier
+LARGEST_DRIFT: Final = 0.1  #: drift over height; frames lose their vertical capacity before this
 LARGEST_RESIDUAL: Final = 0.005  #: final drift over height that is visible in a storey
-LARGEST_DUCTILITY: Final = 50.0  #: of hinges; members of concrete or steel break before
-LEAST_CLOSURE: Final = 0.01  #: of a gap; a thousandth suggests wrong units
-#: force of a contact over the weight of the lighter building; 1 m/s against a stiff wall makes 5
+LARGEST_DUCTILITY: Final = 50.0  #: of hinges; concrete or steel members fail before this
+LEAST_CLOSURE: Final = 0.01  #: closure as a fraction of the gap; a thousandth suggests wrong units
+#: contact force over the weight of the lighter building; an impact at 1 m/s on a stiff wall gives 5
 #: for a large floor, 30 for a garage
 MOST_FORCE: Final = 100.0
 LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 
 def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Drifts beyond a tenth of their height."""
+    """Yield a check for drifts beyond a tenth of their height."""
     for name, ratio in history.storey_drift_ratios():
         if ratio > LARGEST_DRIFT:
             remark = "check units, masses and strengths"
@@ -42,7 +42,7 @@ def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> It
 
 
 def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Components with an exhausted damage index or beyond their ultimate deformation."""
+    """Yield a check for components with an exhausted damage index or beyond their ultimate deformation."""
     shares = [r.damage.by_deformation for r in history.springs if r.damage is not None]
     shares = [share for share in shares if share >= 1.0]
     if shares:
@@ -61,7 +61,9 @@ def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
 
 
 def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Hinges rotated beyond the capacity of ordinary members, if the deck gives no limit."""
+    """Yield a check for hinges rotated beyond the capacity of ordinary members, if the deck gives
+    no limit.
+    """
     far = [r for r in history.springs if r.beyond_ordinary]
     if far:
         worst = max(far, key=lambda r: r.rotation)
@@ -76,7 +78,7 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
 
 
 def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Hinges beyond any usual ductility of members, if the deck gives no ultimate deformation.
+    """Yield a check for hinges beyond any usual ductility, if the deck gives no ultimate deformation.
 
     A hinge with an explicit KH may be rigid until it yields, and a spring may slide or rock: their
     ductility has no such limit.
@@ -98,7 +100,7 @@ def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) 
 
 
 def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Rules that exceeded DULT, the ductility up to which they are calibrated."""
+    """Yield a check for rules that exceeded DULT, the ductility up to which they are calibrated."""
     for i, spring in enumerate(structure.laws):
         card = structure.model.props[structure.model.elements[spring.element].prop]
         if spring.yields is None or card.values.get("DULT") is None:
@@ -114,7 +116,7 @@ def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
 
 
 def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Contacts whose gap is far above the motion that would close it."""
+    """Yield a check for contacts whose gap is much larger than the motion that would close it."""
     far = [
         (outcome.peaks.deformation[i].high / gap, i)
         for i in history.items.contacts
@@ -131,7 +133,7 @@ def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
 
 
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Contacts whose overlap is too large for an elastic contact."""
+    """Yield a check for contacts whose overlap is too large for an elastic contact."""
     model = structure.model
     if not history.items.contacts:
         return
@@ -154,7 +156,9 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
 
 
 def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Contacts between buildings whose force is many times the weight of the lighter one."""
+    """Yield a check for contacts between buildings whose force is many times the weight of the
+    lighter one.
+    """
     model = structure.model
     standing = [b for b in history.items.buildings if stands(model, b.nodes)]
     weights = {n: b.mass * model.gravity for b in standing for n in b.nodes}
@@ -170,7 +174,8 @@ def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome)
 
 
 def leaning(structure: Structure, history: HistoryResult, residual: Sequence[float]) -> Iterator[Check]:
-    """Buildings whose springs or hinges have yielded and that lean at the end of the history.
+    """Yield a check for buildings whose springs or hinges have yielded and that lean at the end of the
+    history.
 
     Parameters
     ----------
@@ -191,8 +196,8 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
 
 
 def lengths(model: Model) -> tuple[dict[int, float], dict[int, float]]:
-    """Length of the shortest member at every node that has one, and of the longest spring or dashpot, which
-    may be a bearing beside a storey [L].
+    """Return the length of the shortest member at every node that has one, and of the longest spring or
+    dashpot, which may be a bearing next to a storey [L].
     """
     shortest, longest = dict[int, float](), dict[int, float]()
     for e in model.elements.values():
@@ -219,5 +224,5 @@ RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Che
 
 
 def of_history(structure: Structure, history: HistoryResult) -> list[Check]:
-    """All plausibility checks of a history."""
+    """Return all plausibility checks of a history."""
     return [check for rule in RULES for check in rule(structure, history, history.returned)]

@@ -1,4 +1,5 @@
-r"""PUSHOVER: a load pattern that grows from the static state until it reaches a displacement or a factor.
+r"""PUSHOVER: a load pattern that grows from the static state until a displacement or a load factor is
+reached.
 
 The pattern has forces along one direction,
 
@@ -6,20 +7,21 @@ The pattern has forces along one direction,
           \psi = \phi
 
 (UNIFORM, TRIANGULAR with the height above the lowest support, MODE with the mode whose effective mass along
-the direction is largest), so that the load factor is the base shear that they cause; or it consists of the
-FORCES of the card, or repeats the LOADS. The path is traced from event to event (see `path_following`).
-Displacement control can pass the largest base shear; load control ends there.
+the direction is largest), so that the load factor is the resulting base shear.  Alternatively, it consists
+of the FORCES of the card, or repeats the LOADS. The path is traced from event to event (see
+`path_following`).  Displacement control can continue beyond the largest base shear; load control ends
+there.
 
-With ADAPTIVE=YES the pattern is that of the present mode: after every change of a law and at every station
-:math:`dp = d\lambda\, p(\phi)` with :math:`\phi` of the tangent stiffness; the forces that act already stay
-(force-based adaptive pushover with incremental updating, Antoniou and Pinho 2004, in its form with one mode
-and no spectrum).  If the tangent stiffness loses its resistance in some direction, no such mode exists and
-the last pattern is kept.
+With ADAPTIVE=YES the pattern is that of the present mode.  After every change of a law and at every
+station, :math:`dp = d\lambda\, p(\phi)` with the mode :math:`\phi` of the tangent stiffness; the forces
+that already act remain (force-based adaptive pushover with incremental updating, Antoniou and Pinho 2004,
+in its form with one mode and no spectrum).  If the tangent stiffness loses its resistance in some
+direction, no such mode exists and the last pattern is kept.
 
-With BUILDING one building of several is pushed: the pattern has forces on its nodes only, and the base
+With BUILDING one building of several is pushed: the pattern has forces only on its nodes, and the base
 shear is that of its supports and of its elements that end at the ground.  Its neighbours resist through
-contacts, or are removed (NEIGHBOURS=NO): the path then starts from the building's own static state, as for
-a deck with this building alone.
+contacts.  With NEIGHBOURS=NO they are removed, and the path starts from the static state of the building
+alone, as for a deck with only this building.
 
 References
 ----------
@@ -49,7 +51,7 @@ from pound_solve.structure.buildings import building, buildings
 from pound_solve.structure.extract_building import extract_building
 from pound_solve.structure.structure import Structure
 
-FURTHEST = 0.2  #: target over the height of the control node above its base
+FURTHEST = 0.2  #: largest target as a fraction of the height of the control node above its base
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ class PushoverResult:
     failed : InstabilityError or None
         Set if it ended early.
     unbalanced : float
-        Largest unbalanced force at the end, as a share of the largest acting force.
+        Largest unbalanced force at the end, as a fraction of the largest acting force.
     """
 
     card: Card
@@ -97,7 +99,7 @@ class PushoverResult:
 
     @property
     def check(self) -> Check:
-        """Self-check: whether all forces balance."""
+        """Return the self-check of force equilibrium."""
         about = "pushover, force out of balance over the largest"
         return at_most(Subject.EQUILIBRIUM, about, self.unbalanced, SUM_ROUNDING, "forces do not balance")
 
@@ -110,7 +112,7 @@ class PushoverResult:
 
 
 def mistakes(structure: Structure) -> list[Diagnostic]:
-    """Error in the PUSHOVER card of a deck: one message, or none."""
+    """Return the error in the PUSHOVER card of a deck: one message, or none."""
     for card in structure.model.analyses:
         if card.spec.name == "PUSHOVER" and (wrong := _wrong(structure, card)):
             message, item, hint = wrong
@@ -119,7 +121,7 @@ def mistakes(structure: Structure) -> list[Diagnostic]:
 
 
 def distant(structure: Structure) -> list[Diagnostic]:
-    """Targets of a PUSHOVER beyond what the height of its control node allows."""
+    """Return a message if the target of a PUSHOVER exceeds what the height of its control node allows."""
     model, warnings = structure.model, list[Diagnostic]()
     for card in model.analyses:
         if card.spec.name != "PUSHOVER" or card["TARGET"] is None or card["DIRECTION"] != "X":
@@ -137,7 +139,7 @@ def distant(structure: Structure) -> list[Diagnostic]:
 
 
 def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
-    """Message, faulty item of the card, and hint."""
+    """Return the message, the invalid item of the card, and a hint, or None."""
     if wrong := _wrong_building(structure, card) or _wrong_control(structure, card) or _wrong_items(card):
         return wrong
     pattern = LoadPattern(structure, card, _own(structure, card))
@@ -148,7 +150,7 @@ def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
 
 
 def _wrong_building(structure: Structure, card: Card) -> tuple[str, str, str] | None:
-    """Error in the pushed building, or in the nodes that must belong to it."""
+    """Return the error in the pushed building, or in the nodes that must belong to it."""
     name = card["BUILDING"]
     if not name and card["NEIGHBOURS"] == "YES":
         return None
@@ -166,7 +168,7 @@ def _wrong_building(structure: Structure, card: Card) -> tuple[str, str, str] | 
 
 
 def _wrong_control(structure: Structure, card: Card) -> tuple[str, str, str] | None:
-    """Error in the end of the pushover or in its control node."""
+    """Return the error in the end of the pushover or in its control node."""
     by_displacement = card["CONTROL"] == "DISPLACEMENT"
     if card["TARGET"] is None and (card["FACTOR"] is None or by_displacement):
         needs = "TARGET" if by_displacement else "TARGET or FACTOR"
@@ -180,7 +182,7 @@ def _wrong_control(structure: Structure, card: Card) -> tuple[str, str, str] | N
 
 
 def _wrong_items(card: Card) -> tuple[str, str, str] | None:
-    """Error in the items that belong to one pattern only."""
+    """Return the error in the items that belong to one pattern only."""
     pattern, nodes, forces = card["PATTERN"], card["NODES"], card["FORCES"] or ()
     if pattern == "FORCES" and (not forces or len(nodes or ()) != len(forces)):
         hint = "PATTERN=FORCES takes one force for each node: NODES=3,5 FORCES=10,20"
@@ -253,7 +255,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
                 point = replace(point, changes=path.changes)
                 result.ladder.append((point, change))
         except InstabilityError as err:
-            # under load control that is the capacity; under displacement control the path must continue
+            # under load control this is the capacity; under displacement control the path must continue
             result.end, result.failed = str(err), None if by_load and err.code == "A501" else err
             result.add(here())
             result.ladder = _once(result.ladder)
@@ -272,7 +274,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
 
 
 def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> float:
-    """Sign of the increments of displacement or load factor that lead to the end."""
+    """Return the sign of the increments of displacement or load factor towards the end."""
     target, factor = card["TARGET"], card["FACTOR"]
     if card["CONTROL"] != "FORCE":
         return math.copysign(1.0, target - start)
@@ -283,7 +285,7 @@ def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> f
 
 
 def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
-    """Marks at which the pushover ends, and their text in the report."""
+    """Return the marks at which the pushover ends, and their text in the report."""
     ends: list[tuple[Mark, str]] = []
     if (target := card["TARGET"]) is not None:
         sense = math.copysign(1.0, target - start)
@@ -295,7 +297,7 @@ def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
 
 
 def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoint, Change]]:
-    """The ladder of changes without duplicates at one point."""
+    """Return the ladder of changes without duplicates at one point."""
     distinct: dict[tuple[float, float, Change], tuple[CapacityPoint, Change]] = {}
     for point, change in ladder:
         distinct.setdefault((point.displacement, point.factor, change), (point, change))
@@ -303,17 +305,17 @@ def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoin
 
 
 def _clean(displacement: float, curve: list[CapacityPoint]) -> float:
-    """The displacement, or zero if it is rounding compared with the largest one."""
+    """Return the displacement, or zero if it is a rounding error compared with the largest one."""
     return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
 
 
 def _own(structure: Structure, card: Card) -> tuple[int, ...] | None:
-    """Nodes of the pushed building; None: all."""
+    """Return the nodes of the pushed building, or None for all nodes."""
     return building(structure, card["BUILDING"]).nodes if card["BUILDING"] else None
 
 
 def _control(structure: Structure, card: Card) -> Array:
-    """Row of the control displacement, shape (n_free,)."""
+    """Return the row of the control displacement, shape (n_free,)."""
     at = (card["NODE"], "XY".index(card["DIRECTION"]))
     return structure.dofs.row([at], [1.0])[: structure.n_free]
 

@@ -1,4 +1,4 @@
-"""Quantities of envelopes as rows on motion and inputs: motion of nodes, forces of members, sums of forces.
+"""Quantities of the envelopes as rows on motion and inputs: node motions, member forces, sums of forces.
 
 Most rows involve few unknowns: one sparse matrix evaluates all of them, and the search for extremes
 evaluates rows individually.
@@ -17,12 +17,12 @@ from pound_solve.structure.elements.base import Output
 from pound_solve.structure.equations import LinearSums
 from pound_solve.structure.reduction import ReducedSystem
 
-FEW = 64  #: rows and columns of a matrix that is not sparse, or as many numbers in another shape
+FEW = 64  #: largest dense matrix has FEW rows and columns, or as many numbers in another shape
 MOTION = "uva"  #: names of displacements, velocities and accelerations
 
 
 class Quantities:
-    """Quantities as rows, except those that never move.
+    """Quantities as rows, except constant ones.
 
     Parameters
     ----------
@@ -37,8 +37,9 @@ class Quantities:
     Attributes
     ----------
     parts : dict of slice
-        Numbers of the displacements "u", velocities "v" (relative to the ground, where it moves as one) and
-        total accelerations "a" of the nodes, of the "output" of members, and of the sums by their names.
+        Numbers of the displacements "u", velocities "v" (both relative to the ground if all supports move
+        alike) and total accelerations "a" of the nodes, of the "output" of members, and of the sums by
+        name.
     count : int
     place : ndarray of int, shape (n_rows,)
         Numbers of the rows' quantities.
@@ -80,7 +81,7 @@ class Quantities:
         moves: Index | None = None, size: int = 0,
     ) -> None:  # fmt: skip
         """Add a part given by matrices on u, v, a and forces of laws (by number), on the inputs and their
-        rates, and constants; if only some of its `size` quantities move, `moves` lists their numbers.
+        rates, and by constants.  If only some of its `size` quantities vary, `moves` lists their numbers.
         """
         n, m, first = self.system.size, self.system.inputs.shape[1], len(self.place)
         moves, size = (np.arange(len(constant)), len(constant)) if moves is None else (moves, size)
@@ -108,7 +109,7 @@ class Quantities:
         of_u, on_inputs, at_rest = system.reduce_rows(
             dofs.matrix([(n, d) for n in nodes for d in range(3)])
         )
-        # motion of the nodes with the ground: x, y, and a rotation about the origin
+        # motion of the nodes with the ground: x, y, and rotation about the origin
         x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
         ridden = np.zeros((len(nodes), 3, 3))
         ridden[:, 0, 0] = ridden[:, 1, 1] = ridden[:, 2, 2] = 1.0
@@ -137,16 +138,18 @@ class Quantities:
 
     @property
     def entries(self) -> Index:
-        """Number of entries of every row, shape (n_rows,)."""
+        """Return the number of entries of every row, shape (n_rows,)."""
         return np.diff(self._pointers)
 
     def inputs(self, t: Array) -> list[Array]:
-        """Inputs and their first two derivatives after the times, shape (n_inputs, n_times) each."""
+        """Return the inputs and their first two derivatives just after the times, shape (n_inputs, n_times)
+        each.
+        """
         return [self.system.excitation.values_after(t, order).T for order in range(3)]
 
     def values(self, motion: Motion, s: Sequence[Array]) -> Array:
-        """Values of all rows, shape (n_rows, n_times), from the motion and the inputs, their rates and
-        those of these, shape (n_inputs, n_times) each.
+        """Return the values of all rows, shape (n_rows, n_times), from the motion and from the inputs and
+        their first two derivatives, shape (n_inputs, n_times) each.
         """
         values = self._matrix @ self._stacked(motion)
         values[self._driven] += self._inputs[self._driven] @ np.concatenate(
@@ -162,14 +165,15 @@ class Quantities:
         return np.asarray(values)
 
     def within(self, course: Course, cells: Index, shares: Array) -> Array:
-        """Values of all rows at shares of some cells, shape (n_rows, n_cells, n_shares)."""
+        """Return the values of all rows at fractions of some cells, shape (n_rows, n_cells, n_shares)."""
         assert course.within is not None
         motion = course.within(cells, shares)
         return self.values(motion, self.inputs(motion.t)).reshape(-1, len(cells), len(shares))
 
     def extremes(self, course: Course, low: Array, high: Array) -> RowPeaks | None:
-        """Extremes of all rows over a course, from the smallest and largest values so far, shape (n_rows,),
-        with times of new ones, NaN for the others; None where the course does not compute them.
+        """Return the extremes of all rows over a course, starting from the smallest and largest values so
+        far, shape (n_rows,), with the times of new extremes and NaN for the others; None if the course does
+        not compute them.
         """
         if course.extremes is None or self.system.corotational:
             return None
@@ -179,7 +183,9 @@ class Quantities:
         return peaks
 
     def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
-        """Values of rows, each within its respective cell at shares of that cell, shape (n, n_shares)."""
+        """Return the values of rows, each within its own cell at fractions of that cell, shape (n,
+        n_shares).
+        """
         cells, at = np.unique(cell, return_inverse=True)
         t = (course.motion.t[cells, None] + shares * course.lengths[cells, None]).ravel()
         s = self.inputs(t)
@@ -198,16 +204,16 @@ class Quantities:
         return values
 
     def _of(self, name: str) -> slice:
-        """Rows of a part that moves as a whole."""
+        """Return the rows of a part whose quantities all vary."""
         part = self.parts[name]
         return slice(*np.searchsorted(self.place, [part.start, part.stop]).tolist())
 
     def _stacked(self, motion: Motion) -> Array:
-        """The values of a motion that the rows depend on, shape (n_used, n_times)."""
+        """Return the values of a motion on which the rows depend, shape (n_used, n_times)."""
         return np.concatenate([part[used] for part, used in zip(motion[1:], self._used)])
 
     def _some(self, row: Index) -> MotionRows:
-        """The entries of some of the rows."""
+        """Return the entries of some of the rows."""
         counts = self.entries[row]
         number = np.repeat(np.arange(len(row)), counts)
         at = np.arange(len(number)) + np.repeat(self._pointers[row] - np.cumsum(counts) + counts, counts)

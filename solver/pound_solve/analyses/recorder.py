@@ -1,4 +1,6 @@
-"""The recorder of a history: receives a method's samples, passes them on in blocks, keeps envelopes."""
+"""The recorder of a history: it receives the samples of a method, passes them on in blocks, and keeps
+envelopes.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ from pound_solve.structure.storeys import (
     storey_sums,
 )
 
-#: of a reduced system: attributes for the effect of inputs and loads
+#: attributes of a reduced system that describe the effect of inputs and loads
 _ACTING: Final = (
     "constant",
     "inputs",
@@ -35,15 +37,15 @@ _ACTING: Final = (
     "acceleration_inputs",
     "force_inputs",
 )
-LARGEST = 1e100  #: magnitude of a sample: energies, which are products of samples, stay finite
-BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
+LARGEST = 1e100  #: largest magnitude of a sample; energies, which are products of samples, remain finite
+BLOCK, HELD = 256, 2**20  #: largest number of buffered samples, and of numbers of one kind in them
 
 
 def recorded_sums(
     system: ReducedSystem, supports: Sequence[int], tracked: Sequence[Building]
 ) -> dict[str, LinearSums]:
-    """Sums of a history: forces of each support and of each building on the ground (X, Y, moment), their
-    imbalance; drifts, shears and moments of the storeys, accelerations of the floors.
+    """Return the sums of a history: forces of each support and of each building on the ground (X, Y,
+    moment), their imbalance; drifts, shears and moments of the storeys, accelerations of the floors.
     """
     equations = Equations(system)
     return {
@@ -69,7 +71,7 @@ class RecordedItems:
     outputs : tuple of Output
         Forces of the members.
     springs, contacts : tuple of int
-        Places among the laws of the structure.
+        Positions among the laws of the structure.
     supports : tuple of int
         Numbers of the supported nodes.
     buildings : tuple of Building
@@ -107,8 +109,8 @@ class RecordedItems:
         )
 
     def holds_for(self, system: ReducedSystem) -> bool:
-        """Whether another history of the same model records the same items: its unknowns are the same, and
-        its inputs act alike.
+        """Return whether another history of the same model records the same items: it has the same
+        unknowns, and its inputs act in the same way.
         """
         recorded = self.system
         return recorded.dofs == system.dofs and all(
@@ -116,7 +118,7 @@ class RecordedItems:
         )
 
     def again(self, system: ReducedSystem) -> RecordedItems:
-        """The same items for another history, for which `holds_for` is true."""
+        """Return the same items for another history, for which `holds_for` is true."""
         return replace(self, system=system)
 
     @property
@@ -132,7 +134,7 @@ class RecordedItems:
         return self._budget("EXTREMES")
 
     def _budget(self, item: str) -> float:
-        """Bytes that an item of OUTPUT allows."""
+        """Return the memory limit from an item of OUTPUT [bytes]."""
         output = self.system.structure.model.output
         return 0.0 if output["HISTORIES"] == "NO" else float(output[item] * MEGABYTE)
 
@@ -186,8 +188,8 @@ class SampleBlock:
 
 
 def inputs_before(system: ReducedSystem, t: Array) -> list[Array]:
-    """Inputs and their first two derivatives, shape (n_inputs, n_times) each, consistent with the
-    accelerations of samples: just before a jump.
+    """Return the inputs and their first two derivatives, shape (n_inputs, n_times) each, just before a
+    jump, consistent with the accelerations of samples.
     """
     return [system.excitation.values(t, order, before=True).T for order in range(3)]
 
@@ -205,11 +207,11 @@ class EnergyBalance:
     first, last : ndarray, shape (6,)
         At the start, and at the last sample.
     residual : float
-        Input less stored and lost energy, at the last sample.
+        Input minus stored and dissipated energy, at the last sample.
     largest, largest_residual : float
         Largest absolute energy and residual of all samples.
     samples : int
-        Number of samples counted in.
+        Number of samples included.
     """
 
     def __init__(self, first: Array | None = None) -> None:
@@ -233,7 +235,9 @@ class EnergyBalance:
 
     @property
     def changes(self) -> list[float]:
-        """Changes of `ENERGIES` and of the residual since the start; the input counts from zero [F L]."""
+        """Return the changes of `ENERGIES` and of the residual since the start; the input counts from zero
+        [F L].
+        """
         stored = self.first * (np.arange(len(ENERGIES)) > 0)
         return [*(self.last - stored).tolist(), self.residual]
 
@@ -241,7 +245,7 @@ class EnergyBalance:
 class HistoryRecorder:
     """Receives the samples of a method, passes them on in blocks and keeps envelopes.
 
-    It is an `integrate.protocol.EnvelopeRecorder`.
+    It implements `integrate.protocol.EnvelopeRecorder`.
 
     Parameters
     ----------
@@ -259,7 +263,7 @@ class HistoryRecorder:
     ----------
     energy : EnergyBalance
     losses : list of float
-        Energy lost by slip and release in every law, without dashpots [F L].
+        Energy lost by slip and release in every law, excluding dashpots [F L].
     deformations : list of float
         Of every law at the last sample [L], [rad].
     reached : float
@@ -304,7 +308,7 @@ class HistoryRecorder:
         """Take some samples whose progress has been reported before (see
         `integrate.protocol.EnvelopeRecorder`).
         """
-        new = t > self.reached  # excludes the start of a part, where another ended
+        new = t > self.reached  # excludes the start of a part, which is the end of another
         if not new.any():
             return
         block = (t, u, v, a, *laws, works)
@@ -350,12 +354,14 @@ class HistoryRecorder:
         return self.envelopes.enveloped_laws
 
     def report_progress(self, t: float, doing: str = "") -> None:
-        """Report the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
+        """Report the progress of a run whose samples may be discarded (see
+        `integrate.protocol.Recorder`).
+        """
         self._progress(t, doing)
 
     @property
     def started(self) -> bool:
-        """Whether there was a sample; a method may refuse the reduced system immediately."""
+        """Whether there was a sample; a method may reject the reduced system immediately."""
         return self.reached >= 0.0
 
     def flush(self) -> None:
@@ -379,7 +385,7 @@ class HistoryRecorder:
         self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, sums, whole))
 
     def closeups(self) -> Iterator[SampleBlock]:
-        """The close-ups of collisions, in the order of time; without energies, and with forces of contacts
+        """Yield the close-ups of collisions, in order of time, without energies and with forces of contacts
         only.
         """
         system = self.items.system
@@ -392,8 +398,8 @@ class HistoryRecorder:
             yield SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))
 
     def extremes(self) -> tuple[Array, list[SampleBlock]]:
-        """Bounds of the intervals reached in whole or in part, shape (n + 1,), and the smallest and the
-        largest values within them: of nodes, members and sums only.
+        """Return the bounds of the intervals reached completely or partly, shape (n + 1,), and the smallest
+        and largest values within them, for nodes, members and sums only.
         """
         extremes, none = self.envelopes.extremes, np.zeros((0, 0))
         count = int(np.isfinite(extremes.low).all(axis=0).sum())

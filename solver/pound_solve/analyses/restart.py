@@ -1,4 +1,4 @@
-"""Saving and resuming a history, and joining its parts.
+"""Save and resume a history, and join its parts.
 
 A history with a SAVE time is integrated in two parts; the second depends only on the state at the end of
 the first.  A resumed run therefore reproduces the whole run bit for bit.
@@ -49,7 +49,7 @@ class Saved:
     first: Array
 
     def arrays(self) -> dict[str, Array]:
-        """The state as arrays for a file."""
+        """Return the state as arrays for a file."""
         longest = max((len(s[3]) for s in self.states), default=0)
         return {
             "time": np.array([self.t]),
@@ -79,7 +79,7 @@ def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
 
 
 def resume(saved: Saved, system: ReducedSystem, times: Array) -> Start:
-    """Start of a part: the saved state over the reduced system's unknowns."""
+    """Return the start of a part: the saved state over the unknowns of the reduced system."""
     keep = system.columns
     return Start(saved.u[keep], saved.v[keep], saved.states, times, saved.works)
 
@@ -98,7 +98,7 @@ def join(parts: Sequence[Outcome]) -> Outcome:
 
 
 def _both(a: Peaks, b: Peaks) -> Peaks:
-    """Peaks of two consecutive parts; a collision that spans both counts as one."""
+    """Return the peaks of two consecutive parts; a collision that spans both counts as one."""
     running = {c.law: c for c in a.collisions if not np.isfinite(c.t_end)}
     later = []
     for c in b.collisions:

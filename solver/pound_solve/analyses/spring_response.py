@@ -16,8 +16,8 @@ from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
 #: plastic rotation at which concrete members begin to lose strength [rad]: FEMA 356 (2000), Prestandard and
-#: commentary for the seismic rehabilitation of buildings, Tables 6-7 and 6-8, give 0.015 to 0.025 to beams
-#: and 0.012 to 0.02 to columns with ties that confine them
+#: commentary for the seismic rehabilitation of buildings, Tables 6-7 and 6-8, give 0.015 to 0.025 for beams
+#: and 0.012 to 0.02 for columns with confining ties
 ORDINARY_ROTATION: Final = 0.02
 ENDS: Final = ("DUCTU", "DULT", "DU")  #: items that limit a component's validity or capacity
 
@@ -30,11 +30,11 @@ class PlasticDeformation(NamedTuple):
     last : float
         At the end.
     residual : float
-        After unloading; NaN for a run that stopped.
+        After unloading; NaN if the run stopped early.
     path : float
-        Plastic work over the yield force.
+        Plastic work divided by the yield force.
     path_ratio : float
-        Path over the deformation at yield [-].
+        Path divided by the yield deformation [-].
     """
 
     last: float
@@ -55,19 +55,19 @@ class SpringResponse:
     yields : float
         Number of times that it started to yield; NaN for a rule without a yield line.
     ductility : float
-        Largest absolute deformation over yield; NaN for none.
+        Largest absolute deformation divided by the yield deformation; NaN if there is none.
     loss : float
         Energy lost in hysteresis [F L].
     plastic : PlasticDeformation or None
-        None where no energy was lost, and for friction, which has no residual deformation.
+        None if no energy was lost, and for friction, which has no residual deformation.
     damage : Damage or None
-        None where the deck gives no ultimate ductility.
+        None if the deck gives no ultimate ductility.
     failed : bool
-        The rule has reduced its strength to zero, as at an ultimate deformation.
+        Whether the rule has reduced its strength to zero, for example at an ultimate deformation.
     rotation : float
         Largest plastic rotation of a hinge [rad]; NaN for other components.
     ends : bool
-        The deck gives a limit: DUCTU, or an item of its rule (`ENDS`).
+        Whether the deck gives a limit: DUCTU, or an item of the rule (`ENDS`).
     """
 
     spring: LawSpring
@@ -96,7 +96,7 @@ class SpringResponse:
 def spring_responses(
     structure: Structure, recorder: HistoryRecorder, outcome: Outcome, ended: bool
 ) -> list[SpringResponse]:
-    """Response of all springs and hinges; `ended`: the history is complete."""
+    """Return the response of all springs and hinges; `ended`: the history is complete."""
     return [_response(structure, recorder, outcome, ended, i) for i in recorder.items.springs]
 
 
@@ -105,7 +105,7 @@ def _response(
 ) -> SpringResponse:
     spring, peaks, loss = structure.laws[i], outcome.peaks, recorder.losses[i]
     d, f = peaks.deformation[i], peaks.force[i]
-    # pairs the largest deformation and force, which coincide unless the force falls under deformation
+    # pair the largest deformation and force, which coincide unless the force falls with the deformation
     largest = spring.whole(d.high, f.high), spring.whole(d.low, f.low)
     plastic = None
     if spring.role.viscous:

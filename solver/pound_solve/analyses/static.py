@@ -1,9 +1,9 @@
 r"""STATIC: displacements under the loads, traced from event to event (see `path_following`), with P-Delta.
 
 Loads grow from zero to their full value.  An initial overlap of a contact grows with them, so that the path
-starts free of stress. With geometry PDELTA the members' axial forces N give the stiffness :math:`K_G(N)`; N
-are the forces of the static state itself, found by iteration, and act from the start of loading.  The loads
-may be multiplied by the *buckling load factor* until
+starts without stress.  With geometry PDELTA the axial forces N of the members give the stiffness
+:math:`K_G(N)`.  N are the forces of the static state itself, found by iteration, and act from the start of
+loading.  The *buckling load factor* :math:`\lambda` is the multiple of the loads at which
 
 .. math:: \det\bigl(K_t + \lambda K_G(N)\bigr) = 0
 
@@ -40,7 +40,7 @@ class StaticState:
     states : tuple
         State of every law.
     events : int
-        Branch changes on the way.
+        Number of branch changes on the path.
     axial : ndarray, shape (n_geometric,)
         Axial forces in the geometric stiffness, tension positive [F].
     buckling : float
@@ -58,7 +58,7 @@ class StaticState:
 
 
 def at_rest(structure: Structure) -> StaticState:
-    """The unloaded state: no displacement, every law virgin."""
+    """Return the unloaded state: no displacement, every law virgin."""
     return StaticState(np.zeros(structure.n_free), tuple(s.law.start() for s in structure.laws), 0)
 
 
@@ -73,7 +73,7 @@ def solve(structure: Structure) -> StaticState:
     Raises
     ------
     InstabilityError
-        A loaded part is a mechanism or buckles, from the start or after yielding.
+        A loaded part is a mechanism or buckles, initially or after yielding.
     """
     state = loaded(structure)
     if not structure.geometric:
@@ -119,14 +119,14 @@ def loaded(structure: Structure) -> StaticState:
 
 
 def resumed(structure: Structure, state: StaticState) -> EquilibriumPath:
-    """The path that starts at that state."""
+    """Return the path that starts at `state`."""
     nothing = np.zeros(structure.n_free)
     return EquilibriumPath(structure, state.u, state.states, nothing, nothing)
 
 
 def after(structure: Structure, state: StaticState) -> Structure:
-    """The structure with the tangent stiffness of that state as initial stiffness; closed rigid contacts
-    stay closed in its modes (for MODAL AFTER=STATIC).
+    """Return the structure with the tangent stiffness of `state` as its initial stiffness; closed rigid
+    contacts stay closed in its modes (for MODAL AFTER=STATIC).
     """
     initial, path = structure.initial_stiffness, resumed(structure, state)
     k = initial - structure.free_block(initial) + structure.free_block(path.tangent())
@@ -136,8 +136,8 @@ def after(structure: Structure, state: StaticState) -> Structure:
 
 
 def buckling(k: Matrix, geometric: Matrix) -> float:
-    """Smallest positive factor that makes ``K + factor * geometric`` singular; infinite if none does, NaN
-    if K is not positive definite on its DOFs.
+    """Return the smallest positive factor for which ``K + factor * geometric`` is singular: infinite if
+    there is none, NaN if K is not positive definite on its DOFs.
     """
     at = np.flatnonzero(used_rows(k))
     if not len(at):
@@ -151,7 +151,7 @@ def buckling(k: Matrix, geometric: Matrix) -> float:
 
 
 def _least(g: Matrix, k: Matrix) -> float:
-    """Least eigenvalue of ``g x = value k x``.
+    """Return the smallest eigenvalue of ``g x = value k x``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Displacements, forces and reactions of a static state."""
+"""Return the displacements, forces and reactions of a static state."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
-DUST = 1e-12  #: fraction of the largest value below which a number is rounding
+DUST = 1e-12  #: fraction of the largest value below which a number is rounding error
 
 
 class ElementForce(NamedTuple):
@@ -28,7 +28,7 @@ class ElementForce(NamedTuple):
 
 @dataclass(frozen=True)
 class StaticResponse:
-    """A static state in the form of the tables.
+    """A static state in the form used by the tables.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class StaticResponse:
     balance : list of tuple
         See `SupportReactions.balance`.
     imbalance : float
-        Sum of all forces over the largest one.
+        Sum of all forces divided by the largest one.
     """
 
     state: StaticState
@@ -57,14 +57,16 @@ class StaticResponse:
 
     @property
     def check(self) -> Check:
-        """Self-check: whether all forces balance."""
+        """Return the self-check of force equilibrium."""
         about = "static forces and moments out of balance over the largest"
         remark = "loads and reactions do not balance"
         return at_most(Subject.EQUILIBRIUM, about, self.imbalance, SUM_ROUNDING, remark)
 
 
 def without_rounding(values: Array, kinds: Sequence[str]) -> Array:
-    """Values, shape (n,), with zeros for values that are rounding of the largest of their kind."""
+    """Return the values, shape (n,), with zeros for rounding errors relative to the largest of
+    their kind.
+    """
     cleaned = values.copy()
     for kind in set(kinds):
         alike = np.array([k == kind for k in kinds])
@@ -73,7 +75,7 @@ def without_rounding(values: Array, kinds: Sequence[str]) -> Array:
 
 
 def static_response(structure: Structure, state: StaticState) -> StaticResponse:
-    """Displacements, forces and reactions of a static state.
+    """Return the displacements, forces and reactions of a static state.
 
     Parameters
     ----------
@@ -102,7 +104,7 @@ def static_response(structure: Structure, state: StaticState) -> StaticResponse:
 
 
 def _forces(structure: Structure, state: StaticState, full: Array) -> list[ElementForce]:
-    """Forces of members, springs and contacts."""
+    """Return the forces of members, springs and contacts."""
     units = structure.model.units
     forces = [
         ElementForce(o.element, o.quantity, float(force), o.unit)

@@ -1,4 +1,4 @@
-"""Solutions with a tangent stiffness that may be singular: for a load, or a displacement that is set."""
+"""Solutions with a tangent stiffness that may be singular, for a load or for a prescribed displacement."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from pound_solve.structure.structure import Structure
 
 
 class InstabilityError(Exception):
-    """No further equilibrium: a mechanism, named by its worst DOF; `code` is the number of the message.
+    """There is no further equilibrium: a mechanism, identified by its worst DOF; `code` is the message
+    number.
 
     Attributes
     ----------
     motion : ndarray, shape (n_free,), or None
-        Motion of a mechanism under its load.
+        Motion of a mechanism under the load.
     """
 
     def __init__(self, why: str, code: str = "A501", motion: Array | None = None) -> None:
@@ -33,7 +34,7 @@ def solve_under_load(structure: Structure, k: Matrix, load: Array, usual: Array)
     Raises
     ------
     InstabilityError
-        K is not positive definite on the DOFs that the load moves.
+        K is not positive definite on the DOFs moved by the load.
     """
     held = used_rows(k)
     loose = ~held & (load != 0.0)
@@ -71,14 +72,14 @@ def solve_under_load(structure: Structure, k: Matrix, load: Array, usual: Array)
 
 
 def _placed(x: Array, at: Index, n: int) -> Array:
-    """Values at some of `n` places, zeros elsewhere, shape (n,)."""
+    """Return values at some of `n` positions and zeros elsewhere, shape (n,)."""
     placed = np.zeros(n)
     placed[at] = x
     return placed
 
 
 def _fastest(motion: Array) -> int:
-    """First of the unknowns that move most, to within 1e-9."""
+    """Return the first of the unknowns that move most, to within 1e-9."""
     size = np.abs(motion)
     return int(np.argmax(size > (1.0 - 1e-9) * size.max()))
 
@@ -125,12 +126,12 @@ def solve_under_control(
 
 
 def _scales(k: Matrix) -> Array:
-    """Factors as by `scaling`, limited so that negligible stiffness is not scaled up to one."""
+    """Return factors as `scaling` does, limited so that negligible stiffness is not scaled up to one."""
     root = scaling(k)
     limited: Array = np.minimum(root, 1e12 * root.min(initial=np.inf))
     return limited
 
 
 def name_of(structure: Structure, index: int) -> str:
-    """Name of an unknown in words."""
+    """Return the name of an unknown in words."""
     return label(structure.dofs.free[index])

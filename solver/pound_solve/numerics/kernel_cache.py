@@ -28,7 +28,7 @@ ELSEWHERE = f"compiled kernels cannot be kept in {VARIABLE}={{}}, but in {{}}"
 MAX_AGE = 30 * 86400.0  #: age at which an unused version is deleted [s]
 OF_A_VERSION = re.compile(
     "[0-9a-f]{16}(-old-.*)?"
-)  #: name of the folder of a version, or of one being deleted
+)  #: name of a version's folder, also of one being deleted
 
 
 class CacheFolder(NamedTuple):

@@ -22,8 +22,8 @@ from pound_solve.numerics import ordering
 from pound_solve.numerics.matrices import MAX_DENSE
 from pound_solve.numerics.types import Array, Index
 
-#: positions of entries: unsigned, so that kernels need not test every index for negative values, which count
-#: from the end
+#: positions of entries: unsigned, so that kernels need not test every index for negative values, which
+#: count from the end
 Positions = NDArray[np.uint32]
 
 

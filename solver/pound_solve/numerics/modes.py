@@ -337,9 +337,7 @@ def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
     values, shapes = generalised(k, m)
     size = scaling(k)
     scaled = size[:, None] * k * size
-    rigid = np.arange(len(k)) < deficiency(
-        scaled
-    )  # with rounding errors they are +-1e-16 of the largest value
+    rigid = np.arange(len(k)) < deficiency(scaled)  # computed as +-1e-16 of the largest value
     values = np.where(rigid, 0.0, np.maximum(values, 0.0))
     low = values < 1e-5 * values[-1]
     if low.any() and not rigid.any():

@@ -50,7 +50,7 @@ LIMIT, MEETS, ONTO = (
     2,
     3,
     4,
-)  #: internal variables of a side: strength limit; deformation and line of the bound met
+)  #: internal variables of a side: strength limit; where the bound is met; its line
 FAR = 1e300
 
 
