@@ -33,8 +33,8 @@ _LOOKS = np.vstack([_GRID @ _FIT, _FIT[-2:]])
 # and at least one less that sum. A row for a coefficient sums to zero, and gives as much to either side.
 _UP = np.maximum(_LOOKS, 0.0).sum(axis=1)
 _GRID_UP, _REST_UP = _UP[:-2].max(), _UP[-2:].sum()
-#: largest excess of a possible value over the largest sample, as a fraction of the range of the samples: from
-#: the polynomial, its last coefficients and the margin
+#: largest excess of a possible value over the largest sample, as a fraction of the range of the samples:
+#: from the polynomial, its last coefficients and the margin
 _MOST = (_GRID_UP - 1.0) + _REST_UP + EXCESS * (2.0 * _GRID_UP - 1.0)
 
 

@@ -26,9 +26,7 @@ CURE = f"set {VARIABLE} to a folder that you may write to"
 NOT_KEPT = f"compiled kernels cannot be kept, every run compiles for a minute or two: {CURE}"
 ELSEWHERE = f"compiled kernels cannot be kept in {VARIABLE}={{}}, but in {{}}"
 MAX_AGE = 30 * 86400.0  #: age at which an unused version is deleted [s]
-OF_A_VERSION = re.compile(
-    "[0-9a-f]{16}(-old-.*)?"
-)  #: name of a version's folder, also of one being deleted
+OF_A_VERSION = re.compile("[0-9a-f]{16}(-old-.*)?")  #: folder names of versions, also during deletion
 
 
 class CacheFolder(NamedTuple):

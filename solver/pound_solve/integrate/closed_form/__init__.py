@@ -1,1 +1,1 @@
-"""Methods whose motion between events is known in closed form."""
+"""Methods that know the motion between events in closed form."""

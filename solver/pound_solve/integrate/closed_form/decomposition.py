@@ -1,6 +1,6 @@
-"""Modal decomposition of a subsystem: its exact motion for one set of stiffnesses, kept for reuse.
+"""Modal decomposition of a subsystem: its exact motion for one set of stiffnesses, cached for reuse.
 
-Yielding springs and closing contacts return to the same stiffnesses again and again: a run with hundreds of
+Yielding springs and closing contacts return repeatedly to the same stiffnesses, so a run with hundreds of
 events needs only a few decompositions.
 """
 
@@ -24,12 +24,12 @@ from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-MAX_CONDITION = 1e6  #: of the mode matrix; beyond it the exponential series is used
-MAX_RESIDUAL = 1e-10  #: of the modes, likewise
+MAX_CONDITION = 1e6  #: condition number of the mode matrix above which the exponential series is used
+MAX_RESIDUAL = 1e-10  #: residual of the modes, likewise
 
 
 def make_propagator(m: Array, c: Array, k: Array, inputs: Array, rows: Array | None = None) -> Propagator:
-    """Return the exact motion of a subsystem: in modes, or by series where the modes are defective.
+    """Return the exact motion of a subsystem: in modes, or by series if the modes are defective.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def make_propagator(m: Array, c: Array, k: Array, inputs: Array, rows: Array | N
     Raises
     ------
     Mechanism
-        Massless DOFs with neither stiffness nor dashpot.
+        There are massless DOFs with neither stiffness nor dashpot.
     """
     if rows is None:
         space = state_space(m, c, k)
@@ -66,13 +66,13 @@ class Reactions:
     ----------
     laws : ndarray of int, shape (n_held,)
     rows : ndarray of int, shape (n_held,)
-        Their rows among those of the run.
+        Rows of the contacts among those of the run.
     gaps : ndarray, shape (n_held,)
     inputs : ndarray, shape (n_held, n_inputs)
-        The deformations that the unknowns are held to are ``gaps - inputs s``.
+        The prescribed deformations of the unknowns are ``gaps - inputs s``.
     on_q : ndarray, shape (n_held, n_q)
     on_p, on_rate : ndarray, shape (n_held, n + 3 n_held)
-        On the loads, extended as in `held_space`.
+        Factors of the loads, extended as in `held_space`.
     """
 
     laws: Index
@@ -98,7 +98,9 @@ class Reactions:
 
 
 class JoinedPart(NamedTuple):
-    """A decomposition within a joined one: its place in the state, its unknowns and its work integrals."""
+    """A decomposition within a joined one: its position in the state, its unknowns and its work
+    integrals.
+    """
 
     q: slice
     unknowns: Index
@@ -116,20 +118,20 @@ class Decomposition:
         Laws that act within the subsystem.
     propagator : Propagator
     monitored : ndarray of int, shape (n_monitored,)
-        The rows of the run that depend on its unknowns.
+        Rows of the run that depend on the unknowns of the subsystem.
     index_of : list of int
-        Place of every row of the run among `monitored`, or -1.
+        Index of every row of the run in `monitored`, or -1.
     rows : ndarray, shape (n_monitored, n)
     rows_q, rows_q_size : ndarray, shape (n_monitored, n_q)
-        The rows on q, and their magnitude.
+        The rows on q, and their magnitudes.
     sampled_q : ndarray, shape (3 n_monitored, n_q or 2 n_q)
         Values, rates and second rates of the rows from `propagator.real_parts` of q.
     motion_q : ndarray, shape (3 n, n_q or 2 n_q)
-        Displacements, velocities and accelerations from them.
+        Displacements, velocities and accelerations from the same.
     enveloped : ndarray of int, shape (n_enveloped,)
-        Places of the unknowns whose motion the envelopes need.
+        Indices of the unknowns whose motion the envelopes need.
     enveloped_motion_q : ndarray, shape (3 n_enveloped, n_q or 2 n_q)
-        `motion_q` of those.
+        `motion_q` of these unknowns.
     parts : tuple of Part
     reactions : Reactions or None
     """
@@ -151,7 +153,7 @@ class Decomposition:
 
 
 class Decomposer:
-    """Makes the decompositions of a run.
+    """Factory of the decompositions of a run.
 
     Parameters
     ----------
@@ -177,12 +179,13 @@ class Decomposer:
         self.reaction_row, self.enveloped = reaction_row, enveloped
 
     def decompose(self, unknowns: Index, laws: Index, branches: Sequence[Branch]) -> Decomposition:
-        """Return the motion of some unknowns with the `laws` that act on them on their branches.
+        """Return the motion of some unknowns with the `laws` that act on them, on their `branches`.
 
         Raises
         ------
         Mechanism
-            Massless DOFs with neither stiffness nor dashpot; the shape is over all unknowns of the system.
+            There are massless DOFs with neither stiffness nor dashpot; the shape covers all unknowns of the
+            system.
         """
         system, block = self.system, np.ix_(unknowns, unknowns)
         b = system.law_rows[np.ix_(laws, unknowns)]
@@ -206,7 +209,7 @@ class Decomposer:
         return self._with_rows(unknowns, laws, propagator, parts, reactions)
 
     def join(self, decompositions: Sequence[Decomposition]) -> Decomposition:
-        """Return several modal decompositions without massless DOFs as one; their modes stay apart."""
+        """Join several modal decompositions without massless DOFs; their modes remain separate."""
         propagator = ModalPropagator.joined(
             [x.propagator for x in decompositions if isinstance(x.propagator, ModalPropagator)]
         )
@@ -228,7 +231,7 @@ class Decomposer:
         parts: tuple[JoinedPart, ...],
         reactions: Reactions | None,
     ) -> Decomposition:
-        """A decomposition with what gives rows and unknowns from its state."""
+        """Return a decomposition with the matrices from its state to rows and unknowns."""
         monitored = np.flatnonzero(np.any(self.rows[:, unknowns] != 0, axis=1))
         index_of = [-1] * len(self.rows)
         for i, row in enumerate(monitored.tolist()):
@@ -258,8 +261,10 @@ class Decomposer:
     def _reactions(
         self, constrained: Index, unknowns: Index, propagator: Propagator, c: Array, k: Array
     ) -> Reactions:
-        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid.contacts` and `held_space`."""
-        assert propagator.u_p is not None and propagator.v_p is not None  # of all constraints
+        """Return the reactions from ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid.contacts`,
+        `held_space`.
+        """
+        assert propagator.u_p is not None and propagator.v_p is not None  # for all constraints
         at = np.array([self.rigid.laws.index(i) for i in constrained], np.intp)
         inverse = self.rigid.inverse(at)
         x = inverse @ self.rigid.velocity_change[np.ix_(unknowns, at)].T

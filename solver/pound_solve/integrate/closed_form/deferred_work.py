@@ -1,4 +1,4 @@
-"""Deferred integration of work: the intervals of one decomposition are integrated together when the work is
+"""Deferred integration of work: the intervals of one decomposition are integrated together once the work is
 needed.
 """
 
@@ -15,12 +15,13 @@ from pound_solve.numerics.types import Array, Flags
 
 
 class DeferredWork:
-    """Work put in, lost in dashpots of structure and springs, and lost in those of contacts [F L].
+    """Energy input, energy lost in dashpots of structure and springs, and energy lost in those of contacts
+    [F L].
 
     Parameters
     ----------
     accumulator : EnergyAccumulator
-        Takes the works when they are evaluated.
+        Receives the works when they are evaluated.
     constant : ndarray, shape (n,)
         Constant loads on the unknowns.
     contact : ndarray of bool, shape (n_laws,)
@@ -39,12 +40,12 @@ class DeferredWork:
         self._deferred: dict[int, tuple[JoinedPart, list[tuple[Any, ...]]]] = {}
 
     def add(self, work: Array) -> None:
-        """Enter work that is known already, shape (3,)."""
+        """Add work that is already known, shape (3,)."""
         self._known.append((self.entries, work))
         self.entries += 1
 
     def add_intervals(self, dense: DenseOutput, first: int, last: int, lengths: Array) -> None:
-        """Enter some intervals of a window, or the first part of each, shape (last - first,)."""
+        """Add some intervals of a window, or the first part of each, shape (last - first,)."""
         chosen, place = slice(first, last), self.entries + np.arange(last - first)
         for subsystem in dense.subsystems.present:
             loads = None if subsystem.loads is None else subsystem.loads[chosen]
@@ -55,8 +56,8 @@ class DeferredWork:
         self.entries += last - first
 
     def evaluated(self) -> tuple[Array, dict[int, float]]:
-        """Return the works before the first entry and after each, shape (entries + 1, 3), and the losses of
-        the laws' dashpots over all entries, by law.
+        """Return the works before the first entry and after each entry, shape (entries + 1, 3), and the
+        losses in the dashpots of the laws over all entries, by law.
         """
         new = np.zeros((self.entries + 1, 3))
         new[0] = self.accumulator.array()
@@ -78,7 +79,7 @@ class DeferredWork:
         return np.cumsum(new, axis=0), losses
 
     def restart(self, works: Array) -> None:
-        """Start anew from the last of the `evaluated` works."""
+        """Start again from the last of the `evaluated` works."""
         self.accumulator.advance(works)
         self.entries = 0
         self._known.clear()

@@ -1,5 +1,5 @@
-"""Dense output: the motion of all subsystems at any time of a window of intervals, within each of which the
-excitation is one polynomial.
+"""Dense output: the motion of all subsystems at any time of a window of intervals.  The excitation is one
+polynomial within each interval.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
 
-#: fraction of the length of an interval by which instants may differ from those of another
+#: instants of two intervals count as equal if they differ by less than this fraction of the length
 SAME_LENGTH = 1e-12
 Kinematics = tuple[Array, Array, Array]  #: displacement, velocity and acceleration of the unknowns
 
 
 class DenseOutput:
-    """The motion over a window; it fills the window's part of every `Subsystem`.
+    """The motion over a window; it sets the window's data in every `Subsystem`.
 
     Parameters
     ----------
     subsystems : Subsystems
     branches : sequence of Branch
     input_coefs : ndarray, shape (n, degree + 1, n_inputs)
-        Input polynomials of each interval, about its start.
+        Input polynomials of each interval about its start.
     lengths : ndarray, shape (n,)
         Of the intervals [T]; all but the first are equal.
 
     Attributes
     ----------
     edges : ndarray, shape (n + 1,)
-        Local times of the intervals' ends, from zero.
+        Local times of the ends of the intervals, from zero.
     """
 
     def __init__(
@@ -57,7 +57,9 @@ class DenseOutput:
             subsystem.states = propagator.march(subsystem.q, subsystem.forcing, lengths)
 
     def _loads(self, subsystem: Subsystem) -> Array:
-        """Load polynomials of a subsystem, with the prescribed deformations of closed rigid contacts."""
+        """Return the load polynomials of a subsystem, with the prescribed deformations of closed rigid
+        contacts.
+        """
         decomposition, n = subsystem.decomposition, len(subsystem.constant)
         loads = self.input_coefs @ decomposition.propagator.inputs.T
         loads[:, 0, :n] += subsystem.constant
@@ -67,7 +69,7 @@ class DenseOutput:
         return decomposition.reactions.extended(loads, self.input_coefs)
 
     def _support_loads(self, subsystem: Subsystem) -> Array:
-        """Loads of laws attached to moved supports, whose deformation has a known part,
+        """Return the loads of laws attached to moving supports, whose deformation has a known part, shape
         (n, degree + 1, n_unknowns).
         """
         system, laws = self.subsystems.system, subsystem.decomposition.laws
@@ -80,7 +82,7 @@ class DenseOutput:
         return loads
 
     def kept(self) -> DenseOutput:
-        """Return a copy that does not change when the run goes on."""
+        """Return a copy that does not change when the run continues."""
         snapshot = copy.copy(self)
         snapshot.__dict__.pop("end", None)  # cached; not used in a snapshot
         snapshot.branches = list(self.branches)
@@ -105,7 +107,7 @@ class DenseOutput:
 
     def derivative_bounds(self) -> Array:
         """Return bounds of the second derivatives of the values and of the rates of all rows in each
-        interval, shape (2, n_rows, n): no mode exceeds its start, apart from its forcing.
+        interval, shape (2, n_rows, n).  Apart from its forcing, no mode exceeds its initial magnitude.
         """
         subsystems = self.subsystems
         limits = np.zeros((2, len(subsystems.rows.rows), self.intervals))
@@ -139,7 +141,7 @@ class DenseOutput:
         """Return the motion at several times of an interval, shape (n, n_times) each."""
 
         def states(subsystem: Subsystem) -> NDArray[Any]:
-            if len(times) == 1:  # the ends of intervals are known, other times recur
+            if len(times) == 1:  # the ends of intervals are already known; other times recur
                 return self.state(subsystem, interval, float(times[0]))[:, None, None]
             return subsystem.decomposition.propagator.trajectory(
                 subsystem.states[:, interval], subsystem.forcing[interval], times
@@ -148,12 +150,12 @@ class DenseOutput:
         return self._motions(np.array([interval]), times[None], states)
 
     def enveloped_motions(self, times: Array) -> Kinematics:
-        """Return the motion of the unknowns in the envelopes at several local times, zero elsewhere, shape
-        (n, n_times) each.
+        """Return the motion of the unknowns in the envelopes at several local times, zero for other
+        unknowns, shape (n, n_times) each.
         """
         interval = np.clip(np.searchsorted(self.edges, times, "right") - 1, 0, self.intervals - 1)
         local = times - self.edges[interval]
-        alike: dict[bytes, list[Index]] = {}  # columns of each interval, by the shares of its length
+        alike: dict[bytes, list[Index]] = {}  # columns of each interval, by fractions of its length
         for i in np.unique(interval).tolist():
             columns = np.flatnonzero(interval == i)
             shares = np.round(local[columns] / self.lengths[i] / SAME_LENGTH)
@@ -174,7 +176,7 @@ class DenseOutput:
 
     @cached_property
     def end(self) -> tuple[Array, Array]:
-        """Displacements and velocities at the end, shape (n,) each; valid only until the branches or the
+        """Displacements and velocities at the end, shape (n,) each, valid only until the branches or the
         subsystems change.
         """
         u, v, _ = self.motions_at_ends(np.array([self.intervals - 1]))
@@ -182,7 +184,8 @@ class DenseOutput:
 
     def enveloped_grid(self, h: float, end: float) -> tuple[Array, Kinematics]:
         """Return local times at equal steps of at most `h` in each interval up to `end`, shape (n_times,),
-        and the motion then of the unknowns in the envelopes, zero elsewhere, shape (n, n_times) each.
+        and the motion of the unknowns in the envelopes at these times, zero for other unknowns, shape (n,
+        n_times) each.
         """
         last, longest = self.locate(end)[0], float(self.lengths.max())
         count = int(np.ceil(longest / h * (1 - 1e-12)))
@@ -207,10 +210,10 @@ class DenseOutput:
         states: Callable[[Subsystem], NDArray[Any]],
         enveloped: bool = False,
     ) -> Kinematics:
-        """Motion at times `t`, shape (n_intervals, n_times), within some intervals each; shape
-        (n, n_intervals * n_times) each.
+        """Return the motion at times `t`, shape (n_intervals, n_times), within each of some intervals;
+        shape (n, n_intervals * n_times) each.
 
-        `states` returns a subsystem's q there, shape (n_q, n_intervals, n_times).
+        `states` returns q of a subsystem at these times, shape (n_q, n_intervals, n_times).
         """
         motion = np.zeros((3, self.subsystems.system.size, t.size))
         for subsystem in self.subsystems.present:
@@ -270,7 +273,7 @@ class DenseOutput:
         return float(b.force0 * tau + b.stiffness * area + b.damping * change)
 
     def _reaction_impulse(self, law: int, interval: int, tau: float) -> float:
-        """`impulse` of a closed rigid contact."""
+        """Return the `impulse` of a closed rigid contact."""
         for subsystem in self.subsystems.present:
             x = subsystem.decomposition.reactions
             if x is None or law not in x.laws:
@@ -286,20 +289,20 @@ class DenseOutput:
 
 
 def _trajectories(chosen: Index, t: Array, subsystem: Subsystem) -> NDArray[Any]:
-    """States q of a subsystem at times `t` of some intervals, shape (n_q, n_chosen, n_times)."""
+    """Return the states q of a subsystem at times `t` of some intervals, shape (n_q, n_chosen, n_times)."""
     states, forcing = subsystem.states[:, chosen], subsystem.forcing[chosen]
     return subsystem.decomposition.propagator.trajectories(states, forcing, t)
 
 
 def _integral(coefs: Array, tau: float) -> Array:
-    """Integral over (0, tau) of polynomials, shape (degree + 1, ...)."""
+    """Return the integral over (0, tau) of polynomials, shape (degree + 1, ...)."""
     integral: Array = sum(coefs[k] * tau ** (k + 1) / (k + 1) for k in range(len(coefs)))
     return integral
 
 
 def direct_response(u_p: Array, v_p: Array, loads: Array, t: Array) -> Array:
-    """Return the direct response of massless DOFs to loads: value, rate and second rate of rows,
-    shape ``(3, n_rows, *t.shape)``, with load polynomials of some intervals at times `t` of each.
+    """Return the direct response of massless DOFs to loads: value, rate and second rate of rows, shape
+    ``(3, n_rows, *t.shape)``, from the load polynomials of some intervals at times `t` of each.
     """
     force, slope, curvature = (polynomial.on(loads, t, order) for order in range(3))
     u, v = (partial(np.tensordot, rows, axes=1) for rows in (u_p, v_p))

@@ -1,5 +1,5 @@
-"""The base of the methods with a closed form between events: laws on their branches, response tracker, and
-reasons to stop.
+"""The base class of the methods with a closed form between events: branches of the laws, response tracker,
+and stop conditions.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from pound_solve.numerics.types import Array
 
 
 def is_slack(branch: Branch) -> bool:
-    """Whether a law has neither stiffness nor force on a branch."""
+    """Return whether a law has neither stiffness nor force on a branch."""
     return branch.stiffness == branch.force0 == 0.0
 
 
 class EventDrivenRun(ABC):
-    """A run from event to event; the base of EXACT and LAPLACE.
+    """A run from event to event; the base class of EXACT and LAPLACE.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class EventDrivenRun(ABC):
     branches : list of Branch
         Of all laws at the present time.
     rows : RowSet
-        Deformations of the laws, then the drifts.
+        Deformations of the laws, followed by the drifts.
     largest : ndarray, shape (2, n_rows)
         Largest magnitudes of the rows and their rates so far: the scale of the event functions.
     contacts : list of int
@@ -75,7 +75,7 @@ class EventDrivenRun(ABC):
         self.uniqueness = Uniqueness(system)
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
-        """Let a law leave its branch at deformation `d` and rate `v`."""
+        """Move a law to its next branch at deformation `d` and rate `v`."""
         before = self.branches[law].kind
         self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
@@ -85,8 +85,8 @@ class EventDrivenRun(ABC):
         self.tracker.force(law).take(force, self.t)
 
     def change(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Let a law leave its branch, note which others come to the ends of theirs at the same instant, and
-        release joints without mass where it loses its force; `d` and `v` are those of all laws.
+        """Move a law to its next branch, record which other laws reach the ends of their branches at the
+        same instant, and release massless joints if it loses its force; `d` and `v` are those of all laws.
         """
         law, event_index = self._before_slack(law, event_index, d, v)
         self._look_for_rests(law, event_index, d, v)
@@ -99,27 +99,27 @@ class EventDrivenRun(ABC):
             release(self, law)
 
     def force(self, law: int, d: float) -> tuple[float, float]:
-        """Force of a law at rest at deformation `d`, and its tangent."""
+        """Return the force of a law at rest at deformation `d`, and its tangent."""
         return self.laws[law].law.force(self.states[law], d)[:2]
 
     def take_release(self, law: int, lost: float, put_in: float) -> None:
-        """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
-        the input.
+        """Add the energy `lost` by a falling force to the work done on its law, and the work `put_in` by
+        loads to the input.
         """
         at, d, work, m = self.states[law]
         self.states[law] = at, d, work + lost, m
         self.take_works(np.array([put_in, 0.0, 0.0]))
 
     def take_works(self, works: Array) -> None:
-        """Add works that are done at one instant, shape (3,)."""
+        """Add works done at one instant, shape (3,)."""
         before = self.energy.array()
         self.energy.advance(np.array([before, before + works]))
 
     def _arriving(self, law: int, d: Array, v: Array) -> Iterator[tuple[int, int, State, Branch]]:
-        """Other laws at unknowns without mass whose events occur now: the law, the event, and the state and
-        the branch after it.
+        """Yield other laws at massless unknowns whose events occur now: the law, the event, and the state
+        and branch after it.
         """
-        from pound_solve.integrate.kernels.ties import event_arrives  # which most decks do not need
+        from pound_solve.integrate.kernels.ties import event_arrives  # most decks do not need this import
 
         for i in np.flatnonzero(self._massless_laws).tolist():
             if i == law or self.laws[i].role.collides:
@@ -132,8 +132,8 @@ class EventDrivenRun(ABC):
                     break
 
     def _before_slack(self, law: int, event_index: int, d: Array, v: Array) -> tuple[int, int]:
-        """Law and event to be taken first where this one makes its law slack (see `kernels.ties`); else
-        this one.
+        """Return the law and event to process first if this event makes its law slack (see `kernels.ties`),
+        otherwise this law and event.
         """
         before, deformation = self.branches[law], float(d[law])
         if self.laws[law].role.collides or not self._massless_laws[law] or before.stiffness == 0.0:
@@ -147,7 +147,7 @@ class EventDrivenRun(ABC):
         return law, event_index
 
     def _look_for_rests(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Record the laws that are at the start of a branch when `law` reverses (see
+        """Record the laws that rest at the start of a branch when `law` reverses (see
         `kernels.ties.note_rests`).
         """
         event = self.branches[law].events[event_index]
@@ -161,7 +161,7 @@ class EventDrivenRun(ABC):
                     self.uniqueness.record_rest(self.t, law, i, branch)
 
     def _branch_begun(self, law: int, d: float, v: float, turns: bool) -> int:
-        """Return the branch whose start the law is at, while it reverses (`turns`) or rests; -1 if none."""
+        """Return the branch at whose start the law is, while it reverses (`turns`) or rests; -1 if none."""
         from pound_solve.integrate.kernels.ties import NEAR_EVENT, STATIONARY_RATE, event_near  # as above
 
         state, largest = self.states[law], self.largest[:, law].tolist()
@@ -174,8 +174,8 @@ class EventDrivenRun(ABC):
         return state[0] if entered else -1
 
     def _look_for_ties(self, law: int, d: Array, v: Array, lost_force: bool) -> None:
-        """Record which laws come to the ends of their branches together with one that has become softer, or
-        that has lost its force.
+        """Record which laws reach the ends of their branches together with a law that has become softer or
+        has lost its force.
         """
         k, c = (np.array([getattr(b, name) for b in self.branches]) for name in ("stiffness", "damping"))
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
@@ -190,26 +190,26 @@ class EventDrivenRun(ABC):
             self.uniqueness.examine_tie(self.t, k, c, rising)
 
     def count_change(self, elapsed: float, rounding: float) -> None:
-        """Count the changes of branch at one instant: `elapsed` up to a share `rounding` of the time counts
-        as none.
+        """Count the changes of branch at one instant; an `elapsed` time up to the fraction `rounding` of
+        the time counts as zero.
         """
         same = elapsed <= rounding * max(1.0, self.t)
         self.changes_at_instant = self.changes_at_instant + 1 if same else 0
 
     def stop_chatter(self, law: int, remedy: str) -> None:
-        """Stop where too many changes of branch fall on one instant."""
+        """Stop if too many changes of branch occur at one instant."""
         if self.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(self.laws):
             s, count = self.laws[law], self.changes_at_instant
             why = CHATTER_TEXT.format(count, s.element, s.rule, self.branches[law].name, remedy)
             raise self.stop("A503", why)
 
     def stop_growth(self, v: Array, hint: str = "") -> None:
-        """Stop where the kinetic energy at velocity `v` is far above the energy put in."""
+        """Stop if the kinetic energy at velocity `v` is far above the energy input."""
         if self.runs_away(v):
             raise self.stop("A504", RUNAWAY_TEXT.format(self.kinetic(v)) + hint)
 
     def runs_away(self, v: Array) -> bool:
-        """Whether the kinetic energy at velocity `v` is far above all that is known to have been put in."""
+        """Return whether the kinetic energy at velocity `v` is far above the known energy input."""
         return self.energy.runs_away(self.kinetic(v))
 
     def kinetic(self, v: Array) -> float:
@@ -217,9 +217,9 @@ class EventDrivenRun(ABC):
         return 0.5 * float(v @ self.system.mass @ v)
 
     def reaching(self, u: Array) -> Array:
-        """Largest magnitudes of the rows and their rates; those of contacts at least the displacements of
-        the two bodies at `u`.  The rounding of a contact's deformation is a share of these, and for bodies
-        that move alike the deformation is nothing but rounding.
+        """Return the largest magnitudes of the rows and their rates; for contacts, at least the
+        displacements of the two bodies at `u`.  The rounding error of a contact deformation is a fraction
+        of these displacements, and for bodies that move alike the deformation is only rounding error.
         """
         largest = self.largest.copy()
         far = np.abs(self.rows.rows[self.contacts]) @ np.abs(u)
@@ -227,13 +227,15 @@ class EventDrivenRun(ABC):
         return largest
 
     def count_magnitudes(self, value: Array, rate: Array) -> None:
-        """Count values and rates of the first rows, shape (n_rows, n_times), into the largest."""
+        """Include values and rates of the first rows, shape (n_rows, n_times), in the largest
+        magnitudes.
+        """
         n = len(value)
         both = np.abs([value, rate]).max(axis=2)
         self.largest[:, :n] = np.maximum(self.largest[:, :n], both)
 
     def count_collision_peaks(self) -> None:
-        """Count the peak forces of the present collisions into those of their contacts."""
+        """Include the peak forces of the present collisions in those of their contacts."""
         for law, collision in self.tracker.open.items():
             self.tracker.force(law).take(collision.peak, collision.t_peak)
 

@@ -1,18 +1,19 @@
 r"""EXACT: event-driven integration without a time step.
 
 Between events (a spring yields or unloads, a contact closes or opens) the reduced system is linear and its
-motion under piecewise-polynomial excitation is known in closed form (see `propagators`).
-Only the event times remain to be found: event functions are sampled in cells whose length follows from
-bounds of their curvature (:mod:`.search`), bracketed by value and by slope (two crossings within one step
-of the grid), and polished to the last digits (:mod:`..events.grid`).  Peaks of drifts, spring deformations
-and contact forces are found the same way.
+motion under piecewise-polynomial excitation is known in closed form (see `propagators`).  Only the event
+times remain to be found: event functions are sampled in cells whose length follows from bounds of their
+curvature (:mod:`.search`), bracketed by value and by slope (two crossings within one step of the grid), and
+refined to the last digits (:mod:`..events.grid`).  Peaks of drifts, spring deformations and contact forces
+are found the same way.
 
-Parts of the structure that no closed contact joins are solved separately, each with its own modes for each
-combination of stiffnesses, kept for reuse (:mod:`~pound_solve.integrate.closed_form.subsystems`).
+Parts of the structure that no closed contact connects are solved separately.  Each has separate modes for
+each combination of stiffnesses, which are cached for reuse
+(:mod:`~pound_solve.integrate.closed_form.subsystems`).
 
-Energies are integrated independently of each other: the dashpots' work as the closed integral
-of :math:`v^T C v`, the input as that of :math:`v^T p`, the plastic work from the laws' slip.
-Their sum against kinetic and strain energy is therefore a check of the whole integration.
+Energies are integrated independently of each other: the work of the dashpots as the closed-form integral of
+:math:`v^T C v`, the input as that of :math:`v^T p`, and the plastic work from the slip of the laws.
+Comparing their sum with the kinetic and strain energy is therefore a check of the whole integration.
 """
 
 from __future__ import annotations
@@ -59,16 +60,18 @@ from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision
 
-MAX_PIECES = 2000  #: windows within one interval of the excitation
-MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, which take many minutes
-#: such windows without an event between, after which the total number is predicted
+MAX_PIECES = 2000  #: largest number of windows within one interval of the excitation
+MAX_WINDOWS = (
+    10000  #: largest number of windows shorter than an interval in the rest of a run (many minutes)
+)
+#: number of such windows without an event between them, after which the total number is predicted
 WINDOWS_BEFORE_FORECAST = 16
-MAX_DEFERRED = 256  #: entries of work that wait
+MAX_DEFERRED = 256  #: largest number of deferred work entries
 DEFECTIVE_MODES = "modes are nearly parallel: digits are lost"
 
 
 class Exact(EventDrivenRun):
-    """One run; see the module's head."""
+    """One run; see the module docstring."""
 
     def __init__(self, problem: Problem[Recorder], options: Mapping[str, Any]) -> None:
         super().__init__(problem)
@@ -111,7 +114,7 @@ class Exact(EventDrivenRun):
         return self.outcome()
 
     def _charge(self, cost: float) -> None:
-        """Add a cost to the budget of the run."""
+        """Charge a cost to the budget of the run."""
         decompositions = len(self.subsystems.decompositions)
         self.budget.charge(cost, self.t, decompositions)
 
@@ -138,7 +141,7 @@ class Exact(EventDrivenRun):
     def _advance(self, cursor: int) -> int:
         """Advance by a window up to the next goals, or to an event; return the new cursor."""
         goal = float(self.goals[cursor])
-        if goal - self.t <= 1e-14 * max(1.0, self.t):  # an event fell on the goal
+        if goal - self.t <= 1e-14 * max(1.0, self.t):  # an event coincides with the goal
             self.t = goal
             if self.is_output[cursor]:
                 self._sample_now()
@@ -148,9 +151,9 @@ class Exact(EventDrivenRun):
             self._check_progress(float(window.lengths[0]), goal - self.t)
         dense = self._dense_output(window.lengths, window.starts)
         if dense.intervals > 1 and self.runs_away(dense.end[1]):
-            self._release()  # the deferred works may be the energy that it moves with
+            self._release()  # the deferred works may contain the energy of the motion
             if self.runs_away(dense.end[1]):
-                self.windows.narrow()  # so that a stop is reported at the first goal
+                self.windows.narrow()  # a stop is then reported at the first goal
                 return cursor
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
@@ -168,7 +171,7 @@ class Exact(EventDrivenRun):
         self.window_count += 1
         self._charge_window(dense, window.h, coarse.t.size + fine.t.size)
         largest = self.largest
-        if self.contacts:  # the end of the window is not reached if there is an event before
+        if self.contacts:  # the end of the window is not reached if an event precedes it
             self.largest = self.reaching(self.u)
             largest = self.reaching(dense.end[0])
         earliest = self.search.events.first_event(fine, largest, EVENT_TOLERANCE, self.contacts)
@@ -207,7 +210,7 @@ class Exact(EventDrivenRun):
     def _accept_event(
         self, window: Window, dense: DenseOutput, grid_event: GridEvent, end: GridSamples, cursor: int
     ) -> int:
-        """Advance to an event, where the values of the rows are those of `end`; return the new cursor."""
+        """Advance to an event, at which `end` contains the values of the rows; return the new cursor."""
         law, event_index, tau = grid_event.event
         interval, local = dense.locate(tau)
         self._sample(dense, cursor, interval)
@@ -222,8 +225,8 @@ class Exact(EventDrivenRun):
         return cursor + interval
 
     def _switch(self, law: int, event_index: int, d: Array, v: Array) -> None:
-        """Let a law leave its branch, and carry out all that follows from it at the same instant; `d` and
-        `v` are the deformations and rates of all laws.
+        """Move a law to its next branch, and process all consequences at the same instant; `d` and `v` are
+        the deformations and rates of all laws.
         """
         self.events += 1
         try:
@@ -244,7 +247,7 @@ class Exact(EventDrivenRun):
         self._update_subsystems()
 
     def law_forces(self, d: Array, v: Array) -> Array:
-        """Forces of all laws at deformations and rates (see `RigidRun`)."""
+        """Return the forces of all laws at deformations and rates (see `RigidRun`)."""
         return linear_forces(self.branches)(d, v)
 
     def take_works(self, works: Array) -> None:
@@ -257,8 +260,8 @@ class Exact(EventDrivenRun):
         self.energy.dashpot_losses += lost
 
     def _check_progress(self, length: float, rest: float) -> None:
-        """Stop where the fastest mode is not resolvable: time would not advance by pieces of a `length`, or
-        too slowly for the `rest` of the interval or of the run.
+        """Stop if the fastest mode cannot be resolved: pieces of the given `length` would not advance the
+        time, or too slowly for the `rest` of the interval or of the run.
         """
         self.pieces += 1
         left = MAX_PIECES - self.pieces
@@ -273,7 +276,7 @@ class Exact(EventDrivenRun):
             )
 
     def _count_peaks(self, coarse: GridSamples, fine: GridSamples, end: float) -> None:
-        """Count the samples up to the local time `end` into magnitudes and peaks."""
+        """Include the samples up to the local time `end` in magnitudes and peaks."""
         seen = coarse.t <= end
         self.count_magnitudes(coarse.value[:, seen], coarse.rate[:, seen])
         if fine.t.size:
@@ -295,13 +298,13 @@ class Exact(EventDrivenRun):
         if self.work.entries > MAX_DEFERRED or ends or grows:
             self._release()
             if count:
-                self.t = float(self.goals[cursor + count - 1])  # where a stop is reported
+                self.t = float(self.goals[cursor + count - 1])  # time at which a stop is reported
                 self.stop_growth(dense.motions_at_ends(np.array([count - 1]))[1][:, 0])
 
     def _release(self) -> None:
-        """Evaluate the works, and pass the samples that waited for them to the recorder.
+        """Evaluate the works, and pass the samples that depend on them to the recorder.
 
-        An interrupt on the way loses nothing: the recorder ignores samples that it has already.
+        An interrupt meanwhile loses no samples: the recorder ignores those that it already has.
         """
         works, losses = self.work.evaluated()
         self.envelopes.release()
@@ -312,7 +315,9 @@ class Exact(EventDrivenRun):
         self.work.restart(works)
 
     def _add_work(self, dense: DenseOutput, first: int, lengths: Array) -> None:
-        """Add the work, and the contacts' impulses, over some `lengths` of intervals from `first` on."""
+        """Add the work, and the impulses of the contacts, over some `lengths` of intervals from
+        `first` on.
+        """
         last = first + len(lengths)
         if self.system.total:
             for i, tau in zip(range(first, last), lengths.tolist()):
@@ -375,15 +380,15 @@ class Exact(EventDrivenRun):
 
 
 def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
-    """Integrate a reduced system exactly; see the module's head.
+    """Integrate a reduced system exactly; see the module docstring.
 
-    AUTO limits the costs (see `costs.Budget`) by the options COST, TRIAL and DECOMPOSITIONS; no deck sets
-    them.
+    AUTO limits the costs (see `costs.Budget`) by the options COST, TRIAL and DECOMPOSITIONS, which no deck
+    sets.
 
     Raises
     ------
     Stop
-        Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
+        There were too many changes at one instant, a mechanism, an overflow, or an interrupt.
     CostlyError
         The run exceeds these limits.
     """
@@ -398,7 +403,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     except MasslessContact as err:
         raise Stop("A505", problem.begin, str(err)) from None
     try:
-        with np.errstate(over="ignore", invalid="ignore"):  # a diverging motion stops with its own message
+        with np.errstate(over="ignore", invalid="ignore"):  # a diverging motion has a separate message
             return run.run()
     except KeyboardInterrupt:
         raise run.stop("A506", INTERRUPTED) from None

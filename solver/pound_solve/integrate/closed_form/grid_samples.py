@@ -1,4 +1,4 @@
-"""Rows of a run sampled on a grid: values, rates and second rates on segments of a window, and by Taylor
+"""Rows of a run sampled on a grid: values, rates and second rates on segments of a window, with Taylor
 series between the points.
 """
 
@@ -17,7 +17,7 @@ from pound_solve.integrate.propagators.base import TAYLOR_TERMS, real_parts, rea
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 
-#: states of every subsystem at the segments' starts and ends
+#: states of every subsystem at the starts and ends of the segments
 Ends = Sequence[tuple[NDArray[Any], NDArray[Any]]]
 
 
@@ -30,18 +30,18 @@ class GridSamples:
     interval : ndarray of int, shape (n,)
         Interval of each segment.
     offset, span : ndarray, shape (n,)
-        Times from the intervals' starts to the segments', and lengths of the segments, `count` steps of h
-        at most; points beyond repeat the end.
+        Times from the starts of the intervals to those of the segments, and lengths of the segments, at
+        most `count` steps of h; points beyond the end repeat it.
     ends : sequence of pairs of ndarray, shape (n_q, n)
-        States of every subsystem at the segments' starts and ends.
+        States of every subsystem at the starts and ends of the segments.
     grid : (h, count)
     second_rates : bool
-        Whether second rates are computed; else they are zero.
+        Whether second rates are computed; otherwise they are zero.
 
     Attributes
     ----------
     t : ndarray, shape (n, count + 1)
-        Local times of the window.
+        Local times in the window.
     value, rate, second : ndarray, shape (n_rows, n, count + 1)
     """
 
@@ -113,7 +113,7 @@ class GridSamples:
         return GridSamples(self.dense, self.interval[segment], offset, span, ends, (h, count), second_rates)
 
     def _about_starts(self, coefs: NDArray[Any]) -> NDArray[Any]:
-        """Polynomials of the intervals about the segments' starts."""
+        """Return the polynomials of the intervals about the starts of the segments."""
         pieces = coefs[self.interval]
         if not self.offset.any():
             return pieces
@@ -148,7 +148,7 @@ class GridSamples:
     def _add_reactions(
         self, subsystem: Subsystem, reals: Array, forcing: NDArray[Any], loads: Array
     ) -> None:
-        """Set the forces of a subsystem's closed rigid contacts and their rates."""
+        """Set the forces of the closed rigid contacts of a subsystem, and their rates."""
         x, propagator = subsystem.decomposition.reactions, subsystem.decomposition.propagator
         assert x is not None
         force, slope, curvature = (polynomial.on(loads, self.local, order) for order in range(3))
@@ -176,22 +176,22 @@ class GridSamples:
             x[:, segment + 1 :] = point
 
     def at(self, row: int, segment: int, cell: int, tau: float) -> tuple[float, float, float]:
-        """Value, rate and second rate of one row at local time `tau` in a cell, by its Taylor series
-        about the point before: Newton's iterations evaluate it many times.
+        """Return value, rate and second rate of one row at local time `tau` in a cell, by its Taylor series
+        about the previous point, which Newton's iteration evaluates many times.
         """
         series = self._series.get((row, segment, cell))
         if series is None:
             series = self._series[row, segment, cell] = self._expand(row, segment, cell).tolist()
         x = (tau - float(self.t[segment, cell])) / self.h
         value = rate = second = 0.0
-        for c in series:  # from the highest power: Horner's scheme for the value and both derivatives
+        for c in series:  # Horner's scheme for the value and both derivatives
             second = second * x + rate
             rate = rate * x + value
             value = value * x + c
         return value, rate / self.h, 2.0 * second / self.h**2
 
     def _expand(self, row: int, segment: int, cell: int) -> Array:
-        """Taylor series of one row about a point, in powers of h, the highest power first."""
+        """Return the Taylor series of one row about a point, in powers of h, the highest power first."""
         subsystems, h, t = self.dense.subsystems, self.h, float(self.local[segment, cell])
         series = np.zeros(TAYLOR_TERMS)
         series[0] = subsystems.rows.constants[row]

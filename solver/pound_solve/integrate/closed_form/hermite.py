@@ -8,7 +8,7 @@ from pound_solve.numerics.types import Array
 
 
 def hermite(h: float, x: float | Array, f: Array, slope: Array) -> tuple[Array, Array]:
-    """Return value and slope at `x` within (0, h) of the cubic through values and slopes at both ends."""
+    """Return value and slope at `x` in (0, h) of the cubic through values and slopes at both ends."""
     y = x / h
     d = f[1] - f[0]
     a, b = h * slope[0] - d, d - h * slope[1]
@@ -23,7 +23,7 @@ class SampledMotion:
     Parameters
     ----------
     h : float
-        Distance of the samples [T].
+        Interval between samples [T].
     u, v, a : ndarray, shape (n, n_samples)
     """
 
@@ -46,7 +46,7 @@ class SampledMotion:
 
 
 class SampledRows:
-    """Rows at equally spaced samples, one segment for `events.functions`, and the cubics between them.
+    """Rows at equally spaced samples and the cubics between them; one segment for `events.functions`.
 
     Parameters
     ----------
@@ -67,14 +67,14 @@ class SampledRows:
         return float(value), float(rate), float(second)
 
     def all_at(self, h: float, tau: float) -> tuple[Array, Array, Array]:
-        """Return value, rate and second rate of all rows at a local time, samples being `h` apart."""
+        """Return value, rate and second rate of all rows at a local time; the samples are `h` apart."""
         i = min(int(tau / h), self.t.shape[1] - 2)
         d, v, w = (y[:, 0, i : i + 2].T for y in (self.value, self.rate, self.second))
         value = hermite(h, tau - i * h, d, v)[0]
         return value, *hermite(h, tau - i * h, v, w)
 
     def until(self, tau: float, ends: tuple[Array, Array, Array]) -> SampledRows:
-        """Return the samples before `tau`, and the rows `ends` there."""
+        """Return the samples before `tau`, followed by the rows `ends` at `tau`."""
         cut = self.t[0] < tau
         known = (
             np.append(x[:, 0, cut], y[:, None], axis=1)
@@ -84,7 +84,7 @@ class SampledRows:
 
 
 def simpson(h: float, begin: float, end: float) -> tuple[Array, Array]:
-    """Return times and weights of Simpson's rule over the cells of a grid of step `h` from `begin` to
+    """Return the times and weights of Simpson's rule over the cells of a grid with step `h` from `begin` to
     `end`.
     """
     inner = h * np.arange(int(np.floor(begin / h)) + 1, int(np.ceil(end / h)))

@@ -1,12 +1,12 @@
-r"""LAPLACE: between events the response by a numerical Laplace transform.
+r"""LAPLACE: the response between events by a numerical Laplace transform.
 
-A structure that is linear between events, soil and foundation included, is transformed from its present
-state on (:mod:`.laplace_transform`).  The earliest event ends the window: the law changes its branch, and
-the next window starts from the state there.  Chouw (2002) treats buildings, their contact and the soil in
-this way.
+A structure that is linear between events, including soil and foundation, is transformed starting from its
+present state (:mod:`.laplace_transform`).  The earliest event ends the window: the law changes its branch,
+and the next window starts from the state at the event.  Chouw (2002) treats buildings, their contact and
+the soil in this way.
 
-Apart from the transforms of the polynomial pieces of the excitation, which are exact, this has nothing in
-common with EXACT: it checks EXACT and is no alternative to it.
+Apart from the transforms of the polynomial pieces of the excitation, which are exact, the method has
+nothing in common with EXACT.  It is a check of EXACT, not an alternative to it.
 
 References
 ----------
@@ -49,9 +49,9 @@ from pound_solve.integrate.rigid.contacts import linear_forces
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 
-TRANSFORM_TOLERANCE = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
-SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: fraction of the time within which two events are at one instant
-MAX_NUMBERS = 6e7  #: complex ones of all dynamic stiffnesses that are kept: 1 GB
+TRANSFORM_TOLERANCE = 1e-10  #: like that of `integrate.protocol`; the transforms have ten digits
+SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: fraction of the time within which two events count as simultaneous
+MAX_NUMBERS = 6e7  #: largest number of complex values in all stored dynamic stiffnesses: 1 GB
 
 
 class Laplace(EventDrivenRun):
@@ -75,12 +75,12 @@ class Laplace(EventDrivenRun):
         return self.outcome()
 
     def _constant(self) -> Array:
-        """Constant loads: those of the system, and constants of the laws."""
+        """Return the constant loads: those of the system, and the constants of the laws."""
         f0 = np.array([x.force0 for x in self.branches])
         return np.asarray(self.system.constant - self.system.law_rows.T @ f0)
 
     def _stiffness(self) -> DynamicStiffness:
-        """Dynamic stiffness of the present branches, kept."""
+        """Return the dynamic stiffness of the present branches, from a cache."""
         key = tuple(x for b in self.branches for x in (b.stiffness, b.damping))
         if key not in self._stiffnesses:
             system, b = self.system, self.system.law_rows
@@ -104,7 +104,7 @@ class Laplace(EventDrivenRun):
         return self._stiffnesses[key]
 
     def _accelerations(self, u: Array, v: Array, s: Array) -> Array:
-        """Accelerations from the equations of motion, at instants that are columns."""
+        """Return accelerations from the equations of motion, one column per instant."""
         x, h = self._stiffness(), self.with_mass
         accelerations = np.zeros_like(u)
         force = (self.system.inputs @ s - x.damping @ v - x.stiffness @ u) + self._constant()[:, None]
@@ -112,7 +112,9 @@ class Laplace(EventDrivenRun):
         return accelerations
 
     def _transformed(self, end: float) -> tuple[SampledMotion, SampledRows]:
-        """Motion and rows at the samples up to the middle of the window, or to the first beyond `end`."""
+        """Return motion and rows at the samples up to the middle of the window, or to the first beyond
+        `end`.
+        """
         u, v = self.transform.response(self._stiffness(), self._constant(), self.t, self.u, self.v)
         self.transforms += 1
         count = min(u.shape[1], int(np.ceil((end - self.t) / self.dt * (1 - 1e-12))) + 1)
@@ -156,7 +158,7 @@ class Laplace(EventDrivenRun):
         self.stop_growth(self.v, hint)
 
     def _stop_crowd(self) -> None:
-        """Stop where events are so close that the samples do not show what lies between."""
+        """Stop if events are so close that the samples do not resolve the motion between them."""
         if self.t - self._since > self.dt:
             self._since, self._changes = self.t, 0
         self._changes += 1
@@ -165,7 +167,7 @@ class Laplace(EventDrivenRun):
             raise self.stop("A503", f"{why}: try a shorter DT, or METHOD=EXACT")
 
     def _samples(self, motion: SampledMotion, tau: float) -> None:
-        """Add the work up to the local time `tau` and sample the output times on the way."""
+        """Add the work up to the local time `tau`, and sample the output times before it."""
         chosen = self.times[(self.times > self.t) & (self.times <= self.t + tau * (1 + 1e-13))]
         works, at = [self.energy.array()], 0.0
         for goal in chosen.tolist():
@@ -179,7 +181,7 @@ class Laplace(EventDrivenRun):
         self.energy.advance(np.array(works))
 
     def _show(self, motion: SampledMotion, tau: float) -> None:
-        """Show the recorder the motion up to the local time `tau`."""
+        """Pass the motion up to the local time `tau` to the recorder."""
         begin = np.asarray(motion.h * np.arange(int(np.ceil(tau / motion.h * (1 - 1e-12)))), float)
         if not len(begin):
             return
@@ -196,16 +198,16 @@ class Laplace(EventDrivenRun):
         self.recorder.between(Course(at(begin), lengths, within))
 
     def _with_forces(self, t: Array, u: Array, v: Array, a: Array) -> Motion:
-        """The motion at some times with the forces of the laws in `Recorder.acting`."""
-        system, enveloped_laws = self.system, self.recorder.enveloped_laws
+        """Return the motion at some times with the forces of the laws in `Recorder.acting`."""
+        system, acting = self.system, self.recorder.acting
         s, ds = (system.excitation.values(t, order).T for order in (0, 1))
         d = system.law_rows[enveloped_laws] @ u + system.law_inputs[enveloped_laws] @ s
         rate = system.law_rows[enveloped_laws] @ v + system.law_inputs[enveloped_laws] @ ds
         return Motion(t, u, v, a, linear_forces([self.branches[i] for i in enveloped_laws])(d, rate))
 
     def _work(self, begin: float, end: float, motion: SampledMotion) -> Array:
-        """Work put in and lost in dashpots between two local times, shape (3,), by Simpson's rule
-        over the samples' cubics; count losses and impulses of the laws.
+        """Return the energy input and the energy lost in dashpots between two local times, shape (3,), by
+        Simpson's rule on the cubics between samples; also add the losses and impulses of the laws.
         """
         if end <= begin:
             return np.zeros(3)
@@ -230,7 +232,7 @@ class Laplace(EventDrivenRun):
         return np.array([float(power @ weight), damping, lost])
 
     def _count_peaks(self, rows: SampledRows) -> None:
-        """Count samples into magnitudes and peaks."""
+        """Include samples in magnitudes and peaks."""
         n = len(self.laws)
         self.count_magnitudes(rows.value[:n, 0], rows.rate[:n, 0])
         monitored, peaks = monitored_functions(self.tracker, self.branches, {})
@@ -256,7 +258,7 @@ class Laplace(EventDrivenRun):
 
 
 def refuse_large(unknowns: int, points: int, t: float) -> None:
-    """Raise `Stop` at time `t` where one dynamic stiffness does not fit into memory."""
+    """Raise `Stop` at time `t` if one dynamic stiffness does not fit into memory."""
     frequencies = points // 2 + 1
     if unknowns**2 * frequencies > MAX_NUMBERS:
         size = 16e-9 * unknowns**2 * frequencies
@@ -267,14 +269,13 @@ def refuse_large(unknowns: int, points: int, t: float) -> None:
 
 
 def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
-    """Integrate a reduced system by numerical Laplace transforms; see the module's head.
+    """Integrate a reduced system by numerical Laplace transforms; see the module docstring.
 
     Raises
     ------
     Stop
-        A reduced system that is not piecewise linear, that is too large or whose supports move apart from
-        each other, a DT that does not resolve it or its events, a mechanism, numbers beyond all bounds, or
-        an interrupt.
+        The reduced system is not piecewise linear, is too large or has supports that move differently; DT
+        does not resolve the system or its events; or there was a mechanism, an overflow, or an interrupt.
     """
     refuse_rigid(problem, "LAPLACE")
     system = problem.system

@@ -2,20 +2,22 @@ r"""Response of a linear system by a numerical Laplace transform.
 
 .. math:: D(s)\,\hat u(s) = \hat p(s) + M(s u_0 + v_0) + C u_0, \qquad D(s) = s^2 M + s C + K
 
-is inverted along :math:`s = \alpha + i\omega` by a fast Fourier transform over a window of N samples DT
-apart.
+is inverted along :math:`s = \alpha + i\omega` by a fast Fourier transform over a window of N samples at
+intervals DT.
 
-The start is a step in :math:`u` to the transform, whose inverse would converge slowly.  A part with a
-closed transform that starts as the response does, up to the derivative of order `MAX_DERIVATIVE`,
+For the transform, the start is a step in :math:`u`, whose inverse would converge slowly.  Therefore a
+function with a closed-form transform and the same initial derivatives as the response, up to order
+`MAX_DERIVATIVE`,
 
 .. math:: q(t) = e^{-\beta t}\sum_k c_k t^k, \qquad \hat q(s) = \sum_k \frac{k!\,c_k}{(s+\beta)^{k+1}}
 
-is subtracted before the inversion.  What remains has kinks where the excitation has them, so that the error
-is of order DT^3 in displacements and DT^2 in velocities (straight-line records).
-:math:`\alpha` is such that the window's repetition and the rounding, which both grow with
-:math:`e^{\alpha t}`, are :math:`10^{-10}` in the first half of the window; only that is used.  Where the
-motion itself grows, on a softening branch, the line lies as far to the right of the fastest growth as it
-otherwise does of zero: all poles must be on its left, and both errors are the same fraction of the motion.
+is subtracted before the inversion.  The remainder has kinks where the excitation has kinks, so that the
+error is of order DT^3 in displacements and DT^2 in velocities (records with linear interpolation).
+:math:`\alpha` is chosen such that wrap-around and rounding errors, which both grow with
+:math:`e^{\alpha t}`, are :math:`10^{-10}` in the first half of
+the window, and only that half is used.  If the motion itself grows, on a softening branch, the line is
+shifted to the right by the fastest growth rate.  All poles are then on its left, and both errors are the
+same fraction of the motion.
 
 References
 ----------
@@ -36,8 +38,8 @@ from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_DERIVATIVE = 5  #: highest derivative at the start that is subtracted
-DAMPING_OF_WINDOW = 24.0  #: alpha times the window: 1e-10 in its first half
-BATCH = 64  #: pieces of the excitation that are transformed at once
+DAMPING_OF_WINDOW = 24.0  #: alpha times the window; the errors are 1e-10 in its first half
+BATCH = 64  #: number of pieces of the excitation that are transformed at once
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class DynamicStiffness:
     spectral_radius : float
         Largest \\|eigenvalue\\| [1/T].
     s : ndarray of complex, shape (n_frequencies,)
-        Where it is transformed, to the right of all eigenvalues.
+        Points of the transform, to the right of all eigenvalues.
     inverse : ndarray of complex, shape (n_frequencies, n, n)
     """
 
@@ -72,12 +74,12 @@ class LaplaceTransform:
     dt : float
         Distance of the samples [T].
     points : int
-        Samples in the window, an even number.
+        Number of samples in the window, even.
 
     Attributes
     ----------
     s : ndarray of complex, shape (n_frequencies,)
-        Where a motion that does not grow is transformed.
+        Points of the transform of a motion that does not grow.
     """
 
     def __init__(self, system: ReducedSystem, dt: float, points: int) -> None:
@@ -86,7 +88,7 @@ class LaplaceTransform:
         self.s: Complex = np.asarray(s, complex)
 
     def dynamic_stiffness(self, c: Array, k: Array) -> DynamicStiffness:
-        """Return what the response with damping `c` and stiffness `k` needs.
+        """Return the data that the response with damping `c` and stiffness `k` needs.
 
         Raises
         ------
@@ -112,7 +114,7 @@ class LaplaceTransform:
         coefs = excitation.coefs[first:stop]
         if stop > first:
             coefs = np.concatenate([excitation.local(first, begin)[None], coefs[1:]])
-        # pieces of one length in a row differ by a delay and by their coefficients
+        # consecutive pieces of equal length differ by a delay and by their coefficients
         width = right - left
         close = 1e-11 * width[1:] + 4.0 * np.spacing(right[1:])
         edges = np.flatnonzero(np.abs(np.diff(width)) > close) + 1
@@ -130,7 +132,7 @@ class LaplaceTransform:
                 )
                 later = np.exp(-s * (left[run[i]] - begin))[:, None]
                 transform += later * np.einsum("js,sjn->sn", kernels, sums)
-        # beyond its end the excitation keeps its last value: a jump there would affect the time before it
+        # beyond its end the excitation keeps its last value: a jump there would affect earlier times
         last = float(excitation.breaks[-1])
         if last < end:
             transform += (np.exp(-s * (last - begin)) / s)[:, None] * excitation.value(last)
@@ -139,7 +141,7 @@ class LaplaceTransform:
     def _start_derivatives(
         self, x: DynamicStiffness, constant: Array, t: float, u: Array, v: Array
     ) -> list[Array]:
-        """Derivatives of the displacement at the start, up to the order `MAX_DERIVATIVE`."""
+        """Return the derivatives of the displacement at the start, up to order `MAX_DERIVATIVE`."""
         system, excitation = self.system, self.system.excitation
         coefs = excitation.local(excitation.piece(t + 1e-13 * max(1.0, t)), t)
         z = x.space.z_u @ u + x.space.z_v @ v
@@ -155,7 +157,8 @@ class LaplaceTransform:
     def response(
         self, x: DynamicStiffness, constant: Array, t: float, u: Array, v: Array
     ) -> tuple[Array, Array]:
-        """Return displacements and velocities at the samples of the half window, shape (n, n_samples).
+        """Return displacements and velocities at the samples of the first half window, shape (n,
+        n_samples).
 
         Parameters
         ----------
@@ -165,11 +168,11 @@ class LaplaceTransform:
         t : float
             Time of the start [T].
         u, v : ndarray, shape (n,)
-            Displacement and velocity there.
+            Displacement and velocity at the start.
         """
         system, s, half = self.system, x.s, self.points // 2
         derivatives = self._start_derivatives(x, constant, t, u, v)
-        beta = max(x.spectral_radius, self.s[0].real)  # free bodies have no rate: that of the window
+        beta = max(x.spectral_radius, self.s[0].real)  # for free bodies, the rate of the window
         q = np.array(
             [
                 sum(
@@ -192,5 +195,5 @@ class LaplaceTransform:
         out_u = np.fft.irfft(rest.T, self.points)[:, : half + 1] * growth + (q.T @ powers) * decay
         out_v = np.fft.irfft(s * rest.T, self.points)[:, : half + 1] * growth
         out_v += (q[1:].T @ slopes - beta * q.T @ powers) * decay
-        out_u[:, 0], out_v[:, 0] = derivatives[:2]  # known: the laws' branches depend on them
+        out_u[:, 0], out_v[:, 0] = derivatives[:2]  # known: the branches of the laws depend on them
         return out_u, out_v

@@ -1,4 +1,4 @@
-"""Samples of EXACT on their way to the recorder: output samples, whose works are integrated later, and the
+"""Samples that EXACT passes to the recorder: output samples, whose works are integrated later, and the
 motion between them, for envelopes.
 """
 
@@ -18,15 +18,15 @@ from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-MAX_WAITING = 2**19  #: displacements between the samples that wait for the recorder
-FINE_STEPS = 2  #: fine steps from one instant of the envelopes to the next
+MAX_WAITING = 2**19  #: largest number of stored displacements between samples before they are passed on
+FINE_STEPS = 2  #: number of fine steps between instants of the envelopes
 
 
 def forces_of(
     system: ReducedSystem, rigid: RigidContacts, chosen: Index, branches: Sequence[Branch], t: Array,
     motion: Kinematics,
 ) -> Array:  # fmt: skip
-    """Forces of the `chosen` laws on their present branches, all dashpots included, (n_chosen, n_times)."""
+    """Return the forces of the `chosen` laws on their branches, including dashpots, (n_chosen, n_times)."""
     u, v, _ = motion
     s = np.stack([system.excitation.values_after(t, order).T for order in range(3)])
     d = system.law_rows[chosen] @ u + system.law_inputs[chosen] @ s[0]
@@ -41,7 +41,7 @@ def forces_of(
 
 
 class DeferredSamples:
-    """Output samples that wait until their works are known."""
+    """Output samples, buffered until their works are known."""
 
     def __init__(self, system: ReducedSystem, rigid: RigidContacts, recorder: Recorder) -> None:
         self.system, self.rigid, self.recorder = system, rigid, recorder
@@ -55,7 +55,7 @@ class DeferredSamples:
         states: Sequence[State],
         branches: Sequence[Branch],
     ) -> None:
-        """Keep samples at times (n_times,), with the entries of `DeferredWork` at which they stand."""
+        """Buffer samples at times (n_times,), with the corresponding entries of `DeferredWork`."""
         u, v, a = motion
         laws = law_values(self.system, t, u, v, states)
         constrained = np.array([branches[i].constrains for i in self.rigid.laws], bool)
@@ -75,12 +75,12 @@ class DeferredSamples:
             self.recorder.sample(np.concatenate(times), u, v, a, by_law, works[at].T)
 
     def clear(self) -> None:
-        """Forget the samples that were released."""
+        """Discard the samples that were released."""
         self._waiting.clear()
 
 
 class KeptWindow(NamedTuple):
-    """A window whose motion is kept: where its instants begin, their local times, and its start and end."""
+    """A buffered window: index of its first instant, local times of its instants, and its start and end."""
 
     dense: DenseOutput
     tau: Array
@@ -97,7 +97,7 @@ class EnvelopeSamples:
         self._motions: list[Motion] = []
 
     def add(self, dense: DenseOutput, t0: float, h: float, end: float) -> None:
-        """Keep the motion of a window from time `t0` on, up to the local time `end`."""
+        """Buffer the motion of a window from time `t0` on, up to the local time `end`."""
         if not self.is_needed:
             return
         tau, motion = dense.enveloped_grid(FINE_STEPS * h, end)
@@ -107,13 +107,13 @@ class EnvelopeSamples:
             self.release()
 
     def _motion(self, dense: DenseOutput, t: Array, motion: Kinematics) -> Motion:
-        """The motion of a window at some times, with the forces of the laws."""
+        """Return the motion of a window at some times, with the forces of the laws."""
         system, rigid = dense.subsystems.system, dense.subsystems.rigid
         laws = self.recorder.enveloped_laws
         return Motion(t, *motion, forces_of(system, rigid, laws, dense.branches, t, motion))
 
     def release(self) -> None:
-        """Pass all that waits to the recorder."""
+        """Pass the buffered motion to the recorder."""
         if not self._windows:
             return
         windows, motions = self._windows, self._motions
@@ -134,5 +134,5 @@ class EnvelopeSamples:
 
 
 def joined(motions: Sequence[Motion]) -> Motion:
-    """Concatenate several motions: one motion at the instants of all."""
+    """Concatenate several motions into one motion at all their instants."""
     return Motion(*(np.concatenate(x, axis=-1) for x in zip(*motions)))

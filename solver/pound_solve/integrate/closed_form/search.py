@@ -1,14 +1,13 @@
-r"""Search of EXACT for events and peaks: in coarse cells adapted to the motion, and in fine steps if
+r"""The search of EXACT for events and peaks: in coarse cells adapted to the motion, and in fine steps if
 needed.
 
-The event functions of all laws are sampled with their slopes in cells whose length follows from a bound of
+The event functions of all laws and their slopes are sampled in cells whose length follows from a bound on
 their curvature,
 
 .. math:: |\ddot y(t)| \le \sum_i |r_i|\,|\ddot q_i(0)|
 
-for a functional :math:`y = \mathrm{Re} \sum r_i q_i`, modes that do not grow and excitation along a
-straight line, so that most cells cannot hold an event.  The others are sampled on a grid that resolves the
-fastest mode.
+for a functional :math:`y = \mathrm{Re} \sum r_i q_i`, modes that do not grow, and linear excitation.  Most
+cells therefore cannot contain an event.  The others are sampled on a grid that resolves the fastest mode.
 """
 
 from __future__ import annotations
@@ -25,10 +24,10 @@ from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.types import Array, Flags
 
-MAX_FINE_STEPS = 64  #: of the fine grid in one cell
+MAX_FINE_STEPS = 64  #: largest number of steps of the fine grid in one cell
 #: fraction of an event function's scale that its curvature may contribute within a cell
 CURVATURE_SHARE = 0.05
-CERTAIN = 1e3  #: times the tolerance of event functions: a value above is sure to count as an event
+CERTAIN = 1e3  #: multiple of the tolerance of event functions above which a value is certainly an event
 
 
 class Search:
@@ -53,7 +52,7 @@ class Search:
         ----------
         dense : DenseOutput
         bounds : ndarray, shape (2, n_rows, n_intervals)
-            Of the rows' second derivatives and those of their rates.
+            Bounds of the second derivatives of the rows and of their rates.
         h : float
             Step of the fine grid [T].
         largest : ndarray, shape (2, n_rows)
@@ -62,16 +61,20 @@ class Search:
         return GridSamples.of_window(dense, self._cell_length(bounds, h, largest), self.second_rates)
 
     def fine(self, coarse: GridSamples, bounds: Array, h: float, largest: Array) -> GridSamples:
-        """Sample the cells that may hold an event or a peak at steps of `h`; parameters as of `coarse`."""
+        """Sample the cells that may contain an event or a peak at steps of `h`; parameters as for
+        `coarse`.
+        """
         if coarse.h <= h:
             return coarse
         return coarse.refined(self._cells(coarse, bounds, largest), h, self.second_rates)
 
     def _cell_length(self, bounds: Array, h: float, largest: Array) -> float:
-        """Length of the coarse cells: a multiple of `h`, over which little curvature is possible."""
+        """Return the length of the coarse cells: a multiple of `h` over which the curvature has little
+        effect.
+        """
         if self.events.keys:
             curvature, scale = self.events.curvature_bounds(bounds), self.events.scale(largest)
-        else:  # by their range so far
+        else:  # relative to their range so far
             curvature = self.monitored.curvature_bounds(bounds)
             scale = np.array([max(x.high - x.low, 0.0) for x in self.peaks])
         most = curvature.max(axis=1, initial=0.0)
@@ -81,12 +84,12 @@ class Search:
         if not chosen.any():
             return h * MAX_FINE_STEPS
         cell = float(np.sqrt(8.0 * CURVATURE_SHARE * (scale[chosen] / most[chosen]).min()))
-        # powers of four: few lengths, so that tables recur
+        # powers of four: few lengths, so that tables can be reused
         steps = 4.0 ** np.floor(np.log2(max(cell / h, 1.0)) / 2.0)
         return h * float(min(steps, MAX_FINE_STEPS))
 
     def _cells(self, coarse: GridSamples, bounds: Array, largest: Array) -> Flags:
-        """Which cells may hold an event or a peak, shape (n_segments, count)."""
+        """Return which cells may contain an event or a peak, shape (n_segments, count)."""
         cells = np.zeros((len(coarse.span), coarse.t.shape[1] - 1), bool)
         last = cells.size
         if self.events.keys:
@@ -103,12 +106,12 @@ class Search:
             value, slope = self.monitored.sampled(coarse)
             curvature = self.monitored.curvature_bounds(bounds)
             cells |= grid.may_peak(value, slope, curvature, coarse.widths, self.peaks).any(axis=0)
-        cells.ravel()[last + 1 :] = False  # the run goes no further
+        cells.ravel()[last + 1 :] = False  # the run does not reach these cells
         return cells
 
     def count_peaks(self, coarse: GridSamples, fine: GridSamples, t0: float, end: float) -> None:
-        """Count the monitored functions into their peaks up to the local time `end` of a window from `t0`
-        on, where the fine samples are cut.
+        """Include the monitored functions in their peaks up to the local time `end` of a window from `t0`
+        on, where the fine samples end.
         """
         if not self.peaks:
             return

@@ -1,8 +1,8 @@
 """Subsystems: parts of the reduced system that move independently of each other between events.
 
-Parts that no closed contact joins are solved separately, each with its own modes for each combination of
-stiffnesses.  Small ones are joined, because a hundred more numbers in a matrix product cost less than one
-more product.
+Parts that no closed contact connects are solved separately, with separate modes for each combination of
+stiffnesses.  Small parts are evaluated together, because a hundred more numbers in a matrix product cost
+less than an additional product.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ Key = tuple[
     Any, ...
 ]  #: label and size of a subsystem; number, stiffness, damping, `constrains` of each law
 
-MAX_JOINED_MODES = 128  #: modes that joined subsystems may have
+MAX_JOINED_MODES = 128  #: largest number of modes of joined subsystems
 
 
 @dataclass
 class Subsystem:
-    """A part of the system on its present branches: its state and its motion over the present window.
+    """A part of the system on the present branches: its state and its motion over the present window.
 
     Attributes
     ----------
     keys : tuple of Key
-        Of the decompositions that it joins.
+        Keys of the joined decompositions.
     decomposition : Decomposition
     constant : ndarray, shape (n,)
         Constant loads: those of the system, and constants of the laws.
@@ -46,9 +46,10 @@ class Subsystem:
         State at the present time.
     states : ndarray, shape (n_q, n_intervals + 1)
     forcing : ndarray, shape (n_intervals, degree + 1, n_q)
-        States at the starts of the window's intervals and at its end, and forcing within them.
+        States at the starts of the window's intervals and at the end of the window, and forcing within the
+        intervals.
     loads : ndarray, shape (n_intervals, degree + 1, n) or None
-        Load polynomials, where massless DOFs or moved supports need them.
+        Load polynomials, if massless DOFs or moving supports need them.
     """
 
     keys: tuple[Key, ...]
@@ -67,8 +68,8 @@ class Subsystems:
     ----------
     system : ReducedSystem
     rows : RowSet
-        Functionals that the run monitors; the first are the laws' deformations.
-        The reactions of the rigid contacts are added after them.
+        Functionals that the run monitors, starting with the deformations of the laws.  The reactions of the
+        rigid contacts are appended.
     enveloped : ndarray of bool, shape (n,)
         Unknowns whose motion the envelopes need.
 
@@ -76,7 +77,7 @@ class Subsystems:
     ----------
     present : list of Subsystem
     decompositions : dict
-        All that were made so far, by their keys.
+        All decompositions so far, by key.
     reaction_row : dict of int to int
         Row of the reaction of every rigid contact, by law.
     rows_have_inputs : bool
@@ -110,7 +111,7 @@ class Subsystems:
         return max((b.decomposition.propagator.spectral_radius for b in self.present), default=0.0)
 
     def _labels_with_contacts_open(self) -> Index:
-        """Component of each unknown with all contacts open, shape (n,)."""
+        """Return the component of each unknown with all contacts open, shape (n,)."""
         system = self.system
         laws = zip(system.structure.laws, system.law_rows)
         return components(
@@ -120,7 +121,7 @@ class Subsystems:
         )
 
     def _labels(self, branches: Sequence[Branch]) -> Index:
-        """`_labels_with_contacts_open` with the parts joined that closed contacts connect."""
+        """Return `_labels_with_contacts_open` after joining the parts that closed contacts connect."""
         labels = self._open_labels.copy()
         for s, b, row in zip(self.system.structure.laws, branches, self.system.law_rows):
             if s.role.collides and (b.stiffness or b.damping or b.constrains):
@@ -132,15 +133,15 @@ class Subsystems:
     def update(
         self, branches: Sequence[Branch], u: Array, v: Array, charge: Callable[[float], None]
     ) -> None:
-        """Form the subsystems of the present branches at displacement `u`, velocity `v`.
+        """Form the subsystems of the present branches at displacement `u` and velocity `v`.
 
-        States of subsystems that do not change are carried over.  `charge` is called with the cost of each
-        new decomposition before it is made.
+        Subsystems that do not change keep their states.  `charge` is called with the cost of each new
+        decomposition before it is computed.
 
         Raises
         ------
         Mechanism
-            Massless DOFs with neither stiffness nor dashpot; its shape is over all unknowns.
+            There are massless DOFs with neither stiffness nor dashpot; the shape covers all unknowns.
         """
         states = {
             key: subsystem.q[part.q]
@@ -163,7 +164,9 @@ class Subsystems:
     def _decomposed(
         self, branches: Sequence[Branch], charge: Callable[[float], None]
     ) -> list[tuple[Key, Array]]:
-        """Keys of the present decompositions, made where they are new, and constant loads of each."""
+        """Return the keys of the present decompositions, which are computed if new, and the constant loads
+        of each.
+        """
         system, labels = self.system, self._labels(branches)
         acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.constrains]
         decomposed = []
@@ -185,7 +188,7 @@ class Subsystems:
     def _groups(self, entries: list[tuple[Key, Array]]) -> list[list[tuple[Key, Array]]]:
         """Group the decompositions to be joined."""
         groups: list[list[tuple[Key, Array]]] = []
-        room = 0  # modes that the first group may still take
+        room = 0  # number of modes that the first group may still take
         for entry in entries:
             propagator = self.decompositions[entry[0]].propagator
             if not isinstance(propagator, ModalPropagator) or propagator.u_p is not None:
@@ -199,7 +202,7 @@ class Subsystems:
         return groups
 
     def _joint_decomposition(self, keys: tuple[Key, ...]) -> Decomposition:
-        """The decompositions of some keys as one."""
+        """Return the joined decomposition of some keys."""
         if len(keys) == 1:
             return self.decompositions[keys[0]]
         if keys not in self._joined:

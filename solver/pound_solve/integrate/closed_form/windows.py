@@ -1,5 +1,5 @@
-"""Windows of EXACT: how many intervals of the excitation one dense output covers, and the step of the grid
-that resolves its fastest mode.
+"""Windows of EXACT: the number of intervals of the excitation in one dense output, and the grid step that
+resolves the fastest mode.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 
-MAX_POINTS = 4096  #: points of the fine grid in one window
-MAX_INTERVALS = 128  #: intervals of one window
-INTERVALS_AFTER_EVENT = 8  #: of the first window after an event
+MAX_POINTS = 4096  #: largest number of points of the fine grid in one window
+MAX_INTERVALS = 128  #: largest number of intervals of one window
+INTERVALS_AFTER_EVENT = 8  #: number of intervals of the first window after an event
 FINE_STEP = 1.0  #: fine step times the fastest eigenvalue
 
 
@@ -26,7 +26,7 @@ class Window(NamedTuple):
     h : float
         Step of the fine grid [T], a power of two.
     whole : bool
-        Whether the intervals end at goals: an interval of too many steps is integrated in pieces.
+        Whether the intervals end at goals; an interval with too many steps is integrated in pieces.
     """
 
     lengths: Array
@@ -41,7 +41,7 @@ class Windows:
     Parameters
     ----------
     refinement : int
-        Halvings of the fine grid.
+        Number of halvings of the fine grid.
     """
 
     def __init__(self, refinement: int) -> None:
@@ -50,22 +50,22 @@ class Windows:
         self.restart()
 
     def restart(self) -> None:
-        """Begin again with windows of few intervals, after an event."""
+        """Start again with windows of few intervals, after an event."""
         self._intervals = INTERVALS_AFTER_EVENT
 
     def narrow(self) -> None:
-        """Let the next window end at the next goal."""
+        """Make the next window end at the next goal."""
         self._intervals = 0
 
     def widen(self) -> None:
-        """Double the number of intervals of the next window, up to a limit, as there was no event."""
+        """Double the number of intervals of the next window, up to a limit, because there was no event."""
         self._intervals = min(max(2 * self._intervals, 1), MAX_INTERVALS)
 
     def next(self, t: float, goals: Array, spectral_radius: float) -> Window:
         """Return the window from time `t` towards the next `goals`."""
         ends = goals[: self._intervals + 1]
         lengths = np.diff(np.append(t, ends))
-        # intervals of equal length share their exponentials, whatever the rounding of the times
+        # intervals of equal length share their exponentials, regardless of rounding errors of the times
         close = 1e-11 * lengths + 4.0 * np.spacing(ends)
         if abs(lengths[-1] - self._usual) > close[-1]:
             self._usual = float(f"{lengths[-1]:.12e}")
@@ -83,7 +83,9 @@ class Windows:
         return Window(lengths[:count], np.append(t, ends[: count - 1]), h, True)
 
     def _step(self, length: float, spectral_radius: float) -> float:
-        """Step of the fine grid in intervals of a length: a power of two, so that tables recur."""
+        """Return the step of the fine grid in intervals of a length: a power of two, so that tables can be
+        reused.
+        """
         h = 2.0 ** np.ceil(np.log2(length / 8))
         if spectral_radius <= 0.0:
             return float(h)

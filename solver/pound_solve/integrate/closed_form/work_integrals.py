@@ -1,17 +1,15 @@
 r"""Work done on and by a subsystem over intervals of time, in closed form.
 
-Split each mode into a free and a forced part, :math:`q_i = c_i e^{\lambda_i t} + p_i(t)` with a polynomial
-:math:`p_i`.  Then with :math:`S = V^T C V` (V the modes' velocities)
+Each mode is split into a free and a forced part, :math:`q_i = c_i e^{\lambda_i t} + p_i(t)` with a
+polynomial :math:`p_i`.  With :math:`S = V^T C V` (V are the velocities of the modes)
 
 .. math:: \int_0^\tau v^T C v\,dt
 
 has free-free terms :math:`c_i c_j S_{ij}(e^{(\lambda_i+\lambda_j)\tau}-1)/(\lambda_i+\lambda_j)`,
-free-forced terms through the moments :math:`\int t^k e^{\lambda t}`, and forced-forced terms that are
-plain polynomials.  No balance of energy is used, so the sum of all energies remains a check.
-
-Modes that hardly change over the interval are polynomials as a whole.
-For forces above the first degree, and where the modes are nearly or fully defective,
-Gauss quadrature on a grid that resolves the fastest mode takes its place.
+free-forced terms from the moments :math:`\int t^k e^{\lambda t}`, and polynomial forced-forced terms.  No
+energy balance is used, so the sum of all energies remains a check.  Modes that hardly change over the
+interval are treated entirely as polynomials.  For forces above the first degree, and for nearly or fully
+defective modes, Gauss quadrature on a grid that resolves the fastest mode is used instead.
 """
 
 from __future__ import annotations
@@ -29,11 +27,11 @@ from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem
 
-#: modes whose eigenvalue times the interval is below this in magnitude are expanded in powers of time
+#: modes with a magnitude of eigenvalue times interval below this are expanded in powers of time
 SMALL_PHASE = 0.1
-EXPANSION_TERMS = 11  #: of that expansion, beyond the force's own
-MAX_NUMBERS = 2**20  #: velocities that the quadrature holds at once
-MAX_CONDITION = 3e3  #: condition of the modes up to which their products are used
+EXPANSION_TERMS = 11  #: number of terms of that expansion, in addition to those of the force
+MAX_NUMBERS = 2**20  #: largest number of velocities that the quadrature stores at once
+MAX_CONDITION = 3e3  #: largest condition number of the modes for which their products are used
 
 
 class Work(NamedTuple):
@@ -59,11 +57,11 @@ class WorkIntegrals:
     ----------
     propagator : Propagator
     damping : ndarray, shape (n, n)
-        Of the structure, without the laws.
+        Damping of the structure, without the laws.
     inputs : ndarray, shape (n, n_inputs)
     laws : list of (law, c, row)
-        Laws with a dashpot on their present branch: pressed contacts, springs whose damping follows their
-        stiffness.
+        Laws with a dashpot on their present branch: pressed contacts, and springs with
+        stiffness-proportional damping.
     """
 
     def __init__(
@@ -71,7 +69,7 @@ class WorkIntegrals:
     ) -> None:
         self.propagator, self.inputs, self.laws, self.damping = propagator, inputs, laws, damping
         self.damped = bool(np.any(damping))
-        # the quadratic forms lose the square of the modes' condition
+        # the quadratic forms lose digits by the square of the condition number of the modes
         self.closed_form = (
             isinstance(propagator, ModalPropagator)
             and propagator.u_p is None
@@ -84,14 +82,14 @@ class WorkIntegrals:
         self.law_forms = [c * self._form(row[None, :] @ propagator.v_q, np.eye(1)) for _, c, row in laws]
 
     def _form(self, v: Complex, c: Array) -> Array:
-        """Return the quadratic form of the real and imaginary parts of free amplitudes whose change over
-        an interval is their dissipation, shape (2 n_q, 2 n_q): each term is divided by its exponent.
+        """Return the quadratic form of the real and imaginary parts of the free amplitudes, shape (2 n_q, 2
+        n_q), whose change over an interval is the dissipation; each term is divided by its exponent.
         """
         cv = c @ v
         plain, mixed = v.T @ cv, v.conj().T @ cv
         values = self.eigenvalues
         s1, s2 = values[:, None] + values[None, :], values.conj()[:, None] + values[None, :]
-        # an undamped pair has no dissipation to divide: 0/0 is 0
+        # an undamped pair has no dissipation: 0/0 is 0
         floor = 1e-15 * max(float(np.abs(values).max(initial=0.0)), 1e-300)
         r1 = np.where(np.abs(s1) > floor, plain / np.where(np.abs(s1) > floor, s1, 1.0), 0.0)
         r2 = np.where(np.abs(s2) > floor, mixed / np.where(np.abs(s2) > floor, s2, 1.0), 0.0)
@@ -99,15 +97,17 @@ class WorkIntegrals:
         return 0.5 * np.block([[(r1 + r2).real, -(r1 + r2).imag], [(r2 - r1).imag, (r2 - r1).real]])
 
     def _split(self, qs: Complex, gs: Complex, tau: Array) -> tuple[Complex, Complex, Complex, Complex]:
-        """Free amplitudes at 0 and tau (n_q, n), forced polynomials and moments (powers, n_q, n)."""
+        """Return the free amplitudes at 0 and tau (n_q, n), forced polynomials and moments (powers, n_q,
+        n).
+        """
         degree = gs.shape[1] - 1
         g = gs.transpose(1, 2, 0)
-        # split into free and forced, a slow mode would be the small difference of large numbers: it is a
-        # power series instead (which for a rigid-body mode is finite)
+        # the free and forced parts of a slow mode would be large and nearly cancel: it is a power series
+        # instead (which is finite for a rigid-body mode)
         slow = np.abs(self.eigenvalues) * tau.max() < SMALL_PHASE
         more = 0 if not slow.any() else 1 if not self.eigenvalues[slow].any() else EXPANSION_TERMS
         count = degree + 1 + more
-        # many intervals are of the same length
+        # many intervals have the same length
         lengths, place = np.unique(tau, return_inverse=True)
         z: Complex = np.where(slow, 0j, self.eigenvalues)[:, None] * lengths.astype(complex)
         growth = np.exp(z)[:, place]
@@ -124,7 +124,9 @@ class WorkIntegrals:
 
     @staticmethod
     def _slow_series(q: Complex, g: Complex, eigenvalues: Complex, count: int) -> Complex:
-        """Coefficients of ``q' = eigenvalue q + g`` in powers of time, shape (count, n_slow, n)."""
+        """Return the coefficients of ``q' = eigenvalue q + g`` in powers of time, shape (count,
+        n_slow, n).
+        """
         coefs = np.empty((count, *q.shape), complex)
         coefs[0] = q
         for k in range(count - 1):
@@ -145,15 +147,15 @@ class WorkIntegrals:
         Parameters
         ----------
         qs : ndarray, shape (n_q, n)
-            States at their starts.
+            States at the starts of the intervals.
         gs : ndarray, shape (n, degree + 1, n_q)
-            Their forcing.
+            Forcing of the intervals.
         tau : ndarray, shape (n,)
-            Their lengths [T].
+            Lengths of the intervals [T].
         input_coefs : ndarray, shape (n, degree + 1, n_inputs)
             Inputs; their forces and `constant` loads (n_unknowns,) do the input work.
         loads : ndarray, shape (n, degree + 1, n_unknowns), or None
-            Load polynomials on the unknowns, where massless DOFs need them.
+            Load polynomials on the unknowns, if massless DOFs need them.
         """
         if not self.closed_form or gs.shape[1] > 2:
             return self._quadrature(qs, gs, tau, input_coefs, constant, loads)
@@ -178,7 +180,9 @@ class WorkIntegrals:
         return IntervalWork(loss, total, losses)
 
     def _change(self, form: Array, ends: Array) -> Array:
-        """Change of a form of `_form` between the amplitudes at the starts and those at the ends."""
+        """Return the change of a form from `_form` between the amplitudes at the starts and those at the
+        ends.
+        """
         start, end = np.split((ends * (form @ ends)).sum(axis=0), 2)
         return np.asarray(end - start)
 
@@ -191,7 +195,7 @@ class WorkIntegrals:
         constant: Array,
         loads: Array | None,
     ) -> IntervalWork:
-        """Return `over` by Gauss's rule."""
+        """Return the result of `over_intervals` by Gauss quadrature."""
         loss, done, *losses = np.zeros((2 + len(self.laws), len(tau)))
         v_q, u_p, v_p = self.propagator.v_q, self.propagator.u_p, self.propagator.v_p
         for length in np.unique(tau).tolist():
@@ -225,10 +229,10 @@ def total_work(
     motion: Callable[[Array], tuple[Array, Array, Array]],
     branches: Sequence[Branch],
 ) -> Work:
-    """Return the work over an interval in the total form.
+    """Return the work over an interval in total displacements.
 
-    The input is the power of the supports, their reactions times their velocities,
-    and of constant loads and FORCES; dashpots of laws may be attached to supports.
+    The input is the work of the supports (their reactions times their velocities), of constant loads and of
+    FORCES.  Dashpots of laws may be attached to supports.
 
     Parameters
     ----------
@@ -259,7 +263,7 @@ def total_work(
         structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
     )
     constrained = [i for i, b in enumerate(branches) if b.constrains]
-    if constrained:  # the imbalance of the unknowns is the force of the rigid contacts
+    if constrained:  # the residual force of the unknowns is the force of the rigid contacts
         rows = structure.law_rows[constrained]
         rest = system.applied(inputs[0]) - force[:n]
         force += rows.T @ np.linalg.lstsq(rows[:, :n].T, rest, rcond=1e-12)[0]

@@ -1,1 +1,1 @@
-"""Runs that are repeated with shorter steps until their peaks converge."""
+"""Runs that are repeated with shorter steps or smaller tolerances until their peaks converge."""

@@ -12,8 +12,8 @@ from pound_solve.structure.reduction import ReducedSystem
 
 
 class Witness:
-    """Recorder of a run whose results are only compared: keeps extremes at the samples, nothing between
-    them.
+    """Recorder of a run whose results are only compared: it keeps extremes at the samples and nothing
+    between them.
 
     Attributes
     ----------
@@ -54,13 +54,13 @@ class Witness:
         return self.recorder.enveloped_laws[:0]
 
     def report_progress(self, t: float, doing: str = "") -> None:
-        """Pass the progress of a trial on."""
+        """Pass on the progress of a trial."""
         self.recorder.report_progress(t, doing)
 
 
 class Watch(Witness):
-    """Recorder of a run whose results are used: keeps extremes at the samples, and passes everything on at
-    once.
+    """Recorder of a run whose results are used: it keeps extremes at the samples, and passes on everything
+    immediately.
     """
 
     def __init__(self, recorder: EnvelopeRecorder) -> None:
@@ -78,7 +78,7 @@ class Watch(Witness):
         self.recorder.keep(t, u, v, a, laws, works)
 
     def between(self, course: Course) -> None:
-        """Pass the motion between samples on (see `Recorder`)."""
+        """Pass on the motion between samples (see `Recorder`)."""
         self.recorder.between(course)
 
     @property
@@ -93,10 +93,10 @@ class Watch(Witness):
 
 
 class Replay(Witness):
-    """Keeps the samples of a run, to pass them on if it is the final one.
+    """Recorder that stores the samples of a run, and passes them on if the run is the final one.
 
-    Of the motion between the samples only the envelopes are kept; nothing where the run is not `enveloped`,
-    as it will not be the final one.
+    From the motion between the samples it keeps only envelopes, or nothing if the run is not `enveloped`
+    because it will not be the final one.
     """
 
     def __init__(self, recorder: EnvelopeRecorder, enveloped: bool = True) -> None:
@@ -125,7 +125,7 @@ class Replay(Witness):
         return self.recorder.enveloped_laws if self.enveloped else self.recorder.enveloped_laws[:0]
 
     def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
-        """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
+        """Return the peaks of the node accelerations and member forces, and the kind of each."""
         envelopes = self.recorder.envelopes.blank()
         envelopes.widen(self.envelopes)
         for t, u, v, a, laws, _ in self.samples:

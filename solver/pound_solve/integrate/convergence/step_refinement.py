@@ -1,4 +1,4 @@
-"""Runs of NEWMARK with ever shorter steps, until the peaks converge."""
+"""Runs of NEWMARK with successively shorter steps, until the peaks converge."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array
 
 MAX_STEPS = 50_000_000  #: of one run
-MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
-MAX_STALE_RUNS = 6  #: runs in a row that do not halve the error, after which shorter steps are given up
-MAX_STALE_OF_SEVERAL = 2  #: the same where the motion is one of several: each step may find another one
-TARGET_SHARE = 0.6  #: fraction of the tolerance that the next step aims at
-MIN_RUNS = 3  #: runs that a tolerance is met with: two may agree by chance
-STEPS_OF_COLLISION = 10.0  #: steps that the collision of the largest force takes at least
-FIRST_RATIO = 0.5  #: the second step over the first, where collisions are resolved
-#: least ratio of the next step to the last where collisions are not resolved, and largest ratio
+MAX_RETRY_COST = 20.0  #: largest cost of a run after one that stopped
+MAX_STALE_RUNS = 6  #: consecutive runs that do not halve the error, after which no shorter steps are tried
+MAX_STALE_OF_SEVERAL = 2  #: the same if the motion is not unique: each step may find another one
+TARGET_SHARE = 0.6  #: target error of the next step, as a fraction of the tolerance
+MIN_RUNS = 3  #: smallest number of runs for a tolerance to be met: two may agree by chance
+STEPS_OF_COLLISION = 10.0  #: smallest number of steps in the collision with the largest force
+FIRST_RATIO = 0.5  #: ratio of the second step to the first, if collisions are resolved
+#: smallest ratio of the next step to the last if collisions are not resolved, and largest ratio
 MIN_RATIO, MAX_RATIO = 1.0 / 8.0, 0.7
-#: retries after runs that stopped, one after another, before and after one that was completed
+#: largest number of consecutive retries after runs that stopped, before and after a completed run
 MAX_RETRIES, MAX_SHORTER = 10, 3
-#: fraction of the run; where one stops before, another step is that share of its own
+#: fraction of the run; if a run stops before it, the next step is the second number times its step
 EARLY, NEARBY = 0.01, 0.6
 
-#: why no shorter steps are tried
+#: reasons why no shorter steps are tried
 MOST, STALE = "the most that are tried", "nor nearer than with far fewer"
 
 
 class StepRefinement:
-    """Runs of NEWMARK with shorter and shorter steps, until the peaks converge.
+    """Runs of NEWMARK with successively shorter steps, until the peaks converge.
 
     Attributes
     ----------
@@ -54,17 +54,18 @@ class StepRefinement:
     aim : float
         Step that is likely to meet the tolerance [T].
     tolerances, errors : dict
-        Of each kind of peaks that has a tolerance, and the estimate for the last run.
+        Tolerance of each kind of peaks that has one, and the error estimate of the last run.
     error, likely : float
-        The largest estimate for the last run, over its tolerance; that which the next step is chosen by.
+        The largest estimate of the last run, divided by its tolerance; and the value from which the next
+        step is chosen.
     met : bool
         Whether the last run meets the tolerance, and its steps resolve the hardest collision.
     lasts : float
         Duration of the hardest collision [T].
     spent : float
-        Cost of the runs that were completed.
+        Cost of the completed runs.
     steps, peaks : list
-        Of the runs that are compared.
+        Of the compared runs.
     """
 
     def __init__(self, problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> None:
@@ -80,10 +81,10 @@ class StepRefinement:
         self.runs = self.events = self.stale = self.retries = 0
         self.steps, self.peaks = list[int](), list[Array]()
         self.met, self.spent = False, 0.0
-        self.complete: tuple[Outcome, Replay] | None = None  # the last run that was completed
+        self.complete: tuple[Outcome, Replay] | None = None  # the last completed run
 
     def cost_of_run(self, h: float) -> float:
-        """Return the cost of a run with a step, as far as events are known."""
+        """Return the cost of a run with step `h`, given the known number of events."""
         return self.step_cost * (self.length / h + costs.EVENT_STEPS * self.events)
 
     def cost_ahead(self) -> float:
@@ -91,21 +92,21 @@ class StepRefinement:
         return self.cost_of_run(self.aim)
 
     def least_cost(self) -> float:
-        """Return what all runs cost together at least: those that were made, the next one, and those that
-        are left to `MIN_RUNS`.
+        """Return the minimum total cost: of the completed runs, the next one, and those that are missing up
+        to `MIN_RUNS`.
         """
         after = range(max(MIN_RUNS - len(self.steps), 1))
         return self.spent + sum(self.cost_of_run(FIRST_RATIO**k * self.h) for k in after)
 
     def run(self) -> Outcome | None:
-        """Run once; return the outcome if no run follows, else None with the next step chosen.
+        """Run once; return the outcome if no run follows, otherwise choose the next step and return None.
 
         Raises
         ------
         Stop
-            The run stopped, and not because its step was too long.
+            The run stopped for a reason other than a too long step.
         """
-        from pound_solve.integrate.stepping import newmark  # where no steps are taken it is not loaded
+        from pound_solve.integrate.stepping import newmark  # loaded only if steps are taken
 
         replay = Replay(self.problem.recorder)
         options = {"DT": self.h, "BETA": 0.25, "GAMMA": 0.5}
@@ -125,11 +126,11 @@ class StepRefinement:
         return None
 
     def _longest(self) -> bool:
-        """Whether a run with half the step would take more than `MAX_STEPS`."""
+        """Return whether a run with half the step would take more than `MAX_STEPS`."""
         return self.length / self.h * 2.0 > MAX_STEPS
 
     def _end(self, ended: str) -> Outcome:
-        """Hand on the last run that was completed; `ended` is why no shorter steps follow."""
+        """Return the last completed run; `ended` is the reason why no shorter steps follow."""
         assert self.complete is not None
         outcome, replay = self.complete
         replay.pass_on()
@@ -138,11 +139,13 @@ class StepRefinement:
         return outcome
 
     def _compare(self, outcome: Outcome, replay: Replay) -> None:
-        """Compare a run with those before, estimate its error, and judge whether it meets the tolerance."""
+        """Compare a run with the previous ones, estimate its error, and decide whether it meets the
+        tolerance.
+        """
         peaks, scales, kinds = figures(self.system, outcome.peaks, replay, self.tolerances)
         steps, self.events = outcome.figures["steps"], outcome.figures["events"]
         if self.steps and steps <= self.steps[-1]:
-            return  # output times cut the steps of both: runs of as many steps do not differ
+            return  # output times determine the steps of both: runs with equally many steps do not differ
         self.steps.append(steps)
         self.peaks.append(peaks)
         if len(self.steps) == 1:
@@ -153,11 +156,11 @@ class StepRefinement:
             self.errors[kind] = error_left(self.steps, [x[alike] for x in self.peaks], scales[alike])
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
         allowed = scales * np.array([self.tolerances[kind] for kind in kinds.tolist()])
-        # the next step relies on the order of the method, or one that is seen once; the judgement does not
+        # the next step relies on the order of the method, or on one observed once; the decision does not
         self.likely = likely_error(self.steps, self.peaks, allowed)
         shown = len(self.steps) >= MIN_RUNS and self.lasts >= STEPS_OF_COLLISION * self.h
         self.met = self.error <= 1.0 and shown
-        # an order that is seen once is progress, if it is no proof
+        # an order observed once is progress but not proof
         reached = self.likely if len(self.steps) >= MIN_RUNS else self.error
         self.stale = 0 if reached < 0.5 * self.best else self.stale + 1
         self.best = min(self.best, reached)
@@ -165,7 +168,7 @@ class StepRefinement:
     def _choose(self) -> None:
         """Choose the next step."""
         resolved = 0.9 * self.lasts / STEPS_OF_COLLISION
-        # where shorter steps do not help, as little as possible is spent on learning whether they will
+        # if shorter steps do not help, spend as little as possible on further attempts
         least = 0.25 if self.stale == 0 else 0.5
         if resolved < self.h * least:
             least = MIN_RATIO
@@ -175,13 +178,13 @@ class StepRefinement:
         self.aim = min(self.aim, self.h)
 
     def _retry(self, stop: Stop, replay: Replay) -> Outcome | None:
-        """Change the step after a run that stopped, or end with the last run that did not, or stop."""
-        # A503 says nothing of the structure where the step is coarse, growth only if a finer step grows too
+        """Change the step after a run that stopped, or return the last completed run, or stop."""
+        # with a coarse step A503 says nothing about the structure; nor does growth, unless a finer step grows
         coarse = stop.code == "A503" or (stop.code == "A504" and not self.steps)
         if coarse and not self._hopeless():
             begin = float(self.problem.start.times[0])
             early = stop.t - begin < EARLY * self.length
-            # where laws alternate at the start a step nearby may pass; a far shorter one need not
+            # if laws alternate at the start, a similar step may succeed, and a far shorter one may not
             self.h *= NEARBY if early or self.retries % 2 else 0.25
             self.aim, self.retries = self.h, self.retries + 1
             done = stop.outcome.figures["events"] if stop.outcome and not early else 0
@@ -197,17 +200,17 @@ class StepRefinement:
         raise stop from None
 
     def _hopeless(self) -> bool:
-        """Whether no other step is tried after a run that stopped: there were many, or a run with a quarter
-        of the step would cost more than `MAX_RETRY_COST`.
+        """Return whether no other step is tried after a run that stopped: there were many such runs, or a
+        run with a quarter of the step would cost more than `MAX_RETRY_COST`.
         """
         cost = self.cost_of_run(0.25 * self.h)
         most = MAX_RETRIES if self.complete is None else MAX_SHORTER
         return self.retries == most or self.h <= 1e-6 * self.length or cost > MAX_RETRY_COST
 
     def checks(self, outcome: Outcome, ended: str) -> list[Check]:
-        """Return checks beyond those of a single run; `ended` is why no shorter steps follow."""
+        """Return checks in addition to those of a single run; `ended` is why no shorter steps follow."""
         steps = outcome.figures["steps"]
-        resolved = self.met or self.error > 1.0  # else the steps are too long for a collision
+        resolved = self.met or self.error > 1.0  # otherwise the steps are too long for a collision
         checks, remark = list[Check](), f"not shown with {steps} steps, {ended}"
         for kind, tol in self.tolerances.items():
             error, about = self.errors[kind], f"estimated error of {NAMES[kind]}"

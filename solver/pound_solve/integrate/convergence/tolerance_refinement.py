@@ -1,14 +1,14 @@
-"""Runs of LAGUERRE with ever smaller tolerances, until the peaks converge.
+"""Runs of LAGUERRE with successively smaller tolerances, until the peaks converge.
 
 The tolerance of LAGUERRE bounds the error of a step, not that of the run.  The run is therefore repeated
-with a smaller one.  The difference between the peaks of two runs is nearly the error of the first run,
-about ten times that of the second; it is used as the estimate for the second.  Two runs may agree by
-chance, so differences from earlier runs count too, as if errors fell only with the root of the tolerance.
-Steps that end at the intervals of the record may be the same in both runs; a difference of zero then proves
-nothing. An estimate is therefore at least the tolerance of the first run, and runs with the same number of
-steps are compared only if no smaller tolerance is left.  Two runs may also make the same error where a
-hinge nearly reverses: the first tolerance is small even if a large error is allowed, and an estimate is at
-least a share of that.
+with a smaller tolerance.  The difference between the peaks of two runs is nearly the error of the first
+run, which is about ten times that of the second; it is used as the estimate for the second.  Two runs may
+agree by chance, so differences from earlier runs also count, assuming that errors fall only with the root
+of the tolerance.  Steps that end at the intervals of the record may be the same in both runs; a difference
+of zero then proves nothing.  An estimate is therefore at least the tolerance of the first run, and runs
+with the same number of steps are compared only if no smaller tolerance is left.  Two runs may also make the
+same error if a hinge nearly reverses.  Therefore the first tolerance is small even if a large error is
+allowed, and an estimate is at least a fraction of the allowed error.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from pound_solve.integrate.convergence.compared import NAMES, RESPONSES, Compare
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import INTERRUPTED, EnvelopeRecorder, Outcome, Problem, Stop, goals
 
-#: of a run that are expected between two samples of the excitation or instants of output
+#: expected number of steps of a run between two samples of the excitation or output instants
 EXPECTED_STEPS = 2.0
-FIRST_TOLERANCE = 0.1  #: tolerance of the first run, as a share of that of the peaks
-#: the same at most: a larger one hardly saves steps, since intervals and events remain
+FIRST_TOLERANCE = 0.1  #: tolerance of the first run, as a fraction of that of the peaks
+#: its upper limit: a larger tolerance hardly saves steps, since intervals and events remain
 MAX_FIRST_TOLERANCE = 1e-5
-#: least estimate over the tolerance of the peaks: no more is claimed than was asked for
+#: smallest estimate, as a fraction of the tolerance of the peaks
 MIN_ESTIMATE = 0.05
-NEXT, NEXT_LEAST = 0.1, 1e-3  #: tolerance of the next run over that of the last, at most and at least
+NEXT, NEXT_LEAST = 0.1, 1e-3  #: largest and smallest ratio of the next tolerance to the last
 MIN_TOLERANCE = 1e-12  #: smallest tolerance of a run
-POWER = 0.5  #: of the tolerance that errors are assumed to fall with, at least
+POWER = 0.5  #: smallest power of the tolerance with which errors are assumed to fall
 ORDER = 6  #: steps grow with the root of this order
-MAX_RUNS = 6  #: after which smaller tolerances are given up
+MAX_RUNS = 6  #: number of runs after which no smaller tolerance is tried
 
 
 class UnfitError(Exception):
-    """LAGUERRE cannot finish where another method may, or is too expensive (`dear`)."""
+    """LAGUERRE cannot finish, but another method may; or it is too expensive (`dear`)."""
 
     def __init__(self, why: str, dear: bool) -> None:
         super().__init__(why)
@@ -47,31 +47,31 @@ class UnfitError(Exception):
 
 
 class ToleranceRefinement:
-    """Runs of LAGUERRE with smaller and smaller tolerances, until the peaks converge.
+    """Runs of LAGUERRE with successively smaller tolerances, until the peaks converge.
 
     Parameters
     ----------
     others : float
-        Cost of another method: of a run that would cost more no more is made.
+        Cost of another method; a run is abandoned if it would cost more.
 
     Attributes
     ----------
     tolerances, errors : dict
         Of each kind of peaks that has a tolerance, and the estimate for the last run.
     error : float
-        The largest estimate for the last run, over its tolerance.
+        The largest estimate of the last run, divided by its tolerance.
     tol, floor : float
         Tolerances of the next run and of the one before it.
     peaks : list
-        Tolerances and peaks of the runs that were completed.
+        Tolerances and peaks of the completed runs.
     spent : float
         Cost of the runs that were completed.
     most : float
-        Steps that a run may come to, beside one for each event.
+        Largest number of steps of a run, in addition to one for each event.
     events : int
         Of the last run.
     steps : float
-        That the next run is expected to take.
+        Expected number of steps of the next run.
     """
 
     def __init__(
@@ -91,22 +91,23 @@ class ToleranceRefinement:
         self.complete: tuple[Outcome, Replay] | None = None  # the last run that was completed
 
     def cost_ahead(self) -> float:
-        """Return the cost of the run that is likely to meet the tolerance, and of one before it."""
+        """Return the cost of the run that is likely to meet the tolerance, and of the run before it."""
         return self.step_cost * self.steps * (1 if self.runs else 2)
 
     least_cost = cost_ahead
 
     def run(self) -> Outcome | None:
-        """Run once; return the outcome if no run follows, else None with the next tolerance chosen.
+        """Run once; return the outcome if no run follows, otherwise choose the next tolerance and return
+        None.
 
         Raises
         ------
         Stop
-            An interrupt.
+            There was an interrupt.
         UnfitError
             The run stopped for another reason.
         """
-        from pound_solve.integrate.series import laguerre  # where it is not needed it is not loaded
+        from pound_solve.integrate.series import laguerre  # loaded only if needed
 
         # the first run is never the final one
         replay = Replay(self.problem.recorder, self.runs > 0 or set(self.tolerances) != {RESPONSES})
@@ -121,7 +122,7 @@ class ToleranceRefinement:
         return self._judge(outcome, replay)
 
     def _judge(self, outcome: Outcome, replay: Replay) -> Outcome | None:
-        """Estimate the error of a run that was completed; hand it on if no run follows."""
+        """Estimate the error of a completed run; return its outcome if no run follows."""
         before, self.complete = self.complete, (outcome, replay)
         peaks = figures(self.system, outcome.peaks, replay, self.tolerances)
         taken = outcome.figures["steps"] + outcome.figures["steps taken again"]
@@ -129,7 +130,7 @@ class ToleranceRefinement:
         self.spent += self.step_cost * taken
         share = NEXT
         if before is not None:
-            share = NEXT_LEAST  # which makes other steps
+            share = NEXT_LEAST  # this leads to different steps
             if outcome.figures["steps"] > before[0].figures["steps"] or self.tol == MIN_TOLERANCE:
                 self._compare(peaks)
                 share = float(np.clip(FIRST_TOLERANCE / self.error, NEXT_LEAST, NEXT))
@@ -144,7 +145,7 @@ class ToleranceRefinement:
         return None
 
     def _compare(self, peak: ComparedPeaks) -> None:
-        """Estimate the error of a run from its differences to those before."""
+        """Estimate the error of a run from its differences to the previous runs."""
         scales = np.where(peak.scales > 0.0, peak.scales, 1.0)
         apart = np.zeros(len(scales))
         for tol, before in self.peaks:
@@ -156,7 +157,7 @@ class ToleranceRefinement:
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
 
     def _interrupted(self, stop: Stop, replay: Replay) -> Stop:
-        """The exception for an interrupt: with the last run that was completed, if there is one."""
+        """Return the exception for an interrupt, with the last completed run, if any."""
         if self.complete is None:
             replay.pass_on()
             return stop

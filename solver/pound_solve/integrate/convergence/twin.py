@@ -1,14 +1,13 @@
-"""The twin of a run by a method without steps, whose excitation differs in the eleventh digit.
+"""The twin of a run: a run of the same method, whose excitation differs in the eleventh digit.
 
-EXACT and TAYLOR make only rounding errors, and most motions do not magnify them.  If contacts strike again
-and again, or hinges nearly reverse, the motion may magnify them until no digit of a peak is
-left, and the balance of energies and every other check are still good.  A run of the same method whose
-excitation is larger by a share of `EXCITATION_CHANGE`, ten times the rounding of a run or more, tells: how
-far its peaks are from those of the run is what rounding may do to them.  It keeps no histories and no
-envelopes.
+EXACT and TAYLOR have only rounding errors, and most motions do not magnify them.  With repeated collisions
+or hinges that nearly reverse, the motion may magnify them until no digit of a peak is correct, while the
+energy balance and every other check remain good.  The excitation of the twin is larger by the fraction
+`EXCITATION_CHANGE`, at least ten times the rounding error of a run.  The differences between the peaks of
+the two runs therefore show the possible effect of rounding.  The twin keeps no histories and no envelopes.
 
-A twin does not show decisions that both runs make alike, such as which of two springs of equal strength
-yields: `uniqueness` finds these.
+A twin does not reveal ambiguities that both runs resolve in the same way, such as which of two springs of
+equal strength yields; `uniqueness` finds these.
 """
 
 from __future__ import annotations
@@ -31,14 +30,14 @@ from pound_solve.integrate.protocol import (
     not_linear,
 )
 
-EXCITATION_CHANGE = 1e-11  #: of the excitation, as a share
+EXCITATION_CHANGE = 1e-11  #: relative change of the excitation
 ABOUT = f"change of the peaks where the excitation changes by {EXCITATION_CHANGE:g}"
 MAGNIFIED = "the motion magnifies rounding beyond TOL: these peaks are chance, so compare several motions"
 
 
 def changed(problem: Problem[EnvelopeRecorder], witness: Witness) -> Problem[Recorder]:
-    """Return the problem of the twin: inputs and velocities are larger by `EXCITATION_CHANGE`, or, where
-    there are neither, the displacements.
+    """Return the problem of the twin: inputs and velocities are larger by `EXCITATION_CHANGE` or, if there
+    are neither, the displacements are.
     """
     system, start, factor = problem.system, problem.start, 1.0 + EXCITATION_CHANGE
     excitation = replace(system.excitation, coefs=factor * system.excitation.coefs)
@@ -59,21 +58,21 @@ def again(problem: Problem[Recorder], method: str) -> Outcome:
 
 
 def checks(problem: Problem[EnvelopeRecorder], run: Outcome, watch: Watch, tol: float) -> list[Check]:
-    """Repeat a `run` that makes rounding errors only, and return the check of how far it magnifies them.
+    """Repeat a `run` that has only rounding errors, and return a check of how much it magnifies them.
 
-    Nothing is repeated where nothing happens that could: there are no events and all forces are linear.
+    A run without events and with linear forces is not repeated, because it cannot magnify them.
 
     Parameters
     ----------
     watch : Watch
         The recorder of the run.
     tol : float
-        Change of the peaks that is allowed, over their scales (see `compared`).
+        Allowed change of the peaks, relative to their scales (see `compared`).
 
     Raises
     ------
     Stop
-        An interrupt; the run is over, and its outcome goes with it.
+        There was an interrupt; the exception contains the outcome of the completed run.
     """
     system = problem.system
     if run.figures["events"] == 0 and not not_linear(system):

@@ -46,11 +46,7 @@ from pound_solve.laws.hysteresis.imk import (
 from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
-LIMIT, MEETS, ONTO = (
-    2,
-    3,
-    4,
-)  #: internal variables of a side: strength limit; where the bound is met; its line
+LIMIT, MEETS, ONTO = 2, 3, 4  #: variables of a side: strength limit; deformation and line at the bound
 FAR = 1e300
 
 
