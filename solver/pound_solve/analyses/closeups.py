@@ -198,7 +198,7 @@ def joined_peaks(parts: Sequence[ContactPeaks]) -> ContactPeaks:
 
 
 def _at(motion: Motion, chosen: Index | Flags) -> Motion:
-    """The motion at the chosen instants."""
+    """Return the motion at the chosen instants."""
     return Motion(*(x[..., chosen] for x in motion))
 
 

@@ -172,7 +172,7 @@ class EquilibriumPath:
         return np.asarray(np.abs(self.rows) @ np.abs(u) + np.abs(self.lead))
 
     def forces(self, d: Array) -> tuple[Array, Array]:
-        """Force and tangent stiffness of every law at deformations `d`."""
+        """Return the force and tangent stiffness of every law at deformations `d`."""
         pairs = [s.law.force(x, at)[:2] for s, x, at in zip(self.laws, self.states, d.tolist())]
         both = np.array(pairs).reshape(len(self.laws), 2)
         return both[:, 0], both[:, 1]
@@ -191,7 +191,7 @@ class EquilibriumPath:
         return np.where(tangents < JUST_CLOSED * np.array(secants), secants, tangents)
 
     def tangent(self) -> Matrix:
-        """Tangent stiffness, shape (n_free, n_free)."""
+        """Return the tangent stiffness, shape (n_free, n_free)."""
         return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
 
     def unbalanced(self) -> float:

@@ -94,7 +94,7 @@ def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> flo
 
 
 def rate_power(curve: CurveFunction, p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power of the rate-dependent part of a curve's force."""
+    """Return the power of the rate-dependent part of a curve's force."""
     return (curve(p, at, m, d, d, v)[0] - curve(p, at, m, d, d, 0.0)[0]) * v
 
 
@@ -226,7 +226,7 @@ class Branch(NamedTuple):
         return self.kind is BranchKind.HELD
 
     def force(self, d: float, v: float) -> float:
-        """Force at deformation `d` and rate `v`."""
+        """Return the force at deformation `d` and rate `v`."""
         return self.stiffness * d + self.damping * v + self.force0
 
 
@@ -281,7 +281,7 @@ class Law:
         return k * d + c * v + f0, k, c
 
     def power(self, state: State, d: float, v: float) -> float:
-        """Power [F L/T] that the law dissipates at rate `v` and deformation `d`."""
+        """Return the power [F L/T] that the law dissipates at rate `v` and deformation `d`."""
         at, _, _, m = state
         if self.rule.curve is None:
             return self.rule.branch(self.p, at, m)[1] * v * v

@@ -210,7 +210,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Recoverable energy of a rule."""
+    """Return the recoverable energy of a rule."""
     energy: float = function_of_rule(p[:parameters], at, m[:variables], d, f)
     return energy
 

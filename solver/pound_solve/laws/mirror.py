@@ -9,7 +9,7 @@ from __future__ import annotations
 
 
 def side(at: int) -> float:
-    """Side of a branch."""
+    """Return the side of a branch."""
     return 1.0 if at % 2 == 1 else -1.0
 
 
@@ -24,22 +24,22 @@ def both_sides(*names: str) -> tuple[str, ...]:
 
 
 def outward(s: float, d: float) -> tuple[float, float, float]:
-    """Event function of a mirrored deformation that rises above `d`."""
+    """Return the event function of a mirrored deformation that rises above `d`."""
     return (s, 0.0, -d)
 
 
 def inward(s: float, d: float) -> tuple[float, float, float]:
-    """Event function of a mirrored deformation that falls below `d`."""
+    """Return the event function of a mirrored deformation that falls below `d`."""
     return (-s, 0.0, d)
 
 
 def turns_inward(s: float) -> tuple[float, float, float]:
-    """Event function of a reversal towards the other side."""
+    """Return the event function of a reversal towards the other side."""
     return (0.0, -s, 0.0)
 
 
 def turns_outward(s: float) -> tuple[float, float, float]:
-    """Event function of a reversal towards this side."""
+    """Return the event function of a reversal towards this side."""
     return (0.0, s, 0.0)
 
 

@@ -131,7 +131,7 @@ class Pair:
         return bar1.period if self.paper_holds else bar2.period
 
     def force_at(self, t: float) -> float:
-        """Contact force at time `t` after the touch [F T/L]."""
+        """Return the contact force at time `t` after the touch [F T/L]."""
         if not 0.0 <= t < self.duration:
             return 0.0
         bar1, bar2 = self._ordered

@@ -74,11 +74,11 @@ class Doubts(NamedTuple):
     most: Array
 
     def some(self, chosen: Index | Flags | slice) -> Doubts:
-        """The entries with the given numbers."""
+        """Return the entries with the given numbers."""
         return Doubts(self.sign[chosen], self.row[chosen], self.cell[chosen], self.most[chosen])
 
     def first(self) -> Index:
-        """Numbers of the entries with the largest bound for their quantity and sign."""
+        """Return the numbers of the entries with the largest bound for their quantity and sign."""
         order = np.lexsort((-self.most, self.row, self.sign))
         new = np.ones(len(order), bool)
         for part in (self.sign[order], self.row[order]):
@@ -157,7 +157,7 @@ def _bounds(values: Array) -> Array:
 
 
 def _beside(x: Array) -> Array:
-    """Largest value of every column and its two neighbours."""
+    """Return the largest value of every column and its two neighbours."""
     largest = x.copy()
     np.maximum(largest[:, 1:], x[:, :-1], out=largest[:, 1:])
     np.maximum(largest[:, :-1], x[:, 1:], out=largest[:, :-1])

@@ -18,7 +18,7 @@ KERNELS = (
 
 @cache
 def digest() -> str:
-    """Digest of the source of all kernels."""
+    """Return the digest of the source of all kernels."""
     program = Path(__file__).parents[1]
     sources = sorted(p for pattern in KERNELS for p in program.glob(pattern))
     return hashlib.sha256(b"".join(p.read_bytes() for p in sources)).hexdigest()[:16]

@@ -35,12 +35,12 @@ def gathered(
 
 
 def selection(size: int, columns: Index) -> Matrix:
-    """Columns of the unit matrix, shape (size, len(columns))."""
+    """Return the columns of the unit matrix, shape (size, len(columns))."""
     return gathered((size, len(columns)), columns, np.arange(len(columns)), np.ones(len(columns)))
 
 
 def dense(a: Matrix) -> Array:
-    """The matrix as a plain array."""
+    """Return the matrix as a plain array."""
     return np.asarray(a if isinstance(a, np.ndarray) else a.toarray())
 
 
@@ -57,14 +57,14 @@ def entries(a: Matrix) -> tuple[Index, Index, Array]:
 
 
 def by_rows(a: Matrix) -> list[tuple[Index, Array]]:
-    """Columns and values of the non-zero entries of every row."""
+    """Return the columns and values of the non-zero entries of every row."""
     i, j, x = entries(a)
     ends = np.searchsorted(i, np.arange(a.shape[0] + 1))
     return [(j[p:q], x[p:q]) for p, q in zip(ends[:-1].tolist(), ends[1:].tolist())]
 
 
 def at(a: Matrix, rows: Index, columns: Index) -> Array:
-    """Values at the given rows and columns, shape (n,)."""
+    """Return the values at the given rows and columns, shape (n,)."""
     if isinstance(a, np.ndarray):
         return a[rows, columns]
     i, j, x = entries(a)
@@ -74,7 +74,7 @@ def at(a: Matrix, rows: Index, columns: Index) -> Array:
 
 
 def used_rows(a: Matrix) -> Flags:
-    """Which rows have non-zero entries, shape (n_rows,)."""
+    """Return which rows have non-zero entries, shape (n_rows,)."""
     if isinstance(a, np.ndarray):
         used: Flags = np.any(a != 0.0, axis=1)
         return used
@@ -84,17 +84,17 @@ def used_rows(a: Matrix) -> Flags:
 
 
 def used_columns(a: Matrix) -> Flags:
-    """Which columns have non-zero entries, shape (n_columns,)."""
+    """Return which columns have non-zero entries, shape (n_columns,)."""
     return used_rows(a.T)
 
 
 def diagonal(a: Matrix) -> Array:
-    """Entries on the diagonal."""
+    """Return the entries on the diagonal."""
     return np.array(a.diagonal(), float)
 
 
 def is_diagonal(a: Matrix) -> bool:
-    """Whether all entries off the diagonal are zero."""
+    """Return whether all entries off the diagonal are zero."""
     i, j, _ = entries(a)
     return bool((i == j).all())
 
@@ -200,5 +200,5 @@ class Factor:
         return int((self.pivots < 0.0).sum())
 
     def solve(self, b: Array) -> Array:
-        """Solution of A x = b, shape (n,) or (n, n_columns)."""
+        """Return the solution of A x = b, shape (n,) or (n, n_columns)."""
         return np.asarray(self._lu.solve(np.ascontiguousarray(b, float)))

@@ -213,7 +213,7 @@ class EventDrivenRun(ABC):
         return self.energy.runs_away(self.kinetic(v))
 
     def kinetic(self, v: Array) -> float:
-        """Kinetic energy at velocity `v` [F L]."""
+        """Return the kinetic energy at velocity `v` [F L]."""
         return 0.5 * float(v @ self.system.mass @ v)
 
     def reaching(self, u: Array) -> Array:

@@ -179,7 +179,7 @@ class StepRefinement:
 
     def _retry(self, stop: Stop, replay: Replay) -> Outcome | None:
         """Change the step after a run that stopped, or return the last completed run, or stop."""
-        # with a coarse step A503 says nothing about the structure; nor does growth, unless a finer step grows
+        # A503 at a coarse step says nothing about the structure, nor does growth unless a finer step grows
         coarse = stop.code == "A503" or (stop.code == "A504" and not self.steps)
         if coarse and not self._hopeless():
             begin = float(self.problem.start.times[0])

@@ -115,7 +115,7 @@ RULE = Rule(
 
 
 def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:
-    """Restitution [-] of an impact that reaches `overlap` [L]."""
+    """Return the restitution [-] of an impact that reaches `overlap` [L]."""
     beyond = overlap - dy
     if beyond <= 0.0:
         return 1.0
@@ -131,7 +131,7 @@ def speed(k1: float, k2: float, dy: float, overlap: float, mass: float) -> float
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values.
+    """Build the law from a card's values.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ class Constant(NamedTuple):
 
 
 def fields(name: str, doc: str, published: str) -> tuple[Field, Field, Field]:
-    """Fields of the constant `name`, of E, and of the relation between them."""
+    """Return the fields of the constant `name`, of E, and of the relation between them."""
     return (
         Field(name, Kind.REAL, "-", default=None, lo=0, doc=f"{doc} ({name} or E)"),
         Field(
@@ -121,7 +121,7 @@ def dashpot(
 
 
 def linear_fields(published: str) -> tuple[Field, ...]:
-    """Fields of a linear spring with a dashpot."""
+    """Return the fields of a linear spring with a dashpot."""
     relation = fields("XI", "", published)[2]
     which = "(one of C, XI, E)"
     return (

@@ -32,7 +32,7 @@ from pound_solve.laws.two_bars import Diaphragm, Pair
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values.
+    """Build the law from a card's values.
 
     Parameters
     ----------

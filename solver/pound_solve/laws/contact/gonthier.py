@@ -25,7 +25,7 @@ def published(e: float) -> float:
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values; see `hunt_crossley.build_with`."""
+    """Build the law from a card's values; see `hunt_crossley.build_with`."""
     return build_with(values, reduced_mass, N, published)
 
 

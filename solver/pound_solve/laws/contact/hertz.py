@@ -17,7 +17,7 @@ from pound_solve.laws.contact.power import power_fields, stiffness_unit
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, K, N)."""
+    """Build the law from a card's values (GAP, K, N)."""
     k, n = values["K"], values["N"]
     made = law(k, n, values["GAP"], 0.0, reduced_mass)
     return Built(made, k, math.nan, 0.0, 1.0, 1.0, "elastic", stiffness_unit(n))

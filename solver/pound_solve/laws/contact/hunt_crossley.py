@@ -166,7 +166,7 @@ def build_with(
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values; see `build_with`."""
+    """Build the law from a card's values; see `build_with`."""
     return build_with(values, reduced_mass, values["N"], lambda e: 1.5 * (1.0 - e))
 
 

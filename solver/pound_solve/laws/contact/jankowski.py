@@ -96,7 +96,7 @@ def published(e: float) -> float:
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, K, N, one of XI, E; RELATION).
+    """Build the law from a card's values (GAP, K, N, one of XI, E; RELATION).
 
     Raises
     ------

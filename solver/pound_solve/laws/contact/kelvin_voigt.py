@@ -107,7 +107,7 @@ class Built(NamedTuple):
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values.
+    """Build the law from a card's values.
 
     Parameters
     ----------

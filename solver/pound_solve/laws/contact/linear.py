@@ -13,7 +13,7 @@ from pound_solve.laws.contact.kelvin_voigt import RULE, Built
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, K)."""
+    """Build the law from a card's values (GAP, K)."""
     return Built(Law(RULE, (values["K"], 0.0, values["GAP"])), values["K"], 0.0, 0.0, 1.0, 1.0, "elastic")
 
 

@@ -69,7 +69,7 @@ def published(e: float) -> float:
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, K, one of C, XI, E; RELATION); see `kelvin_voigt.build`."""
+    """Build the law from a card's values (GAP, K, one of C, XI, E; RELATION); see `kelvin_voigt.build`."""
     damper = dashpot(values, reduced_mass, restitution.one_sided, restitution.one_sided_ratio, published)
     return Built(Law(RULE, (values["K"], damper.c, values["GAP"])), values["K"], *damper)
 

@@ -13,22 +13,22 @@ TOUCH = 1e-20
 
 
 def stiffness_unit(n: float) -> str:
-    """Unit of the stiffness."""
+    """Return the unit of the stiffness."""
     return "F/L" if n == 1.0 else f"F/L^{n:g}"
 
 
 def spring_force(k: float, n: float, x: float) -> float:
-    """Force of the spring."""
+    """Return the force of the spring."""
     return k * x**n if x > 0.0 else 0.0
 
 
 def spring_energy(k: float, n: float, x: float) -> float:
-    """Energy of the spring."""
+    """Return the energy of the spring."""
     return k / (n + 1.0) * x ** (n + 1.0) if x > 0.0 else 0.0
 
 
 def drag(c: float, n: float, x: float) -> float:
-    """Coefficient of the dashpot."""
+    """Return the coefficient of the dashpot."""
     return c * x ** (0.5 * (n - 1.0)) if x > 0.0 else 0.0
 
 

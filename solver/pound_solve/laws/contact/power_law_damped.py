@@ -104,7 +104,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, K, N, one of ALPHA, E; RELATION, TENSION).
+    """Build the law from a card's values (GAP, K, N, one of ALPHA, E; RELATION, TENSION).
 
     Raises
     ------

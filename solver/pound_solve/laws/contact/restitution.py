@@ -46,7 +46,9 @@ from collections.abc import Callable
 
 
 def with_tension(xi: float) -> float:
-    """Restitution [-] for damping ratio `xi` [-] when the contact pulls until the overlap is gone."""
+    """Return the restitution [-] for damping ratio `xi` [-] when the contact pulls until the
+    overlap is gone.
+    """
     if xi >= 1.0:
         return 0.0
     return math.exp(-math.pi * xi / math.sqrt((1.0 - xi) * (1.0 + xi)))
@@ -71,7 +73,7 @@ def no_tension_time(xi: float) -> float:
 
 
 def no_tension(xi: float) -> float:
-    """Restitution [-] for damping ratio `xi` [-] when the contact releases at zero force."""
+    """Return the restitution [-] for damping ratio `xi` [-] when the contact releases at zero force."""
     return math.exp(-xi * no_tension_time(xi))
 
 
@@ -94,7 +96,7 @@ def push_centroid(xi: float) -> float:
 
 
 def one_sided(xi: float) -> float:
-    """Restitution [-] for damping ratio `xi` [-] of a dashpot that acts in approach only."""
+    """Return the restitution [-] for damping ratio `xi` [-] of a dashpot that acts in approach only."""
     return math.sqrt(no_tension(xi))
 
 
@@ -113,28 +115,32 @@ def phi(x: float) -> float:
 
 
 def in_both_phases(d: float) -> float:
-    """Restitution [-] for the constant `d` [-] of damping that grows with the spring's force."""
+    """Return the restitution [-] for the constant `d` [-] of damping that grows with the spring's force."""
     if d == 0.0:
         return 1.0
     return _root(lambda e: phi(d) - e * e * phi(-d * e), 0.0, min(1.0, 1.0 / d))
 
 
 def in_both_phases_constant(e: float) -> float:
-    """Constant [-] of damping that grows with the spring's force, for restitution `e` in (0, 1]."""
+    """Return the constant [-] of damping that grows with the spring's force, for restitution `e`
+    in (0, 1].
+    """
     if e == 1.0:
         return 0.0
     return _root(lambda d: phi(d) - e * e * phi(-d * e), 0.0, 1.0 / e)
 
 
 def in_restitution(d: float) -> float:
-    """Restitution [-] for the constant `d` [-] of such damping in restitution only."""
+    """Return the restitution [-] for the constant `d` [-] of such damping that acts in restitution only."""
     if d == 0.0:
         return 1.0
     return _root(lambda e: 0.5 - e * e * phi(-d * e), 0.0, min(1.0, 1.0 / d))
 
 
 def in_restitution_constant(e: float) -> float:
-    """Constant [-] of such damping in restitution only, for restitution `e` in (0, 1]."""
+    """Return the constant [-] of such damping that acts in restitution only, for restitution `e`
+    in (0, 1].
+    """
     if e == 1.0:
         return 0.0
     return _root(lambda d: 0.5 - e * e * phi(-d * e), 0.0, 1.0 / e)

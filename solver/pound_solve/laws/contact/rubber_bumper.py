@@ -106,7 +106,7 @@ def spring(p: Numbers, x: float) -> tuple[float, float, float]:
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the bumper."""
+    """Return the energy of the bumper."""
     return 0.0 if at == OPEN else spring(p, d - p[GAP])[2]
 
 
@@ -161,7 +161,7 @@ def published(e: float) -> float:
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, K, N, THICKNESS, LIMIT, KU, one of D, E; RELATION).
+    """Build the law from a card's values (GAP, K, N, THICKNESS, LIMIT, KU, one of D, E; RELATION).
 
     Raises
     ------

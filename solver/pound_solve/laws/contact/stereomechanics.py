@@ -62,7 +62,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values (GAP, E).
+    """Build the law from a card's values (GAP, E).
 
     Raises
     ------

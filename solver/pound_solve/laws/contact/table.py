@@ -119,7 +119,7 @@ RULE = Rule(
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
-    """Law from a card's values.
+    """Build the law from a card's values.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def engaged(p: Numbers, v: float) -> int:
-    """Branch of a damper that moves at the rate `v`."""
+    """Return the branch of a damper that moves at the rate `v`."""
     s = 1.0 if v >= 0.0 else -1.0
     return on_side(LIMITED if s * v > (p[FAST] if s > 0.0 else p[FAST_MINUS]) else MOVING, s)
 
@@ -144,7 +144,7 @@ RULE = Rule(
 def damper(
     c: float, alpha: float, limit: tuple[float, float] | None = None, play: tuple[float, float] = (0.0, 0.0)
 ) -> Law:
-    """Law of a damper.
+    """Return the law of a damper.
 
     Parameters
     ----------

@@ -176,7 +176,7 @@ def yield_force(p: Numbers, s: float) -> float:
 
 
 def largest_ductility(m: Numbers, s: float) -> float:
-    """Largest ductility of a side so far."""
+    """Return the largest ductility of a side so far."""
     return m[MU] if s > 0.0 else m[MU_MINUS]
 
 
@@ -202,7 +202,7 @@ def strength_by_ductility(p: Numbers, x: float) -> float:
 
 
 def counts_larger_side(p: Numbers) -> bool:
-    """Whether the larger ductility of both sides determines the loss."""
+    """Return whether the larger ductility of both sides determines the loss."""
     return bool(p[FORM] == _LARGEST or p[FORM] >= _LARGEST_RCYC)
 
 
@@ -257,14 +257,14 @@ def backbone(p: Numbers, m: Numbers, s: float, x: float) -> float:
 
 
 def unloading(p: Numbers, x: float) -> float:
-    """Stiffness of unloading after ductility `x`."""
+    """Return the unloading stiffness after ductility `x`."""
     k, r, alpha = p[K], p[R], p[ALPHA]
     stiffness: float = k * max(x**-alpha, (1.0 - r) * strength_by_ductility(p, x) / x + r)
     return stiffness
 
 
 def ductilities_with(m: Numbers, s: float, x: float) -> tuple[float, float]:
-    """Largest ductilities when side `s` has reached `x`."""
+    """Return the largest ductilities when side `s` has reached `x`."""
     return (max(m[MU], x), m[MU_MINUS]) if s > 0.0 else (m[MU], max(m[MU_MINUS], x))
 
 

@@ -71,7 +71,7 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
 
 
 def crack_point(p: Numbers, s: float) -> Point:
-    """Crack point of a side."""
+    """Return the crack point of a side."""
     fc = p[FCR] * p[FY] if s > 0.0 else p[FCR_MINUS] * -p[FY_MINUS]
     return fc / p[K], fc
 
@@ -83,12 +83,12 @@ def yield_point(p: Numbers, s: float) -> Point:
 
 
 def first_yield(p: Numbers) -> tuple[float, float]:
-    """Deformations at the yield points."""
+    """Return the deformations at the yield points."""
     return yield_point(p, 1.0)[0], -yield_point(p, -1.0)[0]
 
 
 def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
-    """Slope and force of the backbone at a deformation beyond the crack."""
+    """Return the slope and force of the backbone at a deformation beyond the crack."""
     (xc, fc), (xy, fy) = crack_point(p, s), yield_point(p, s)
     if x >= xy:
         slope = p[R] * fy / xy
@@ -98,7 +98,7 @@ def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
 
 
 def largest_deformation(m: Numbers, s: float) -> float:
-    """Largest deformation of a side so far."""
+    """Return the largest deformation of a side so far."""
     return m[MOST] if s > 0.0 else m[MOST_MINUS]
 
 
@@ -108,7 +108,7 @@ def deformations_with(m: Numbers, s: float, x: float) -> tuple[float, float]:
 
 
 def has_yielded(p: Numbers, s: float, m: Numbers) -> bool:
-    """Whether a side has gone beyond its yield point."""
+    """Return whether a side has gone beyond its yield point."""
     xy, _ = yield_point(p, s)
     return passes(largest_deformation(m, s), xy, xy)
 

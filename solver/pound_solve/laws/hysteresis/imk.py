@@ -63,7 +63,7 @@ SIDE = 5
 
 
 def variables_of_side(m: Numbers, s: float) -> Numbers:
-    """Internal variables of a side."""
+    """Return the internal variables of a side."""
     return m[:SIDE] if s > 0.0 else m[SIDE:KU]
 
 
@@ -86,18 +86,18 @@ def virgin(p: Numbers, s: float) -> tuple[float, float, float, float]:
 
 
 def ultimate(p: Numbers, s: float) -> float:
-    """Ultimate deformation of a side."""
+    """Return the ultimate deformation of a side."""
     return p[THETA_U] if s > 0.0 else p[THETA_U_MINUS]
 
 
 def residual(p: Numbers, s: float) -> float:
-    """Residual strength of a side."""
+    """Return the residual strength of a side."""
     fy0, _, _, _ = virgin(p, s)
     return p[LAMBDA] * fy0
 
 
 def hardening(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
-    """Slope and force at zero deformation of the hardening line."""
+    """Return the slope and force at zero deformation of the hardening line."""
     fy0, _, _, _ = virgin(p, s)
     fy = variables_of_side(m, s)[FY_NOW]
     slope = p[R] * p[K] * fy / fy0
@@ -105,7 +105,7 @@ def hardening(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
 
 
 def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
-    """Slope and force at zero deformation of the falling line."""
+    """Return the slope and force at zero deformation of the falling line."""
     _, _, _, kc = virgin(p, s)
     return kc, variables_of_side(m, s)[F_REF]
 

@@ -88,13 +88,13 @@ def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
 
 
 def peak(p: Numbers, s: float, m: Numbers) -> Point:
-    """Largest deformation of a side, with the force of the backbone."""
+    """Return the largest deformation of a side, with the force of the backbone."""
     d = variables_of_side(m, s)[PEAK]
     return d, backbone(p, s, m, d)
 
 
 def local_peak(s: float, m: Numbers) -> Point:
-    """Last turning point of a side."""
+    """Return the last turning point of a side."""
     of_side = variables_of_side(m, s)
     return of_side[LOCAL_D], of_side[LOCAL_F]
 
@@ -134,19 +134,19 @@ def passes_local_peak(p: Numbers, s: float, m: Numbers, d: float, f: float) -> b
 
 
 def cap_deformation(p: Numbers, s: float, m: Numbers) -> float:
-    """Deformation where the hardening line meets the falling one."""
+    """Return the deformation where the hardening line meets the falling one."""
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     return (f2 - f1) / (k1 - k2)
 
 
 def residual_start(p: Numbers, s: float, m: Numbers) -> float:
-    """Deformation at which the falling line reaches the residual strength."""
+    """Return the deformation at which the falling line reaches the residual strength."""
     k2, f2 = falling(p, s, m)
     return (residual(p, s) - f2) / k2
 
 
 def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
-    """Line of the backbone at a deformation."""
+    """Return the line of the backbone at a deformation."""
     if d >= residual_start(p, s, m):
         return RESIDUAL
     return FALLING if d >= cap_deformation(p, s, m) else HARDENING

@@ -88,7 +88,7 @@ def unloading_of_side(p: Numbers, s: float, m: Numbers) -> float:
 
 
 def pinch(p: Numbers, s: float, m: Numbers) -> Point:
-    """Pinch point of a side."""
+    """Return the pinch point of a side."""
     return max(0.5 * (largest_deformation(m, -s) - yield_point(p, -s)[0]), 0.0), p[PINCH] * peak(p, s, m)[1]
 
 
@@ -100,7 +100,7 @@ def corner(s: float, m: Numbers) -> Point:
 
 
 def before_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
-    """Whether a point lies before the pinch point."""
+    """Return whether a point lies before the pinch point."""
     xp, fp = pinch(p, s, m)
     if has_yielded(p, 1.0, m) and has_yielded(p, -1.0, m):
         return x < xp
@@ -120,7 +120,7 @@ def loading_branch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
 
 
 def loading_end(p: Numbers, m: Numbers, at: int) -> Point:
-    """Point at which a loading line ends."""
+    """Return the point at which a loading line ends."""
     s = side(at)
     if at < TO_PINCH:
         return corner(s, m)

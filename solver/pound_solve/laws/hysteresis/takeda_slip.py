@@ -87,7 +87,7 @@ def unloading(p: Numbers, s: float, x: float) -> float:
 
 
 def slip_stiffness(p: Numbers, s: float, m: Numbers) -> float:
-    """Stiffness of a side while it slips."""
+    """Return the stiffness of a side while it slips."""
     (x, f), (x_other, f_other) = peak(p, s, m), peak(p, -s, m)
     span = x + x_other - f_other / unloading(p, -s, x_other)  # d_m + d_z'
     stiffness: float = f / span * (x / span) ** p[SLIP]
@@ -95,7 +95,7 @@ def slip_stiffness(p: Numbers, s: float, m: Numbers) -> float:
 
 
 def slips(p: Numbers, s: float, m: Numbers) -> bool:
-    """Whether a side slips before it is loaded to its peak."""
+    """Return whether a side slips before it is loaded to its peak."""
     x, f = peak(p, s, m)
     return m[ZERO] < 0.0 and has_yielded(p, s, m) and slip_stiffness(p, s, m) * (x - m[ZERO]) < f
 

@@ -99,7 +99,7 @@ def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
 
 
 def first_yield(p: Numbers) -> tuple[float, float]:
-    """Deformations at yield."""
+    """Return the deformations at yield."""
     (_, dy, *_), (_, dy_minus, *_) = backbone(p, 1.0), backbone(p, -1.0)
     return dy, -dy_minus
 
@@ -115,7 +115,7 @@ def unloading(p: Numbers) -> float:
 
 
 def steepest(p: Numbers) -> float:
-    """Stiffness of the steepest line."""
+    """Return the stiffness of the steepest line."""
     return max(p[K], unloading(p))
 
 
