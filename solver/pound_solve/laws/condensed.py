@@ -11,9 +11,11 @@ contains that part (`structure.elements.frame`).
 
 The parameters are those of the law, followed by :math:`g`; the internal variables are those of the law.
 
-References ---------- Giberson MF (1967), The response of nonlinear multi-story structures subjected to
-earthquake excitation, Earthquake Engineering Research Laboratory, California Institute of Technology,
-Pasadena (springs at the ends of an elastic member, which take the inelastic part of the rotation).
+References
+----------
+Giberson MF (1967), The response of nonlinear multi-story structures subjected to earthquake excitation,
+Earthquake Engineering Research Laboratory, California Institute of Technology, Pasadena (springs at the
+ends of an elastic member, which take the inelastic part of the rotation).
 """
 
 from __future__ import annotations

@@ -11,9 +11,9 @@ far end of bar 1 does not reverse its motion, and contact lasts until :math:`T_2
 .. math:: F_j = F_0 \rho^j,\quad jT_1 < t < (j+1)T_1,\qquad
           F_0 = \frac{Z_1 Z_2}{Z_1 + Z_2}\Delta v,\quad \rho = \frac{Z_1 - Z_2}{Z_1 + Z_2}
 
-``manual/theory-pounding.md`` derives it.  With :math:`T_2/T_1 = n + s` (n an integer; for :math:`\rho \le
-0` n = 1, s = 0) bar 1 separates with the mean velocity :math:`v_2 + \kappa\Delta v`, :math:`\kappa =
-\rho^n(1 - s(1-\rho))`, and everything else follows from momentum.
+``manual/theory-pounding.md`` derives it.  With :math:`T_2/T_1 = n + s` (n an integer; for
+:math:`\rho \le 0` n = 1, s = 0) bar 1 separates with the mean velocity :math:`v_2 + \kappa\Delta v`,
+:math:`\kappa = \rho^n(1 - s(1-\rho))`, and everything else follows from momentum.
 """
 
 from __future__ import annotations

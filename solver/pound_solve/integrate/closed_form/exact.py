@@ -61,9 +61,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision
 
 MAX_PIECES = 2000  #: largest number of windows within one interval of the excitation
-MAX_WINDOWS = (
-    10000  #: largest number of windows shorter than an interval in the rest of a run (many minutes)
-)
+MAX_WINDOWS = 10000  #: largest number of windows shorter than an interval in the rest of a run: minutes
 #: number of such windows without an event between them, after which the total number is predicted
 WINDOWS_BEFORE_FORECAST = 16
 MAX_DEFERRED = 256  #: largest number of deferred work entries

@@ -7,9 +7,11 @@ polynomial :math:`p_i`.  With :math:`S = V^T C V` (V are the velocities of the m
 
 has free-free terms :math:`c_i c_j S_{ij}(e^{(\lambda_i+\lambda_j)\tau}-1)/(\lambda_i+\lambda_j)`,
 free-forced terms from the moments :math:`\int t^k e^{\lambda t}`, and polynomial forced-forced terms.  No
-energy balance is used, so the sum of all energies remains a check.  Modes that hardly change over the
-interval are treated entirely as polynomials.  For forces above the first degree, and for nearly or fully
-defective modes, Gauss quadrature on a grid that resolves the fastest mode is used instead.
+energy balance is used, so the sum of all energies remains a check.
+
+Modes that hardly change over the interval are treated entirely as polynomials.  For forces above the first
+degree, and for nearly or fully defective modes, Gauss quadrature on a grid that resolves the fastest mode
+is used instead.
 """
 
 from __future__ import annotations

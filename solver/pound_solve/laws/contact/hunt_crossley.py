@@ -15,9 +15,9 @@ present overlap,
           \varphi(d) = \frac{d - \ln(1 + d)}{d^2},
 
 if that speed is larger, on a separate branch.  No free impact reaches that branch, so free impacts do not
-change and no minimum speed has to be chosen.  The damping is then :math:`d\sqrt{(n+1)\varphi k
-m}\;\delta^{(n-1)/2}\dot\delta`, like that of POWER_LAW_DAMPED.  If the bodies are pulled apart faster than
-:math:`v_0/d`, the force is zero: the contact never pulls.
+change and no minimum speed has to be chosen.  The damping is then
+:math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, like that of POWER_LAW_DAMPED.  If the bodies
+are pulled apart faster than :math:`v_0/d`, the force is zero: the contact never pulls.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@ r"""Non-linear viscoelastic contact: a Hertz spring, and a dashpot in approach o
           f = k\delta^{3/2} \ (\dot\delta < 0)
 
 (Jankowski R 2005, Non-linear viscoelastic modelling of earthquake-induced structural pounding, Earthquake
-Engng Struct. Dyn. 34(6): 595-611.)  Here n may be any exponent, with :math:`2\xi\sqrt{k
-m}\,\delta^{(n-1)/2}`.
+Engng Struct. Dyn. 34(6): 595-611.)  Here n may be any exponent, with
+:math:`2\xi\sqrt{k m}\,\delta^{(n-1)/2}`.
 
 RELATION=PUBLISHED is :math:`\xi = \tfrac{9\sqrt5}{2} \frac{1 - e^2}{e\,(e(9\pi - 16) + 16)}` (Jankowski R
 2006, Analytical expression between the impact damping ratio and the coefficient of restitution in the

@@ -7,8 +7,9 @@ Two masses with the reduced mass :math:`m` collide at the approach speed :math:`
 *Sticky* (released at :math:`\delta = 0`, tension allowed): :math:`e = \exp(-\pi\xi/\sqrt{1-\xi^2})`,
 Anagnostopoulos (2004), Earthquake Engng Struct. Dyn. 33: 897-902; Cole et al. (2011), Eqs 15-17.
 
-*No tension* (released at :math:`f = 0`): the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega
-t}\sin\omega_d t`, and :math:`f = 0` at :math:`t = 2\arccos(\xi)/\omega_d`, so that
+*No tension* (released at :math:`f = 0`): the motion is
+:math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`, and :math:`f = 0` at
+:math:`t = 2\arccos(\xi)/\omega_d`, so that
 
 .. math:: e = \exp\!\left(-\frac{2\xi\arccos\xi}{\sqrt{1-\xi^2}}\right), \qquad
           e = \exp\!\left(-\frac{2\xi\,\mathrm{arcosh}\,\xi}{\sqrt{\xi^2-1}}\right)\ (\xi > 1)

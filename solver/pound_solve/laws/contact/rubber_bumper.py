@@ -16,8 +16,8 @@ It is our choice that the damping also acts on the stiff branch: the force is th
 restitution has the required value for any overlap.
 
 After a slow touch the damping would be unbounded.  Therefore :math:`v_0` is never less than the approach
-speed at which a free impact reaches the overlap at which the motion reversed, :math:`\sqrt{2\int
-F\,d\delta/m}`.
+speed at which a free impact reaches the overlap at which the motion reversed,
+:math:`\sqrt{2\int F\,d\delta/m}`.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@ r"""Bilinear elastic: softer beyond a limit; it unloads along the same line, wit
 .. math:: f = k d \quad (F^- \le k d \le F^+), \qquad f = F^\pm + r k (d - F^\pm / k) \quad \text{beyond}
 
 It models a rocking wall or a post-tensioned joint; in parallel with a BILINEAR spring it gives a
-flag-shaped loop. No internal variables.
+flag-shaped loop.  It has no internal variables.
 
 References
 ----------

@@ -10,9 +10,10 @@ whole slack zone moves by a common :math:`p`, and the hardening is kinematic: af
 yield force of the other side, :math:`F_y^- + H p`, is above zero, and the spring yields back before it
 becomes slack.
 
-References ---------- Ruaumoko's rule 5 (the shape; written for slender cross braces).  Two choices are
-ours: the value of H, which gives the yield line the slope :math:`r k` through the first yield point, and
-the two forms of growth.
+References
+----------
+Ruaumoko's rule 5 (the shape; written for slender cross braces).  Two choices are ours: the value of H,
+which gives the yield line the slope :math:`r k` through the first yield point, and the two forms of growth.
 """
 
 from __future__ import annotations

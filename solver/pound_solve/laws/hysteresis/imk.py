@@ -25,12 +25,15 @@ If this gives no :math:`\beta < 1`, the energy capacity is exhausted and the com
 the excursion.  It fails immediately at the ultimate deformation :math:`\theta_u`, and where no strength
 remains.
 
-References ---------- Ibarra LF, Medina RA, Krawinkler H (2005), Hysteretic models that incorporate strength
-and stiffness deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511. Lignos DG, Krawinkler H
-(2011), Deterioration modeling of steel components in support of collapse prediction of steel moment frames
-under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate rotation; theta_p and
-theta_pc). Our choices: an excursion deteriorates :math:`k_u` only once, regardless of its number of
-reversals, and by at most a half; only :math:`\Lambda = 0` switches a mode off.
+References
+----------
+Ibarra LF, Medina RA, Krawinkler H (2005), Hysteretic models that incorporate strength and stiffness
+deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511.
+Lignos DG, Krawinkler H (2011), Deterioration modeling of steel components in support of collapse prediction
+of steel moment frames under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate
+rotation; theta_p and theta_pc).
+Our choices: an excursion deteriorates :math:`k_u` only once, regardless of its number of reversals, and by
+at most a half; only :math:`\Lambda = 0` switches a mode off.
 """
 
 from __future__ import annotations

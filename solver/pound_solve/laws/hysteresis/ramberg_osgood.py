@@ -20,12 +20,13 @@ of up to seven reversals, the latest first.  At an eighth reversal, the second a
 A branch that would have met the curves from these continues to the next outer curves: those of the loop
 between the oldest reversal, which was on the skeleton, and its mirror image.
 
-References ---------- Ramberg W, Osgood WR (1943), Description of stress-strain curves by three parameters,
-NACA TN 902.  Masing G (1926), Eigenspannungen und Verfestigung beim Messing, Proc. 2nd Int. Congr. Appl.
-Mech., Zurich.  Jennings PC (1964), Periodic response of a general yielding structure, J. Eng. Mech. Div.
-ASCE 90(EM2):  131-166 (the form with alpha and n).  Ruaumoko's rule 3 is the case alpha = 1.  The treatment
-of a loop that does not return to the skeleton is our choice (loops close, as for Ruaumoko's rules 40 and
-41).
+References
+----------
+Ramberg W, Osgood WR (1943), Description of stress-strain curves by three parameters, NACA TN 902.
+Masing G (1926), Eigenspannungen und Verfestigung beim Messing, Proc. 2nd Int. Congr. Appl. Mech., Zurich.
+Jennings PC (1964), Periodic response of a general yielding structure, J. Eng. Mech. Div. ASCE 90(EM2):
+131-166 (the form with alpha and n).  Ruaumoko's rule 3 is the case alpha = 1.  The treatment of a loop that
+does not return to the skeleton is our choice (loops close, as for Ruaumoko's rules 40 and 41).
 """
 
 from __future__ import annotations

@@ -13,9 +13,11 @@ reversal releases both.  Cycles obey Masing's rule.
 
 Internal variables: the slips :math:`p_1, p_2`.
 
-References ---------- Iwan WD (1966), A distributed-element model for hysteresis and its steady-state
-dynamic response, J. Appl.  Mech. 33(4): 893-900.  Ruaumoko has a rule of this name, but its number is not
-certain, so no number is accepted.
+References
+----------
+Iwan WD (1966), A distributed-element model for hysteresis and its steady-state dynamic response, J. Appl.
+Mech. 33(4): 893-900.  Ruaumoko has a rule of this name, but its number is not certain, so no number is
+accepted.
 """
 
 from __future__ import annotations
