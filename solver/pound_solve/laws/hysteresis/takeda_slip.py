@@ -36,8 +36,9 @@ Takeda T, Sozen MA, Nielsen NN (1970), Reinforced concrete response to simulated
 Div. ASCE 96(12): 2557-2573 (numbers of the rules).
 Kabeyasawa T, Shiohara H, Otani S, Aoyama H (1983), Analysis of the full-scale seven-story reinforced
 concrete test structure, J. Faculty of Engng, Univ. of Tokyo 37(2): 431-478 (slip).  This source was not
-read: the branches are those of the material TakedaSlip of K. Ichinohe (2023) for OpenSees, where :math:`n = 3`.  That material does not bound :math:`b k_u`, and
-instead of rule 6 its force jumps to the line to the crack point.
+read: the branches are those of the material TakedaSlip of K. Ichinohe (2023) for OpenSees, where
+:math:`n = 3`.  That material does not bound :math:`b k_u`, and instead of rule 6 its force jumps to the
+line to the crack point.
 Ruaumoko has a rule of this name; its number and parameters are not certain, so no number is accepted.
 """
 
