@@ -1,7 +1,7 @@
 """HISTORY: the response to ground motions, starting from the static state.
 
-The analysis prepares the start of the reduced system, hands it to the method in one part or two (up to the
-state to be saved, and on), and collects the results of the method and the recorder.
+The analysis prepares the start of the reduced system, passes it to the method in one or two parts (up to
+the saved state, and after it), and collects the results of the method and the recorder.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ BALANCE = "base shear and overturning moment less inertia and loads, over the la
 CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: allowed height of a crest between two steps, at ten steps per period
-DISPLACEMENT_ROUNDING = 1e-13  #: fraction of the size of a structure below which a displacement is zero
+DISPLACEMENT_ROUNDING = 1e-13  #: fraction of the size of a structure below which displacements are zero
 BEARING = 0.25  #: fraction of the height of the highest storey below which a drift belongs to a bearing
 ROWS = 1000  #: approximate rows of stored histories, if OUTPUT gives no interval
 

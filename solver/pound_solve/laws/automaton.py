@@ -3,8 +3,9 @@
 A law is always on one of its *branches*.  A branch has up to three *event functions* ``g = a d + b v + g0``
 of the deformation ``d`` and its rate ``v``; where one of them rises through zero, a *transition* to another
 branch takes place.  On most branches the force is linear, ``f = k d + c v + f0``; a law with a `curve`
-computes it.  Integrators use nothing else of a law, and laws do not depend on the integrators.  The state
-(the branch and the *internal variables*) is immutable, so a trial step can be discarded.
+computes the force itself.  Integrators need nothing else from a law, and laws do not depend on the
+integrators.  The state (the branch and the *internal variables*) is immutable, so a trial step can be
+discarded.
 
 The functions of a Rule take and return plain numbers and tuples of fixed length, so that `jit` can compile
 the same source.
@@ -18,12 +19,12 @@ from enum import IntEnum
 from typing import NamedTuple
 
 EVENTS = 3  #: largest number of event functions of a branch
-K = 0  #: place of the (initial) stiffness among the parameters of a law
-FY, FY_MINUS = 1, 2  #: places of the yield forces (the negative one signed) in most hysteresis rules
-GAP = 2  #: place of the gap among the parameters of a contact
-RESTITUTION = 1  #: place of the restitution among those of a rigid contact
+K = 0  #: index of the (initial) stiffness among the parameters of a law
+FY, FY_MINUS = 1, 2  #: indices of the yield forces (the negative one is signed) in most hysteresis rules
+GAP = 2  #: index of the gap among the parameters of a contact
+RESTITUTION = 1  #: index of the restitution among the parameters of a rigid contact
 PAST = 1e-12  #: the variable of a smooth rule counts as zero up to this fraction of its scale
-AT_END = 1e-9  #: a law has left a line once it is beyond the end by this fraction of the deformation
+AT_END = 1e-9  #: fraction of the deformation by which a law must pass the end of a line to leave it
 NORMAL_FORCE, NORMAL_FORCE_RATE = 0, 1  #: internal variables of a law with normal-force coupling
 
 Numbers = tuple[float, ...]

@@ -33,7 +33,7 @@ STEEP = 0.99  #: largest g k; in terms of d a branch is then at most a hundred t
 rule_branch: Any = missing
 rule_transition: Any = missing
 rule_recoverable: Any = missing
-place = 0  #: place of g among the parameters, after those of the rule
+place = 0  #: index of g among the parameters, after those of the rule
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:

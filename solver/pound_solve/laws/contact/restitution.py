@@ -65,7 +65,7 @@ def no_tension_time(xi: float) -> float:
     """Return the time of release at zero force for damping ratio `xi`, times the undamped frequency [-]."""
     above_1 = xi - 1.0
     if abs(above_1) < 1e-6:
-        # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 share the series
+        # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 have the common series
         # 1 - above_1/3 + 2 above_1^2/15
         return 2.0 * (1.0 - above_1 / 3.0 + 2.0 * above_1 * above_1 / 15.0)
     if xi < 1.0:

@@ -15,8 +15,8 @@ The *backbone* of the positive side starts at the slackness :math:`g`:
   through the point of the backbone at :math:`g + \beta\,(d_{un} - g)`, where :math:`d_{un}` is the largest
   deformation of that side so far; from there the backbone continues.  A side that has not yielded reloads
   with :math:`k` to its yield point;
-* a motion that reverses anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
-  two sides.
+* after a reversal anywhere else, the spring unloads and reloads with :math:`p_{unl}\,k` between the paths
+  of the two sides.
 
 If the softening branch reaches zero force, or the pinched line of the other side, the connection fails: its
 force is zero from then on.
@@ -62,11 +62,11 @@ ELASTIC, YIELDING, BEYOND, PINCHED, RELOADING = 3, 5, 7, 9, 11
 
 # parameters of a law after K, FY, FY_MINUS: hardening ratio, ultimate forces, intercept F_i of the pinched
 # line, slope beyond the ultimate force, ends of the slack; beta, alpha; slopes of the pinched and of the
-# unloading lines (slopes as shares of K)
+# unloading lines (slopes as fractions of K)
 R, FU, FU_MINUS, INTERCEPT, TRI = range(3, 8)
 GAP_PLUS, GAP_MINUS, BETA, ALPHA, PINCH, UNLOAD = range(8, 14)
 # internal variables: largest deformations of both sides, foot of the unloading line; for its upper and its
-# lower end the branch there and the deformation
+# lower end the branch and the deformation
 MOST, MOST_MINUS, FOOT, UPPER, UPPER_END, LOWER, LOWER_END = range(7)
 
 Line = tuple[float, float]  #: slope and force at zero deformation
@@ -80,7 +80,7 @@ def is_slack(p: Numbers) -> bool:
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Return the initial branch: slack if there is a slack, else elastic."""
+    """Return the virgin state: slack if there is a slack, otherwise elastic."""
     return (SLACK if is_slack(p) else ELASTIC), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
