@@ -18,8 +18,8 @@ An impact that reaches :math:`\delta_m` has the energy :math:`W = \delta_m^2 (a 
 
 .. math:: K_1 = K\,\frac{a + s(1-a)}{a(1-s)}, \qquad K_2 = \frac{K - a K_1}{1-a}
 
-which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss relative
-to the energy of a Hertz contact; the restitution is then greater than :math:`e`.
+which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss computed
+from the energy of a Hertz contact; the restitution is then greater than :math:`e`.
 
 The restitution depends on the approach speed.  It is 1 if :math:`\delta_y` is not exceeded, and has its
 minimum, :math:`(K_2/K_1)^{1/4}`, at the overlap :math:`\delta_y(1 + \sqrt{K_1/K_2})`.

@@ -1,5 +1,5 @@
-r"""Equivalent contact of two rigid floors: a Kelvin-Voigt contact that gives the centres of mass the same
-velocities after a collision as two diaphragms with distributed mass.
+r"""Equivalent contact of two rigid floors: a Kelvin-Voigt contact after which their centres of mass move
+like those of two diaphragms with distributed mass.
 
 :mod:`pound_solve.laws.two_bars` gives the contact force of the diaphragms from the masses and from the
 axial stiffnesses DIAPHRAGMS.  A contact has two constants.  MODEL=EXACT gives it the impulse

@@ -61,7 +61,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Return the state after a touch, a slip, a stick or a release."""
+    """Return the state after a touch, the onset of slip or stick, or a release."""
     kt, mu, mud = p[:3]
     if at != OPEN and event == RELEASED:
         return OPEN, (0.0, 0.0, 0.0)

@@ -65,7 +65,7 @@ def no_tension_time(xi: float) -> float:
     """Return the time of release at zero force for damping ratio `xi`, times the undamped frequency [-]."""
     above_1 = xi - 1.0
     if abs(above_1) < 1e-6:
-        # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 have the common series
+        # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 have a common series
         # 1 - above_1/3 + 2 above_1^2/15
         return 2.0 * (1.0 - above_1 / 3.0 + 2.0 * above_1 * above_1 / 15.0)
     if xi < 1.0:
@@ -132,16 +132,14 @@ def in_both_phases_constant(e: float) -> float:
 
 
 def in_restitution(d: float) -> float:
-    """Return the restitution [-] for the constant `d` [-] of such damping that acts in restitution only."""
+    """Return the restitution [-] for the constant `d` [-] of such damping in restitution only."""
     if d == 0.0:
         return 1.0
     return _root(lambda e: 0.5 - e * e * phi(-d * e), 0.0, min(1.0, 1.0 / d))
 
 
 def in_restitution_constant(e: float) -> float:
-    """Return the constant [-] of such damping that acts in restitution only, for restitution `e`
-    in (0, 1].
-    """
+    """Return the constant [-] of such damping in restitution only, for restitution `e` in (0, 1]."""
     if e == 1.0:
         return 0.0
     return _root(lambda d: 0.5 - e * e * phi(-d * e), 0.0, 1.0 / e)

@@ -75,7 +75,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Return the state after a touch, a reversal, a passage of the rubber's limit in either direction, or a
+    """Return the state after a touch, a reversal, passing the limit of the rubber either way, or a
     separation.
     """
     if at == OPEN:

@@ -9,7 +9,7 @@ so that, on the elastic line, the fraction :math:`\gamma\varphi` of the initial 
 hardening is not reduced.  :math:`\varphi` decreases linearly with the ductility from 1 at :math:`D_1` to
 :math:`\varphi_R` at :math:`D_2` and, if :math:`D_3` is given, further to 0.01 at :math:`D_3`.  In the
 SUDDEN forms it stays at :math:`\varphi_R` up to :math:`D_3` and drops to 0.01 there.  :math:`\mu_L` is the
-largest ductility so far, either of the same side (EACH) or of both sides (LARGEST).  In the forms with
+largest ductility so far, of the same side (EACH) or the larger of both sides (LARGEST).  In the forms with
 RCYC, :math:`\gamma = 1 - c n`, but at least 0.01, after :math:`n` inelastic cycles (RCYC is :math:`c` in
 per cent).  With CYCLES the number of cycles replaces the ductility: :math:`\gamma = \varphi(n)`, and
 :math:`\varphi = 1`.

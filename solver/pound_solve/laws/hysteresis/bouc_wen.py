@@ -6,8 +6,8 @@ r"""Bouc-Wen: smooth hysteresis from a differential equation.
 
 with :math:`d_y = F_y/k` of the side of :math:`z`.  The force tends to the lines of the bilinear rule, and
 the rule tends to the bilinear rule as :math:`n \to \infty`.  (In the usual form A = 1,
-:math:`\beta_{BW} = \beta\,d_y^{-n}`, :math:`\gamma_{BW} = (1 - \beta)\,d_y^{-n}`.) With :math:`y = |z|/d_y`
-and :math:`u = |d|/d_y` measured from :math:`z = 0`, the equation is
+:math:`\beta_{BW} = \beta\,d_y^{-n}`, :math:`\gamma_{BW} = (1 - \beta)\,d_y^{-n}`.)  With
+:math:`y = |z|/d_y` and :math:`u = |d|/d_y` measured from :math:`z = 0`, the equation is
 
 .. math:: \frac{dy}{du} = 1 - y^n \text{ outwards}, \qquad \frac{dy}{du} = 1 + (2\beta - 1)\,y^n
           \text{ inwards (scaled by } (2\beta-1)^{1/n}\text{: } 1 + y^n)
