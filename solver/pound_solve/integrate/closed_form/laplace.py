@@ -198,8 +198,8 @@ class Laplace(EventDrivenRun):
         self.recorder.between(Course(at(begin), lengths, within))
 
     def _with_forces(self, t: Array, u: Array, v: Array, a: Array) -> Motion:
-        """Return the motion at some times with the forces of the laws in `Recorder.acting`."""
-        system, acting = self.system, self.recorder.acting
+        """Return the motion at some times with the forces of the laws in `Recorder.enveloped_laws`."""
+        system, enveloped_laws = self.system, self.recorder.enveloped_laws
         s, ds = (system.excitation.values(t, order).T for order in (0, 1))
         d = system.law_rows[enveloped_laws] @ u + system.law_inputs[enveloped_laws] @ s
         rate = system.law_rows[enveloped_laws] @ v + system.law_inputs[enveloped_laws] @ ds

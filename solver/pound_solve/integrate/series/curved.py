@@ -128,7 +128,7 @@ def force_term(constants: Array, power: Array, x: float, d: Array, k: int, h: fl
 
 
 def add_contacts(laws: Laws, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
-    """Add the coefficients `k` of the contacts' forces to the right side `new` of the coefficients `k` + 2."""
+    """Add the coefficients `k` of the contacts' forces to the right side `new` of those `k` + 2."""
     curved = series.curved
     for r in range(len(curved.laws)):
         if curved.phase[r] == APART:

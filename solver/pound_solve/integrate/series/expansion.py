@@ -10,8 +10,8 @@ Terms are added until two in a row are below a share `TRUNCATION` of the motion 
 :math:`k^2 c_k^T M c_k / h^2`.  If the last ones allowed are not, the step ends at the place where they
 would be; if that place is far from the end, the step is tried again, shorter.
 
-Two numbers go through these kernels: `degree`, the highest power of the series of a step, and `n_powers`, the
-number of coefficients of the excitation's polynomials, one more than their degree.
+Two numbers go through these kernels: `degree`, the highest power of the series of a step, and `n_powers`,
+the number of coefficients of the excitation's polynomials, one more than their degree.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int,
 
 
 def add_strings(members: Corotational, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
-    """Add the coefficients `k` of the strings' forces to the right side `new` of the coefficients `k` + 2."""
+    """Add the coefficients `k` of the strings' forces to the right side `new` of those `k` + 2."""
     strings = series.strings
     for c in range(len(members.parameters)):
         strings.across[c, k] = quantity_term(members, series, c, ACROSS, k, n_powers)

@@ -112,7 +112,7 @@ def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: in
 
 
 def find_drags(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
-    """Compute the coefficients `k` of the dampers' forces beyond their tangents, from the motion up to `k`."""
+    """Compute the coefficients `k` of the dampers' forces beyond their tangents from the motion."""
     viscous = series.viscous
     for r in range(len(viscous.laws)):
         if not viscous.fast[r]:
