@@ -74,7 +74,7 @@ def dispatcher(call: Function, field: str, own: Sequence[Function], numbers: dic
 
 def dispatchers(numbers: dict[str, int]) -> dict[Function, Function]:
     """What a library calls instead of each of `functions.CALLS`, see `dispatcher`."""
-    fields = zip(functions.CALLS, functions.Tables._fields, columns())
+    fields = zip(functions.CALLS, functions.RuleFunctions._fields, columns())
     return {call: dispatcher(call, field, own, numbers) for call, field, own in fields}
 
 

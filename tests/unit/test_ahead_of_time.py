@@ -77,7 +77,7 @@ def laws(series: bool) -> list[Spec]:
 
 
 def has_series(law: Law) -> bool:
-    return not law.curved or law.rule.powers is not None or law.rule.smooth is not None
+    return not law.curved or law.rule.power_law is not None or law.rule.smooth_curve is not None
 
 
 def shaken(method: str) -> str:

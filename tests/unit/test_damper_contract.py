@@ -57,7 +57,7 @@ def keep(law: Law) -> None:
         force, stiffness, slope = law.force(state, 0.0, v)
         assert (force > 0.0) == (v > 0.0) and (force < 0.0) == (v < 0.0), v
         assert stiffness == 0.0 and slope >= 0.0
-        assert law.power(state, 0.0, v) <= force * v * (1 + 1e-12)
+        assert law.dissipated_power(state, 0.0, v) <= force * v * (1 + 1e-12)
         assert law.stored(state, 0.3) == 0.0
 
 

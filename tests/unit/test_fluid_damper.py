@@ -240,7 +240,7 @@ def test_the_law_walked_by_hand():
     assert law.branch(inside).name == "in the play" and law.force(inside, 0.1, 9.0)[0] == 0.0
     assert [e.constant for e in law.branch(inside).events] == [-0.2, -0.1]
     out = law.transition(inside, 0, 0.2, 1.0)
-    assert law.force(out, 0.3, 1.0) == (2.0, 0.0, 1.0) and law.power(out, 0.3, 4.0) == 16.0
+    assert law.force(out, 0.3, 1.0) == (2.0, 0.0, 1.0) and law.dissipated_power(out, 0.3, 4.0) == 16.0
     back = law.transition(out, 0, 0.3, -1e-12)
     assert law.branch(back).name == "shortening" and law.force(back, 0.3, -1.0)[0] == -2.0
     # the limits of 4 and 3 are reached at the rates 4 and 2.25

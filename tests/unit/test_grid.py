@@ -54,7 +54,7 @@ def test_no_peak_is_passed_over(terms: list[tuple[float, float, float]], step: f
     marked = grid.may_peak(
         f.value(t)[None], f.slope(t)[None], np.full((1, 3), f.curvature), np.diff(t), [peak]
     )[0]
-    grid.count_samples([seen], t.ravel(), f.value(t).reshape(1, -1))
+    grid.update_by_samples([seen], t.ravel(), f.value(t).reshape(1, -1))
     within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
     x = f.value(within[marked])
     high = max(seen.high, x.max(initial=-np.inf))
@@ -122,7 +122,7 @@ def test_two_turns_within_one_cell_are_seen(first: float, second: float, share: 
 
     value, slope = g(t)[None], rate(t)[None]
     peak = Extreme()
-    grid.count_extremes([peak], 0.0, t, value, slope, evaluate)
+    grid.update_by_extremes([peak], 0.0, t, value, slope, evaluate)
     assert abs(peak.high - max(g(np.array([0.0, 1.0, first, second])))) < 1e-12
     assert abs(peak.low - min(g(np.array([0.0, 1.0, first, second])))) < 1e-12
     if value.max() > 1e-9:

@@ -370,7 +370,7 @@ def test_peak_oriented_rules_stay_within_the_backbone_of_their_side() -> None:
 
 
 #: OpenSees 3.7.1 (openseespy 3.7.1.2), strain-driven 4000 steps a stretch, k = 10, yield at +-2, ten digits
-TURNS = (8, 6, 1, 1.5, -2, -8, 2, 1, 8, 9, -3, 0, -12, -12.5, 3, 12, 15, -15)
+CROSSES_LINEAR_RANGE = (8, 6, 1, 1.5, -2, -8, 2, 1, 8, 9, -3, 0, -12, -12.5, 3, 12, 15, -15)
 PEER = [
     # Hysteretic, envelope of slope 1 beyond yield, pinchX = pinchY = 1, no damage, beta = 0.5
     ("CLOUGH", {"R": 0.1, "ALFA": 0.5},
@@ -392,7 +392,7 @@ def test_opensees_gives_the_same_forces(
     name: str, values: dict[str, Any], forces: tuple[float, ...]
 ) -> None:
     walk = Walk(rule(name, 20.0, -20.0, **values))
-    assert [walk.move(d).force for d in TURNS] == pytest.approx(forces, rel=1e-9)
+    assert [walk.move(d).force for d in CROSSES_LINEAR_RANGE] == pytest.approx(forces, rel=1e-9)
 
 
 # ---------------------------------------------------------------------- loss of strength

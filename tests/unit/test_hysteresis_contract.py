@@ -364,12 +364,12 @@ def compare(laws: Sequence[Law]) -> None:
             f = law.force(state, d)[0]
             expected = rule.recoverable(law.p, at, own, d, f)
             assert recoverable(p, at, m, d, f) == pytest.approx(expected, rel=1e-13)
-            assert power(p, at, m, d, 1.0) == law.power(state, d, 1.0) == 0.0
+            assert power(p, at, m, d, 1.0) == law.dissipated_power(state, d, 1.0) == 0.0
             if rule.curve is not None:
                 expected = rule.curve(law.p, at, own, d0, d, 0.0)
                 assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
-            if rule.smooth is not None:
-                expected = rule.smooth(law.p, at, own, d, f)
+            if rule.smooth_curve is not None:
+                expected = rule.smooth_curve(law.p, at, own, d, f)
                 assert smooth(p, at, m, d, f) == pytest.approx(expected, rel=1e-12, abs=1e-13)
             if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
                 for way in range(len(law.branch(state).events)):

@@ -210,17 +210,17 @@ def test_buildings_that_touch_at_rest(law: str, points: str) -> None:
 
 def test_a_step_is_none_where_the_clock_does_not_show_it() -> None:
     """At 0, too, where each step shows, however short."""
-    lengths = record(state.Lengths)
+    lengths = record(state.StepControl)
     for t in (0.0, 0.5):
         for length, shows in ((1e-3, True), (1e-17, False), (1e-300, False)):
-            lengths.next = length
+            lengths.next_length = length
             assert (march.step_length(lengths, t, 1.0) > 0.0) == shows
 
 
 @pytest.mark.parametrize("fit", [math.nan, 0.0, 0.5, 0.999, 1.0 - 1e-12])
 def test_a_step_that_did_not_fit_is_tried_shorter(fit: float) -> None:
     """By so much that equal parts of what is left are not as long as before."""
-    lengths = record(state.Lengths)
+    lengths = record(state.StepControl)
     for parts in (1, 2, 1000):
         h = 1.0 / parts
         march.shorten_step(lengths, h, fit)

@@ -97,11 +97,11 @@ def test_with_tension_it_pulls_before_it_parts() -> None:
 def test_every_law_is_driven_to_its_end(spec: Any) -> None:
     """The corners agree with a path followed without them, and the work with the area under the curve."""
     spring, _ = specimen(spec)
-    path, rate = protocol(spring), float(spring.role.viscous)
+    path, rate = protocol(spring), float(spring.role.reports_damping)
     found = trace(spring.law, path, rate)
     assert [p.d for p in found.corners if p.turn] == path
     ends = [p for p in found.corners if p.turn]
-    if not spring.role.viscous:
+    if not spring.role.reports_damping:
         state, d = spring.law.start(), 0.0
         for p, goal in zip(ends, path):
             state, d = drive(spring.law, state, d, goal), goal

@@ -126,7 +126,7 @@ def test_arguments_are_laid_out_as_compiled_code_has_them() -> None:
 
 def test_functions_of_rules_become_numbers() -> None:
     own = functions.functions(bilinear.RULE)
-    tables = functions.Tables(*((f,) for f in own))
+    tables = functions.RuleFunctions(*((f,) for f in own))
     numbers = {f.__qualname__: n for n, f in enumerate(own)}
     block = Block([tables], numbers)
     assert block.types == ["<i81"] * len(tables)
@@ -135,7 +135,7 @@ def test_functions_of_rules_become_numbers() -> None:
 
 
 def test_kernels_call_rules_by_functions_that_a_library_replaces() -> None:
-    fields = functions.Tables._fields
+    fields = functions.RuleFunctions._fields
     assert [call.__name__ for call in functions.CALLS] == [f"{field}_of" for field in fields]
     assert len(functions.SIGNATURES) == len(fields)
     program = Path(library.__file__).parents[1]

@@ -13,12 +13,12 @@ SIZE, LAWS, STEPS, INPUTS = 3, 2, 12, 2
 SHARES = np.linspace(0.0, 1.0, 2001)
 
 
-def steps(terms: int, rng: np.random.Generator) -> StepCourse:
+def steps(degree: int, rng: np.random.Generator) -> StepCourse:
     """Steps with random series whose powers fall, of unknowns in another order than that of elimination."""
     length = rng.uniform(0.01, 0.1, STEPS)
-    coefs = rng.normal(size=(STEPS, SIZE + LAWS, terms + 1)) / 1.5 ** np.arange(terms + 1)
-    used = rng.integers(3, terms + 1, STEPS)
-    coefs[np.arange(terms + 1) > used[:, None, None] + np.zeros((1, SIZE + LAWS, 1), int)] = 0.0
+    coefs = rng.normal(size=(STEPS, SIZE + LAWS, degree + 1)) / 1.5 ** np.arange(degree + 1)
+    used = rng.integers(3, degree + 1, STEPS)
+    coefs[np.arange(degree + 1) > used[:, None, None] + np.zeros((1, SIZE + LAWS, 1), int)] = 0.0
     nothing = np.zeros((1, 0, 0))
     shown = EnvelopeBuffers(
         is_needed=np.array([True]),
@@ -26,7 +26,7 @@ def steps(terms: int, rng: np.random.Generator) -> StepCourse:
         laws=np.arange(LAWS),
         kept=np.array([STEPS, 0]),
         coefs=coefs,
-        terms=used,
+        degree=used,
         begin=np.append(0.0, np.cumsum(length)[:-1]),
         length=length,
         x=nothing,
@@ -38,11 +38,11 @@ def steps(terms: int, rng: np.random.Generator) -> StepCourse:
     return StepCourse(shown, np.array([2, 0, 1]), Excitation(breaks, rng.normal(size=(3, 3, INPUTS))))
 
 
-@pytest.mark.parametrize("terms", [6, 32])
+@pytest.mark.parametrize("degree", [6, 32])
 @pytest.mark.parametrize("seed", range(4))
-def test_extremes_are_those_of_dense_samples(terms: int, seed: int) -> None:
+def test_extremes_are_those_of_dense_samples(degree: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    own = steps(terms, rng)
+    own = steps(degree, rng)
     course = own.course()
     assert course.within is not None
     assert course.extremes is not None

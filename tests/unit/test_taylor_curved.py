@@ -70,7 +70,7 @@ ANALYSIS
 POWERS = [
     name
     for name, spec in catalog().family("contact").items()
-    if has_loop(spec) and specimen(spec)[0].law.rule.powers is not None
+    if has_loop(spec) and specimen(spec)[0].law.rule.power_law is not None
 ]
 full = pytest.mark.full
 
@@ -315,7 +315,7 @@ def test_powers_are_the_curve(name: str) -> None:
             states.append(law.transition(touched, 2, law.p[2] + limit, v))
             states.append(law.transition(states[-1], 0, law.p[2] + 2.0 * limit, 0.0))
     for at, d0, _, m in states:
-        k, n, c, q, pulls, shift = rule.powers(law.p, at, m)
+        k, n, c, q, pulls, shift = rule.power_law(law.p, at, m)
         used_up = "used up" in rule.branches[at].name
         for x, v in zip(10.0 ** rng.uniform(-6, 0, 20), rng.normal(size=20)):
             v = abs(v) if rule.branches[at].name == "pressed" and name == "JANKOWSKI" else v  # in approach

@@ -346,7 +346,7 @@ def test_supports_that_move_apart() -> None:
 def test_powers_are_the_curve(name: str) -> None:
     """On all branches on which a damper with a curve moves, at random rates."""
     law = law_of(catalog().family("damper")[name])
-    powers = law.rule.powers
+    powers = law.rule.power_law
     if powers is None:
         pytest.skip("linear on each branch")
     for v in np.random.default_rng(3).normal(size=20) * 10.0 ** np.arange(-10, 10):

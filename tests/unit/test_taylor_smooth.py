@@ -47,7 +47,7 @@ ANALYSIS
 
 
 def is_smooth(spec: Spec) -> bool:
-    return has_loop(spec) and specimen(spec)[0].law.rule.smooth is not None
+    return has_loop(spec) and specimen(spec)[0].law.rule.smooth_curve is not None
 
 
 K, ALPHA = 25.0, 0.1
@@ -253,13 +253,13 @@ def test_the_differential_equation_is_that_of_the_curve(name: str) -> None:
         d = 0.5 * (d + goal)
         at, _, _, m = state
         f, tangent, _ = law.force(state, d)
-        w, y, n, a, b, k, q = law.rule.smooth(law.p, at, m, d, f)
+        w, y, n, a, b, k, q = law.rule.smooth_curve(law.p, at, m, d, f)
         assert w / y >= 0.0
         slope = (1.0 + a * (w / y) ** n) / (1.0 + b * (w / y) ** n)
         assert k + q * slope == pytest.approx(tangent, rel=1e-12)
         ahead = d + 1e-5 * (goal - d)
         after = law.force(state, ahead)[0]
-        further = law.rule.smooth(law.p, at, m, ahead, after)[0]
+        further = law.rule.smooth_curve(law.p, at, m, ahead, after)[0]
         assert after - f == pytest.approx(k * (ahead - d) + q * (further - w), rel=1e-9)
         state, d = drive(law, state, d, goal), goal
 

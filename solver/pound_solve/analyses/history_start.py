@@ -77,7 +77,7 @@ def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
     """
     laws = system.structure.laws
     idle = massless(system.mass) & (pushed == 0.0) & ~used_rows(system.damping)
-    damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.role.viscous]
+    damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.role.reports_damping]
     idle &= ~used_columns(system.law_rows[damped])
     if idle.any() and pushed.any():
         k = system.stiffness + weighted(system.law_rows, [s.k0 for s in laws])

@@ -526,9 +526,9 @@ def _secant(law: Law, state: State, size: float) -> float:
     """Return the secant stiffness of a contact from zero force to a force `size`; zero if it is open or
     linear.
     """
-    if law.rule.powers is None:
+    if law.rule.power_law is None:
         return 0.0
-    k, n = law.rule.powers(law.p, state[0], state[3])[:2]
+    k, n = law.rule.power_law(law.p, state[0], state[3])[:2]
     secant: float = k ** (1.0 / n) * size ** (1.0 - 1.0 / n)
     return secant
 

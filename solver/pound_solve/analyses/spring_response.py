@@ -108,7 +108,7 @@ def _response(
     # pair the largest deformation and force, which coincide unless the force falls with the deformation
     largest = spring.whole(d.high, f.high), spring.whole(d.low, f.low)
     plastic = None
-    if spring.role.viscous:
+    if spring.role.reports_damping:
         loss += peaks.dashpot_losses[i]
     if loss and spring.role is Role.SPRING:  # friction has no separate residual deformation
         last = recorder.deformations[i]

@@ -236,5 +236,5 @@ def table(points: Sequence[LoopPoint]) -> str:
 def picture(spec: Spec) -> str:
     """SVG of a law's loop with its `sample`, for the manual."""
     spring, items = specimen(spec)
-    loop = trace(spring.law, protocol(spring), float(spring.role.viscous))
+    loop = trace(spring.law, protocol(spring), float(spring.role.reports_damping))
     return svg(loop.curve, f"{spec.name} {items}", *AXES[spec.family])

@@ -39,7 +39,7 @@ def of_step(system: ReducedSystem) -> float:
 
 def smooth_laws(system: ReducedSystem) -> int:
     """Return how many laws are smooth curves."""
-    return sum(s.law.rule.smooth is not None for s in system.structure.laws)
+    return sum(s.law.rule.smooth_curve is not None for s in system.structure.laws)
 
 
 def of_series_step(system: ReducedSystem) -> float:

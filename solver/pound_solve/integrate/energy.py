@@ -84,7 +84,7 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
     begin, before = np.array([s[1:3] for s in states]).T[:, :, None]
     still = k * d + f0
     done = before + (0.5 * k * (d + begin) + f0) * (d - begin)
-    force = still + c * rate * np.array([[s.role.viscous] for s in system.structure.laws])
+    force = still + c * rate * np.array([[s.role.reports_damping] for s in system.structure.laws])
     for i, s in enumerate(system.structure.laws):
         if s.law.curved:
             deformations = d[i].tolist()

@@ -307,8 +307,8 @@ def not_in_series(system: ReducedSystem) -> str:
     for s, massless_end in zip(laws, without_mass):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
-            smooth, rubs = s.law.rule.smooth is not None, s.role is Role.FRICTION
-            if s.law.rule.powers is None and not smooth and not rubs:
+            smooth, rubs = s.law.rule.smooth_curve is not None, s.role is Role.FRICTION
+            if s.law.rule.power_law is None and not smooth and not rubs:
                 return law
             if massless_end and not smooth and s.role is not Role.DAMPER:
                 return f"{law} and meets a node without mass"

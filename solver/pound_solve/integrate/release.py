@@ -56,7 +56,7 @@ class JumpingRun(Protocol):
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` on a way in the direction of `v`."""
 
-    def take_release(self, law: int, lost: float, put_in: float) -> None:
+    def add_release_work(self, law: int, lost: float, put_in: float) -> None:
         """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
         the input.
         """
@@ -151,7 +151,7 @@ def release(run: JumpingRun, law: int) -> None:
         fraction, i, e = first_event_on_path(run.branches, d, move)
         run.u[z] += fraction * way
         put_in = float(system.applied(s) @ (system.expand[:, z] @ (fraction * way)))
-        run.take_release(law, float(left @ way) * (fraction - 0.5 * fraction * fraction), put_in)
+        run.add_release_work(law, float(left @ way) * (fraction - 0.5 * fraction * fraction), put_in)
         d += fraction * move
         for j in np.flatnonzero(move).tolist():  # extremes stand at the ends of the straight parts
             run.tracker.deformation(j).take(float(d[j]), run.t)

@@ -37,8 +37,8 @@ TransitionFunction = Callable[[Numbers, int, Numbers, int, float, float], tuple[
 EnergyFunction = Callable[[Numbers, int, Numbers, float, float], float]
 CurveFunction = Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]]
 PowerFunction = Callable[[Numbers, int, Numbers, float, float], float]
-PowersNumbers = tuple[float, float, float, float, float, float]
-PowersFunction = Callable[[Numbers, int, Numbers], PowersNumbers]
+PowerLawNumbers = tuple[float, float, float, float, float, float]
+PowerLawFunction = Callable[[Numbers, int, Numbers], PowerLawNumbers]
 SmoothNumbers = tuple[float, float, float, float, float, float, float]
 SmoothFunction = Callable[[Numbers, int, Numbers, float, float], SmoothNumbers]
 
@@ -156,20 +156,21 @@ class Rule:
     curve : callable or None
         ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` of a rule whose
         branches are not linear; `d0` is the deformation at the entry of the branch.
-    power : callable or None
-        ``power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates at the rate `v`.  None: the
-        power of the rate-dependent part of the force, see `rate_power`.  A linear branch dissipates the
-        power ``c v^2``.
-    powers : callable or None
-        ``powers(p, at, m) -> (k, n, c, q, pulls, shift)``: the force of a pressed contact with a `curve` is
-        ``k x^n + c x^q v``, where x is the overlap ``d - p[GAP]`` minus `shift`.  Unless `pulls` is above
-        zero, the force is zero where this expression would pull.  The force of a damper on a nonlinear
-        branch is ``k |v|^n``, where `k` has the sign of the rate.  None: the rule has neither form.
-    smooth : callable or None
-        ``smooth(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: starting from the deformation `d` and the force
-        `f`, the force of a rule with a `curve` is ``k d + q w`` plus a constant, with
-        ``dw/dd = (1 + a x^n) / (1 + b x^n)``, ``x = w / y``.  The numbers change where `x` falls to zero; a
-        remainder up to `PAST` is rounding error.  None: the rule does not have this form.
+    dissipated_power : callable or None
+        ``dissipated_power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates at the rate `v`.
+        None: the power of the rate-dependent part of the force, see `rate_power`.  A linear branch
+        dissipates the power ``c v^2``.
+    power_law : callable or None
+        ``power_law(p, at, m) -> (k, n, c, q, pulls, shift)``: the force of a pressed contact with a `curve`
+        is ``k x^n + c x^q v``, where x is the overlap ``d - p[GAP]`` minus `shift`.  Unless `pulls` is
+        above zero, the force is zero where this expression would pull.  The force of a damper on a
+        nonlinear branch is ``k |v|^n``, where `k` has the sign of the rate.  None: the rule has neither
+        form.
+    smooth_curve : callable or None
+        ``smooth_curve(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: starting from the deformation `d` and the
+        force `f`, the force of a rule with a `curve` is ``k d + q w`` plus a constant, with ``dw/dd = (1 +
+        a x^n) / (1 + b x^n)``, ``x = w / y``.  The numbers change where `x` falls to zero; a remainder up
+        to `PAST` is rounding error.  None: the rule does not have this form.
     steepest : callable
         ``steepest(p) -> stiffness``, an upper bound of the stiffness of all straight branches.
     first_yield : callable or None
@@ -185,16 +186,16 @@ class Rule:
     transition: TransitionFunction
     recoverable: EnergyFunction = on_spring
     curve: CurveFunction | None = None
-    power: PowerFunction | None = None
-    powers: PowersFunction | None = None
-    smooth: SmoothFunction | None = None
+    dissipated_power: PowerFunction | None = None
+    power_law: PowerLawFunction | None = None
+    smooth_curve: SmoothFunction | None = None
     steepest: Callable[[Numbers], float] = first_stiffness
     first_yield: Callable[[Numbers], tuple[float, float]] | None = None
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        if self.power is not None and self.curve is None:
+        if self.dissipated_power is not None and self.curve is None:
             raise ValueError("a rule states its power beside a curve only: a linear branch loses c v^2")
 
     @property
@@ -281,14 +282,14 @@ class Law:
         k, c, f0 = self.rule.branch(self.p, state[0], state[3])[:3]
         return k * d + c * v + f0, k, c
 
-    def power(self, state: State, d: float, v: float) -> float:
+    def dissipated_power(self, state: State, d: float, v: float) -> float:
         """Return the power [F L/T] that the law dissipates at rate `v` and deformation `d`."""
         at, _, _, m = state
         if self.rule.curve is None:
             return self.rule.branch(self.p, at, m)[1] * v * v
-        if self.rule.power is None:
+        if self.rule.dissipated_power is None:
             return rate_power(self.rule.curve, self.p, at, m, d, v)
-        return self.rule.power(self.p, at, m, d, v)
+        return self.rule.dissipated_power(self.p, at, m, d, v)
 
     def work(self, state: State, d: float) -> float:
         """Return the work done on the law so far [F L] at deformation `d`, excluding dashpots."""

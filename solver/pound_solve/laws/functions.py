@@ -19,8 +19,8 @@ from pound_solve.laws.automaton import (
     EnergyFunction,
     Numbers,
     PowerFunction,
-    PowersFunction,
-    PowersNumbers,
+    PowerLawFunction,
+    PowerLawNumbers,
     Rule,
     SmoothFunction,
     SmoothNumbers,
@@ -39,73 +39,75 @@ ROOM = 8  #: the tables have room for this number of rules, or a multiple of it
 PARAMETERS, VARIABLES = 20, 16
 
 
-class Tables(NamedTuple):
+class RuleFunctions(NamedTuple):
     """The functions of several rules: one tuple per kind of function, in the order of the rules."""
 
     branch: tuple[BranchFunction, ...]
     transition: tuple[TransitionFunction, ...]
     recoverable: tuple[EnergyFunction, ...]
     curve: tuple[CurveFunction, ...]
-    power: tuple[PowerFunction, ...]
-    powers: tuple[PowersFunction, ...]
-    smooth: tuple[SmoothFunction, ...]
+    dissipated_power: tuple[PowerFunction, ...]
+    power_law: tuple[PowerLawFunction, ...]
+    smooth_curve: tuple[SmoothFunction, ...]
 
 
 # the functions that kernels call; the library compiled ahead of time has its own, see `ahead_of_time`
 
 
-def branch_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers) -> Numbers:
+def branch_of(rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers) -> Numbers:
     """Return the branch of rule `number`."""
     return rules.branch[number](p, at, m)
 
 
 def transition_of(
-    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, event: int, d: float, v: float
+    rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers, event: int, d: float, v: float
 ) -> tuple[int, Numbers]:
     """Return the state after a transition of rule `number`."""
     return rules.transition[number](p, at, m, event, d, v)
 
 
 def recoverable_of(
-    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
+    rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
 ) -> float:
     """Return the recoverable energy of rule `number`."""
     return rules.recoverable[number](p, at, m, d, f)
 
 
 def curve_of(
-    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+    rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Evaluate the curve of rule `number`."""
     return rules.curve[number](p, at, m, d0, d, v)
 
 
-def power_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+def dissipated_power_of(
+    rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers, d: float, v: float
+) -> float:
     """Return the dissipated power of rule `number`."""
-    return rules.power[number](p, at, m, d, v)
+    return rules.dissipated_power[number](p, at, m, d, v)
 
 
-def powers_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law_of(rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the power-law coefficients of rule `number`."""
-    return rules.powers[number](p, at, m)
+    return rules.power_law[number](p, at, m)
 
 
-def smooth_of(
-    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
+def smooth_curve_of(
+    rules: RuleFunctions, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
 ) -> SmoothNumbers:
     """Return the smooth curve of rule `number`."""
-    return rules.smooth[number](p, at, m, d, f)
+    return rules.smooth_curve[number](p, at, m, d, f)
 
 
-#: the functions above, in the order of `Tables`
+#: the functions above, in the order of `RuleFunctions`
 CALLS: tuple[Function, ...] = (
     branch_of,
     transition_of,
     recoverable_of,
     curve_of,
-    power_of,
-    powers_of,
-    smooth_of,
+    dissipated_power_of,
+    power_law_of,
+    smooth_curve_of,
 )
 
 _P, _M = f"UniTuple(f8, {PARAMETERS})", f"UniTuple(f8, {VARIABLES})"
@@ -128,12 +130,12 @@ def straight(
     return 0.0, 0.0, 0.0, 0.0
 
 
-def no_powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def no_power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Stand in for the powers of a rule that has none."""
     return 0.0, 1.0, 0.0, 1.0, 0.0, 0.0
 
 
-def not_smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+def no_smooth_curve(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Stand in for the smooth curve of a rule that has none."""
     return 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0
 
@@ -225,7 +227,7 @@ def curve(
     return response
 
 
-def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+def dissipated_power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Return the dissipated power from the rule's own function."""
     stated: float = function_of_rule(p[:parameters], at, m[:variables], d, v)
     return stated
@@ -241,13 +243,13 @@ def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     return power
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the power-law coefficients of a rule."""
-    numbers: PowersNumbers = function_of_rule(p[:parameters], at, m[:variables])
+    numbers: PowerLawNumbers = function_of_rule(p[:parameters], at, m[:variables])
     return numbers
 
 
-def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+def smooth_curve(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Return the smooth curve of a rule."""
     numbers: SmoothNumbers = function_of_rule(p[:parameters], at, m[:variables], d, f)
     return numbers
@@ -255,7 +257,8 @@ def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers
 
 @cache
 def functions(rule: Rule) -> tuple[Function, ...]:
-    """Return the functions of a rule in the order of `Tables`, for tuples of `PARAMETERS` and `VARIABLES`.
+    """Return the functions of a rule in the order of `RuleFunctions`, for tuples of `PARAMETERS` and
+    `VARIABLES`.
 
     Raises
     ------
@@ -284,14 +287,14 @@ def functions(rule: Rule) -> tuple[Function, ...]:
         rate_independent
         if rule.curve is None
         else adapted(power_by_rate, rule.curve)
-        if rule.power is None
-        else adapted(power, rule.power),
-        no_powers if rule.powers is None else adapted(powers, rule.powers),
-        not_smooth if rule.smooth is None else adapted(smooth, rule.smooth),
+        if rule.dissipated_power is None
+        else adapted(dissipated_power, rule.dissipated_power),
+        no_power_law if rule.power_law is None else adapted(power_law, rule.power_law),
+        no_smooth_curve if rule.smooth_curve is None else adapted(smooth_curve, rule.smooth_curve),
     )
 
 
-def tables(rules: Sequence[Rule]) -> Tables:
+def tables(rules: Sequence[Rule]) -> RuleFunctions:
     """Return the functions of the rules, ready to be called by number.
 
     The last rule is repeated to fill the tables up to a length that few decks exceed, because numba
@@ -300,4 +303,6 @@ def tables(rules: Sequence[Rule]) -> Tables:
     by_rule = [functions(r) for r in rules]
     by_rule += by_rule[-1:] * (-len(by_rule) % ROOM)
     ready = provider().ready
-    return Tables(*(tuple(ready(f, s) for f in column) for column, s in zip(zip(*by_rule), SIGNATURES)))
+    return RuleFunctions(
+        *(tuple(ready(f, s) for f in column) for column, s in zip(zip(*by_rule), SIGNATURES))
+    )

@@ -27,6 +27,8 @@ from pound_solve.numerics.types import Array, Index
 Positions = NDArray[np.uint32]
 
 
+PIVOT_ROUNDING = 1e-14  #: fraction of its terms up to which a pivot counts as zero
+UPDATE_BREAKDOWN = 1e-8  #: fraction of a pivot that an update must leave of it
 SPARE_ENTRIES = 0.05  #: additional entries per unknown that are accepted for an order with few diagonals
 
 
@@ -184,7 +186,7 @@ def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: 
             for x in range(y + 1, s.lp[k + 1]):
                 w[s.li[x]] -= l[x] * t
         w[j] = 0.0
-        if not abs(pivot) > 1e-14 * size:
+        if not abs(pivot) > PIVOT_ROUNDING * size:
             for y in range(s.lp[j], s.lp[j + 1]):
                 w[s.li[y]] = 0.0
             return j
@@ -211,7 +213,7 @@ def update(s: Pattern, l: Array, d: Array, w: Array, first: int, change: float) 
         w[j] = 0.0
         if p != 0.0:
             pivot = d[j] + change * p * p
-            if not abs(pivot) > 1e-8 * abs(d[j]):
+            if not abs(pivot) > UPDATE_BREAKDOWN * abs(d[j]):
                 good = False
                 pivot = d[j]
             g = p * change / pivot

@@ -44,7 +44,7 @@ from pound_solve.structure.dofs import Dof
 
 QUANTITIES = 6
 #: columns of the quantities n, t, x, y, r_I and r_J
-AXIAL, TURNING, ALONG, ACROSS, ROTATION_I, ROTATION_J = range(QUANTITIES)
+AXIAL, END_MOMENT, ALONG, ACROSS, ROTATION_I, ROTATION_J = range(QUANTITIES)
 #: columns of the parameters; KNN, KNT, KTT are k_z, SHARE_I the weight of I's rotation in the member's
 KIND, LENGTH, END1, END2, SHARE_I, KNN, KNT, KTT, N0, T0 = range(10)
 STRING, COROTATIONAL = 0.0, 1.0  #: kinds
@@ -104,12 +104,12 @@ def quantity_forces(p: Array, c: int, s: Array, at: int, out: Array, to: int) ->
     now, co, si, eta, rho = chord_geometry(p, c, s, at)
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
     n = s[c, at + AXIAL] + p[c, N0] + p[c, KNN] * eta + p[c, KNT] * rho
-    t = s[c, at + TURNING] + p[c, T0] + p[c, KNT] * eta + p[c, KTT] * rho
+    t = s[c, at + END_MOMENT] + p[c, T0] + p[c, KNT] * eta + p[c, KTT] * rho
     ci, cj = math.cos(s[c, at + ROTATION_I]), math.cos(s[c, at + ROTATION_J])
     ti, tj = math.sin(s[c, at + ROTATION_I]), math.sin(s[c, at + ROTATION_J])
     over = t / now
     out[c, to + AXIAL] = eta
-    out[c, to + TURNING] = rho
+    out[c, to + END_MOMENT] = rho
     out[c, to + ALONG] = n * (co - 1.0) - over * si
     out[c, to + ACROSS] = n * si + over * co - t / length
     out[c, to + ROTATION_I] = end1 * (n * (co * ti - si * ci) - over * (si * ti + co * ci) + t / length)
@@ -130,7 +130,7 @@ def quantity_stiffness(p: Array, c: int, s: Array, at: int, h: Array, to: int) -
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
     knn, knt, ktt = p[c, KNN], p[c, KNT], p[c, KTT]
     n = s[c, at + AXIAL] + p[c, N0] + knn * eta + knt * rho
-    t = s[c, at + TURNING] + p[c, T0] + knt * eta + ktt * rho
+    t = s[c, at + END_MOMENT] + p[c, T0] + knt * eta + ktt * rho
     ci, cj = math.cos(s[c, at + ROTATION_I]), math.cos(s[c, at + ROTATION_J])
     ti, tj = math.sin(s[c, at + ROTATION_I]), math.sin(s[c, at + ROTATION_J])
     # along and across the chord: how its end moves with x, y and the rotations
@@ -142,7 +142,7 @@ def quantity_stiffness(p: Array, c: int, s: Array, at: int, h: Array, to: int) -
         a, b = along[i] - first[i], across[i] / now - linear[i]
         row = 6 * (ALONG + i)  # first entry of the quantity's row; those of n and t are the same in columns
         h[to, 6 * AXIAL + ALONG + i] = h[to, row + AXIAL] = a
-        h[to, 6 * TURNING + ALONG + i] = h[to, row + TURNING] = b
+        h[to, 6 * END_MOMENT + ALONG + i] = h[to, row + END_MOMENT] = b
         for j in range(4):
             c2, d2 = along[j] - first[j], across[j] / now - linear[j]
             h[to, row + ALONG + j] = (
@@ -167,7 +167,7 @@ def member_actions(p: Array, s: Array, out: Array) -> None:
     """
     for i in range(s.shape[0]):
         for c in range(s.shape[1]):
-            n, t = s[i, c, AXIAL] + p[c, N0], s[i, c, TURNING] + p[c, T0]
+            n, t = s[i, c, AXIAL] + p[c, N0], s[i, c, END_MOMENT] + p[c, T0]
             if p[c, KIND] == STRING:
                 out[i, c, 0] = 0.5 * n * s[i, c, ACROSS] * s[i, c, ACROSS] / p[c, LENGTH]
                 out[i, c, 1] = out[i, c, 2] = out[i, c, 3] = 0.0

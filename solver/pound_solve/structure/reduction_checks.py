@@ -70,7 +70,7 @@ def check_jumps(structure: Structure, jumping: Array, live: Flags) -> None:
         return
     jump = least_squares(structure.initial_stiffness[np.ix_(z, z)], sudden, 1e-12)
     for spring, (at, row) in zip(structure.laws, by_rows(structure.law_rows[:, z])):
-        if not spring.role.viscous and np.any(
+        if not spring.role.reports_damping and np.any(
             np.abs(row @ jump[at]) > 1e-9 * np.abs(row).max(initial=0.0) * np.abs(jump).max()
         ):
             where = int(z[int(np.argmax(np.abs(sudden).max(axis=1)))])

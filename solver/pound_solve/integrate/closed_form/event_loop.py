@@ -102,15 +102,15 @@ class EventDrivenRun(ABC):
         """Return the force of a law at rest at deformation `d`, and its tangent."""
         return self.laws[law].law.force(self.states[law], d)[:2]
 
-    def take_release(self, law: int, lost: float, put_in: float) -> None:
+    def add_release_work(self, law: int, lost: float, put_in: float) -> None:
         """Add the energy `lost` by a falling force to the work done on its law, and the work `put_in` by
         loads to the input.
         """
         at, d, work, m = self.states[law]
         self.states[law] = at, d, work + lost, m
-        self.take_works(np.array([put_in, 0.0, 0.0]))
+        self.add_works(np.array([put_in, 0.0, 0.0]))
 
-    def take_works(self, works: Array) -> None:
+    def add_works(self, works: Array) -> None:
         """Add works done at one instant, shape (3,)."""
         before = self.energy.array()
         self.energy.advance(np.array([before, before + works]))

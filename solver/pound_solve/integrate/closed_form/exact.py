@@ -248,13 +248,13 @@ class Exact(EventDrivenRun):
         """Return the forces of all laws at deformations and rates (see `RigidRun`)."""
         return linear_forces(self.branches)(d, v)
 
-    def take_works(self, works: Array) -> None:
+    def add_works(self, works: Array) -> None:
         """Add works that are done at one instant, shape (3,)."""
         self.work.add(works)
 
-    def take_impact(self, put_in: float, lost: Array) -> None:
+    def add_impact_work(self, put_in: float, lost: Array) -> None:
         """Add the works of an impact of rigid contacts (see `RigidRun`)."""
-        self.take_works(np.array([put_in, 0.0, lost.sum()]))
+        self.add_works(np.array([put_in, 0.0, lost.sum()]))
         self.energy.dashpot_losses += lost
 
     def _check_progress(self, length: float, rest: float) -> None:
@@ -279,7 +279,7 @@ class Exact(EventDrivenRun):
         self.count_magnitudes(coarse.value[:, seen], coarse.rate[:, seen])
         if fine.t.size:
             self.count_magnitudes(fine.value[..., -1], fine.rate[..., -1])
-        self.search.count_peaks(coarse, fine, self.t, end)
+        self.search.update_peaks(coarse, fine, self.t, end)
         if self.search.peaks:
             self.count_collision_peaks()
 

@@ -236,7 +236,7 @@ class Laplace(EventDrivenRun):
         n = len(self.laws)
         self.count_magnitudes(rows.value[:n, 0], rows.rate[:n, 0])
         monitored, peaks = monitored_functions(self.tracker, self.branches, {})
-        grid.count_extremes(peaks, self.t, rows.t, *monitored.sampled(rows), monitored.evaluator(rows))
+        grid.update_by_extremes(peaks, self.t, rows.t, *monitored.sampled(rows), monitored.evaluator(rows))
         self.count_collision_peaks()
 
     def _sample(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:

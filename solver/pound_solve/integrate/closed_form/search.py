@@ -109,14 +109,14 @@ class Search:
         cells.ravel()[last + 1 :] = False  # the run does not reach these cells
         return cells
 
-    def count_peaks(self, coarse: GridSamples, fine: GridSamples, t0: float, end: float) -> None:
+    def update_peaks(self, coarse: GridSamples, fine: GridSamples, t0: float, end: float) -> None:
         """Include the monitored functions in their peaks up to the local time `end` of a window from `t0`
         on, where the fine samples end.
         """
         if not self.peaks:
             return
         seen = coarse.t <= end
-        grid.count_samples(self.peaks, t0 + coarse.t[seen], self.monitored.sampled(coarse)[0][:, seen])
+        grid.update_by_samples(self.peaks, t0 + coarse.t[seen], self.monitored.sampled(coarse)[0][:, seen])
         if fine.t.size:
             evaluate = self.monitored.evaluator(fine)
-            grid.count_extremes(self.peaks, t0, fine.t, *self.monitored.sampled(fine), evaluate)
+            grid.update_by_extremes(self.peaks, t0, fine.t, *self.monitored.sampled(fine), evaluate)

@@ -209,6 +209,7 @@ def monitored_functions(
             continue
         rows.append(reaction_row[i] if b.constrains else i)
         # a spring's force is without damping
-        factors.append((1.0 if b.constrains else b.stiffness, b.damping * spring.role.viscous, b.force0))
+        damping = b.damping * spring.role.reports_damping
+        factors.append((1.0 if b.constrains else b.stiffness, damping, b.force0))
         kept.append(tracker.collision_force(i) if i in tracker.open else tracker.force(i))
     return RowFunctions(rows, factors), kept

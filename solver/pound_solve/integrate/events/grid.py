@@ -50,9 +50,9 @@ def may_rise(g: Array, slope: Array, curvature: Array, width: Array) -> Flags:
         Of the cells.
     """
     curvature = curvature[:, :, None]
-    turns = np.abs(slope[..., :-1] + slope[..., 1:]) <= curvature * width
+    may_have_extremum = np.abs(slope[..., :-1] + slope[..., 1:]) <= curvature * width
     above = np.maximum(g[..., :-1], g[..., 1:]) + curvature * (width**2 / 8.0) > 0.0
-    return np.asarray((g[..., 1:] > 0.0) | (turns & above))
+    return np.asarray((g[..., 1:] > 0.0) | (may_have_extremum & above))
 
 
 def may_peak(value: Array, slope: Array, curvature: Array, width: Array, peaks: Sequence[Peak]) -> Flags:
@@ -60,7 +60,7 @@ def may_peak(value: Array, slope: Array, curvature: Array, width: Array, peaks: 
     `may_rise`.
     """
     curvature, shape = curvature[:, :, None], value.shape
-    turns = np.abs(slope[..., :-1] + slope[..., 1:]) <= curvature * width
+    may_have_extremum = np.abs(slope[..., :-1] + slope[..., 1:]) <= curvature * width
     known = np.array([[peak.high, peak.low] for peak in peaks])
     slack = curvature * (width**2 / 8.0)
     flat = value.reshape(len(value), -1)
@@ -69,7 +69,7 @@ def may_peak(value: Array, slope: Array, curvature: Array, width: Array, peaks: 
     beyond = (np.maximum(value[..., :-1], value[..., 1:]) + slack > high) | (
         np.minimum(value[..., :-1], value[..., 1:]) - slack < low
     )
-    return np.asarray(turns & beyond & (slack > 0.0))
+    return np.asarray(may_have_extremum & beyond & (slack > 0.0))
 
 
 def two_extremes(t: Array, value: Array, slope: Array) -> tuple[Flags, Array]:
@@ -230,7 +230,7 @@ def stationary_point(
     return x
 
 
-def count_samples(peaks: Sequence[Peak], t: Array, value: Array) -> None:
+def update_by_samples(peaks: Sequence[Peak], t: Array, value: Array) -> None:
     """Count sampled functions, shape (n, n_t), into their peaks."""
     hi, lo = value.argmax(axis=1), value.argmin(axis=1)
     every = np.arange(len(peaks))
@@ -241,7 +241,7 @@ def count_samples(peaks: Sequence[Peak], t: Array, value: Array) -> None:
             peak.take(y, float(t[k]))
 
 
-def count_extremes(
+def update_by_extremes(
     peaks: Sequence[Peak], t0: float, t: Array, value: Array, slope: Array, evaluate: Evaluate
 ) -> None:
     """Count sampled functions into their peaks, and polished extremes that exceed them between the samples.
@@ -259,7 +259,7 @@ def count_extremes(
     """
     if not len(peaks):
         return
-    count_samples(peaks, t0 + t.ravel(), value.reshape(len(value), -1))
+    update_by_samples(peaks, t0 + t.ravel(), value.reshape(len(value), -1))
     f0, s0, s1 = value[..., :-1], slope[..., :-1], slope[..., 1:]
     turn = s0 * s1 < 0
     twice, split = two_extremes(t, value, slope)

@@ -75,7 +75,7 @@ def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
 
 
 def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
-    """First event in a trial step of length `h`; law -1 where there is none (see `none`).
+    """First event in a trial step of length `h`; law -1 where there is none (see `no_event`).
 
     Its time is found from the cubic through values and slopes at both ends, for an event of the rate from
     the straight line.  An event of a contact counts beside one of another law only if its event function is

@@ -159,7 +159,7 @@ def linear_system(
         all_mass=bool(has_mass.all()),
         massless_vary=any(len(np.intersect1d(x, without)) for x in varying),
         instant=MAX_DELAY * dt,
-        implicit=in_stiffness,
+        has_stiffness=in_stiffness,
         diagonal=is_diagonal(mass),
         explicit=not (in_stiffness or len(layout.pattern.li) or any(s.damps for s in laws)),
         monitored=sparse_rows(monitored.rows[:, o]),
@@ -243,7 +243,7 @@ def law_arrays(
         rule=_integers(rules.index(s.law.rule) for s in laws),
         curved=_integers(s.law.curved for s in laws),
         contact=_integers(s.role.collides for s in laws),
-        viscous=_integers(s.role.viscous for s in laws),
+        reports_damping=_integers(s.role.reports_damping for s in laws),
         tangent_damping=np.array([s.beta for s in laws], float),
         secant_damping=np.array([s.secant for s in laws], float),
         parameters=parameters,
@@ -371,7 +371,7 @@ def step_arrays(
     step.now.load[:] = system.inputs[o] @ value(t) + linear.constant
     step.now.inputs[:], step.now.input_rates[:] = value(t), value(t, 1)
     diagonal = layout.pattern.ai == layout.column
-    mass = np.where(diagonal & ~linear.has_mass[layout.column], 1.0, linear.on_pattern[0])
+    mass = np.where(diagonal & ~linear.has_mass[layout.column], 1.0, linear.on_pattern[state.M_ROW])
     if linear.diagonal:
         step.pivots[state.MASS] = mass[layout.pattern.ap[:-1]]
     else:
@@ -399,7 +399,7 @@ def buffers(n: int, n_laws: int, unknowns: Index, laws: Index) -> state.Buffers:
         dashpot=dashpot,
         time=np.zeros(samples),
         works=np.zeros((samples, 3)),
-        log=np.zeros((log, state.LOGGED)),
+        log=np.zeros((log, state.LOG_COLUMNS)),
         ties=np.zeros((TIES, 3, n_laws)),
         tie_time=np.zeros(TIES),
         rests=np.zeros((TIES, 4)),
@@ -416,6 +416,6 @@ def run_record(t: float, initial_energy: float) -> state.Run:
     run: state.Run = record(state.Run)
     run.time, run.factor_length, run.initial_energy = t, -1.0, initial_energy
     run.longest_part = np.inf
-    run.fault = run.lost_force = -1
+    run.changed_law = run.failed_law = run.failed_unknown = run.lost_force = -1
     run.remaining_step = run.load_jump_time = -1.0
     return run

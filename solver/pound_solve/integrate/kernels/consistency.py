@@ -24,7 +24,7 @@ from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import multiply, row_product
 from pound_solve.integrate.kernels.sparse import Rows
-from pound_solve.integrate.kernels.state import MASS, MASSLESS, LinearSystem, Simulation
+from pound_solve.integrate.kernels.state import C_ROW, K_ROW, MASS, MASSLESS, LinearSystem, Simulation
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
@@ -69,7 +69,7 @@ def slowest_decay(sim: Simulation) -> float:
     for q in range(len(step.matrix)):
         i = linear.column[q]
         if linear.pattern.ai[q] == i and not linear.has_mass[i]:
-            stiffness[i], damping[i] = linear.on_pattern[2, q], linear.on_pattern[1, q]
+            stiffness[i], damping[i] = linear.on_pattern[K_ROW, q], linear.on_pattern[C_ROW, q]
     for i in range(len(laws.definition.rule)):
         for q in range(rows.pointers[i], rows.pointers[i + 1]):
             j, square = rows.columns[q], rows.values[q] * rows.values[q]
@@ -98,7 +98,7 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
         i, j = linear.pattern.ai[q], linear.column[q]
         step.matrix[q] = 0.0
         if not linear.has_mass[i] and not linear.has_mass[j]:
-            step.matrix[q] = linear.on_pattern[2, q] + rate * linear.on_pattern[1, q]
+            step.matrix[q] = linear.on_pattern[K_ROW, q] + rate * linear.on_pattern[C_ROW, q]
         elif i == j:
             step.matrix[q] = 1.0
     for i in range(len(definition.rule)):
@@ -228,7 +228,7 @@ def make_consistent(sim: Simulation) -> None:
     rows = laws.definition.rows
     now, residual, elastic = step.now, step.residual, step.scratch[0]
     form_members(sim.members, step)
-    if linear.implicit and not linear.all_mass:
+    if linear.has_stiffness and not linear.all_mass:
         jump_massless_rates(sim)
     multiply(linear.stiffness, now.displacement, elastic)
     for i in range(len(residual)):

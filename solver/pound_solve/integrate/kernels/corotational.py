@@ -8,11 +8,11 @@ from pound_solve.structure.corotational import (
     ACROSS,
     ALONG,
     AXIAL,
+    END_MOMENT,
     KNN,
     KTT,
     LENGTH,
     ROTATION_I,
-    TURNING,
     quantity_forces,
     quantity_stiffness,
 )
@@ -130,7 +130,7 @@ def correct_members(members: Corotational, step: Step, beta_h2: float) -> float:
             off = abs(trial.forces[c, j] - members.at_zero[c, j])
             if j == AXIAL:
                 off *= knn
-            elif j == TURNING:
+            elif j == END_MOMENT:
                 off *= p[c, KTT] / length
             elif j >= ROTATION_I:
                 off /= length
@@ -143,14 +143,14 @@ def force_size(state: MemberState, c: int, length: float) -> float:
     """Size of the forces of member `c` [F]."""
     size: float = max(
         abs(state.quantities[c, AXIAL]),
-        abs(state.quantities[c, TURNING]) / length,
+        abs(state.quantities[c, END_MOMENT]) / length,
         abs(state.forces[c, ALONG]),
         abs(state.forces[c, ACROSS]),
     )
     return size
 
 
-def take_tangents(members: Corotational, quantities: Array) -> None:
+def compute_tangents(members: Corotational, quantities: Array) -> None:
     """Compute the members' tangents at some quantities, for the next factorisation."""
     for c in range(len(members.parameters)):
         quantity_stiffness(members.parameters, c, quantities, 0, members.tangent, c)

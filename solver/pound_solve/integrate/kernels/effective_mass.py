@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.corotational import add_tangent
-from pound_solve.integrate.kernels.state import Simulation
+from pound_solve.integrate.kernels.state import C_ROW, K_ROW, M_ROW, Simulation
 from pound_solve.numerics.ldl import factor as factorise
 
 
@@ -17,7 +17,7 @@ def factorise_effective_mass(
     definition = laws.definition
     a = linear.on_pattern
     for q in range(len(step.matrix)):
-        step.matrix[q] = on_mass * a[0, q] + on_damping * a[1, q] + on_stiffness * a[2, q]
+        step.matrix[q] = on_mass * a[M_ROW, q] + on_damping * a[C_ROW, q] + on_stiffness * a[K_ROW, q]
     for i in range(len(definition.rule)):
         change = on_damping * laws.tangent.damping[i] + on_stiffness * laws.tangent.stiffness[i]
         if change != 0.0:

@@ -17,6 +17,10 @@ from pound_solve.integrate.kernels.state import (
     BUFFERS_FULL,
     CHATTER,
     DONE,
+    LOG_AFTER,
+    LOG_PEAK,
+    LOG_TIME,
+    NOT_CONVERGED,
     RUNAWAY,
     SINGULAR,
     TOO_MANY_EVENTS,
@@ -92,7 +96,7 @@ class KernelEngine(ABC):
             law_kernels.enter_branch(self.laws, self.rules, i)
         law_kernels.linearise_laws(self.laws, self.rules)
         corotational.form_members(self.members, self.step)
-        corotational.take_tangents(self.members, self.members.now.quantities)
+        corotational.compute_tangents(self.members, self.members.now.quantities)
         self.uniqueness = Uniqueness(system)
         self.motion_norms = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(self.times[0])  # latest instant that the recorder was shown
@@ -139,7 +143,7 @@ class KernelEngine(ABC):
                 laws.collision.peak_force[i] = force
         for i in laws.friction.coupled.tolist():
             law_kernels.couple_friction(laws, self.rules, self.step.now.acceleration, i)
-        law_kernels.hold_friction_limits(laws)
+        law_kernels.save_friction_limits(laws)
         if notice := provider().notice(advance):
             self.recorder.report_progress(t, notice)
 
@@ -177,12 +181,12 @@ class KernelEngine(ABC):
         self.state.n_ties = self.state.n_rests = 0
         self.latest = self.buffers.log[: self.state.n_transitions].tolist()
         for row in self.latest:
-            law, before, after = (int(x) for x in row[:3])
+            law, before, after = (int(x) for x in row[: LOG_AFTER + 1])
             branches = self.law_springs[law].law.rule.branches
             if law in self.tracker.open:
-                self.tracker.open[law].count(*row[7:])
-            self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
-            self.uniqueness.record_change(row[3], law, after)
+                self.tracker.open[law].count(*row[LOG_PEAK:])
+            self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[LOG_TIME:LOG_PEAK])
+            self.uniqueness.record_change(row[LOG_TIME], law, after)
         self.state.n_transitions = 0
 
     def fetch_motions(self) -> None:
@@ -213,21 +217,22 @@ class KernelEngine(ABC):
 
     def trouble(self, why: int) -> Stop:
         """The `Stop` that says in words why a kernel has returned early."""
-        fault = int(self.state.fault)
         if why == RUNAWAY:
             fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
             name = self.system.name(fastest)
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
-            return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy) + cause)
+            return self.stop("A504", RUNAWAY_TEXT.format(self.state.runaway_energy) + cause)
         if why == SINGULAR:
-            return self.stop("A501", self.system.explain_massless(int(self.order[fault])))
-        if why == CHATTER and (snaps := self._without_branch(fault)) is not None:
+            unknown = int(self.order[int(self.state.failed_unknown)])
+            return self.stop("A501", self.system.explain_massless(unknown))
+        if why == CHATTER and (snaps := self._without_branch(int(self.state.changed_law))) is not None:
             return self.stop("A501", self.system.explain_massless(snaps, softens=True))
+        law = int(self.state.failed_law if why == NOT_CONVERGED else self.state.changed_law)
         place, last = "the members' turning", ""
-        if fault >= 0:
-            s = self.law_springs[fault]
+        if law >= 0:
+            s = self.law_springs[law]
             place = f"element {s.element} ({s.rule})"
-            last = f"the last in {place} to {s.law.rule.branches[self.laws.state.branch[fault]].name!r}"
+            last = f"the last in {place} to {s.law.rule.branches[self.laws.state.branch[law]].name!r}"
         if why == CHATTER:
             text = f"laws change branch again and again at one instant, {last}"
         elif why == TOO_MANY_EVENTS:

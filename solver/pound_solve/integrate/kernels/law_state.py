@@ -8,7 +8,8 @@ from pound_solve.integrate.kernels.sparse import Rows
 from pound_solve.numerics.ldl import Positions
 from pound_solve.numerics.types import Array, Flags, Index
 
-TURN, STIFFNESS = -2, -1  #: columns of `LawState.internal` beside the rule's own (see `SecantLaw`)
+#: columns of `LawState.internal` beside those of the rule (see `SecantLaw`)
+LARGEST_REVERSAL, SECANT_STIFFNESS = -2, -1
 
 
 class LawDefinition(NamedTuple):
@@ -26,7 +27,7 @@ class LawDefinition(NamedTuple):
         Deformations from unit displacements of moved supports.
     rule : ndarray of int
         Number of the law's rule in the tables of functions.
-    curved, contact, viscous : ndarray of int
+    curved, contact, reports_damping : ndarray of int
         Whether the law is curved; whether it is a contact; whether damping is part of the force that is
         reported.
     tangent_damping, secant_damping : ndarray
@@ -44,7 +45,7 @@ class LawDefinition(NamedTuple):
     rule: Index
     curved: Index
     contact: Index
-    viscous: Index
+    reports_damping: Index
     tangent_damping: Array
     secant_damping: Array
     parameters: Array
@@ -60,7 +61,8 @@ class LawState(NamedTuple):
     entry_deformation, entry_work : ndarray
         Deformation at which the branch was entered, and the work done on the law up to there [F L].
     internal : ndarray, shape (n_laws, VARIABLES + 2)
-        Internal variables of the rule; the last two serve the secant stiffness (`TURN`, `STIFFNESS`).
+        Internal variables of the rule; the last two (`LARGEST_REVERSAL`, `SECANT_STIFFNESS`) are for the
+        secant stiffness.
     dashpot_loss : ndarray
         Energy lost in the law's dashpot so far [F L]; a `SavedState` does not have it.
     """

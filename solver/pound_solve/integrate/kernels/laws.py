@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.law_state import STIFFNESS, TURN, Laws, LawState, LawTangent
+from pound_solve.integrate.kernels.law_state import (
+    LARGEST_REVERSAL,
+    SECANT_STIFFNESS,
+    Laws,
+    LawState,
+    LawTangent,
+)
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
+from pound_solve.laws.contact.friction import CONTACT_CLOSES, CONTACT_OPENS, OPEN
 from pound_solve.laws.functions import (
     PARAMETERS,
     VARIABLES,
-    Tables,
+    RuleFunctions,
     branch_of,
     curve_of,
-    power_of,
+    dissipated_power_of,
     row,
     transition_of,
 )
@@ -24,7 +31,7 @@ parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tup
 
 
 def curved_force(
-    laws: Laws, rules: Tables, i: int, d: float, v: float
+    laws: Laws, rules: RuleFunctions, i: int, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
     state = laws.state
@@ -51,12 +58,12 @@ def proportional_damping(laws: Laws, i: int, k: float) -> float:
     """Dashpot in proportion to the tangent stiffness `k` of law `i`, or to its secant stiffness."""
     c: float = (
         laws.definition.tangent_damping[i] * max(k, 0.0)
-        + laws.definition.secant_damping[i] * laws.state.internal[i, STIFFNESS]
+        + laws.definition.secant_damping[i] * laws.state.internal[i, SECANT_STIFFNESS]
     )
     return c
 
 
-def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
+def enter_branch(laws: Laws, rules: RuleFunctions, i: int) -> None:
     """Copy the linear branch of law `i` and its event functions into the arrays of the kernels."""
     definition, state, tangent = laws.definition, laws.state, laws.tangent
     b = branch_of(
@@ -77,7 +84,7 @@ def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
     laws.events.n_events[i] = n_events
 
 
-def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
+def law_work(laws: Laws, rules: RuleFunctions, i: int, d: float) -> float:
     """Work done on law `i` so far, dashpots excluded."""
     state = laws.state
     before: float = state.entry_work[i]
@@ -88,7 +95,7 @@ def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
     return done
 
 
-def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
+def law_force(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> float:
     """Force of law `i`."""
     if laws.definition.curved[i]:
         c = curved_force(laws, rules, i, d, v)
@@ -96,7 +103,7 @@ def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     return linear_force(laws.tangent, i, d, v)
 
 
-def drag_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
+def dissipative_force(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> float:
     """Dissipative force of law `i` at the rate `v`: its own dependence on the rate, and proportional
     dashpots.
     """
@@ -106,7 +113,7 @@ def drag_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
         return dashpot
     if v == 0.0:
         return 0.0
-    power: float = power_of(
+    power: float = dissipated_power_of(
         rules,
         definition.rule[i],
         parameters(definition.parameters, i),
@@ -118,14 +125,14 @@ def drag_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     return power / v + proportional_damping(laws, i, laws.tangent.stiffness[i]) * v
 
 
-def leave_branch(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float) -> None:
+def leave_branch(laws: Laws, rules: RuleFunctions, i: int, event: int, d: float, v: float) -> None:
     """Change the branch of law `i` by one of its events, at deformation `d` and rate `v`."""
     state, coefficients = laws.state, laws.events.coefficients
     done = law_work(laws, rules, i, d)
     reversal = coefficients[i, event, 0] == 0.0 and coefficients[i, event, 2] == 0.0
-    if reversal and abs(d) > state.internal[i, TURN]:
-        state.internal[i, TURN] = abs(d)
-        state.internal[i, STIFFNESS] = max(law_force(laws, rules, i, d, 0.0) / d, 0.0)
+    if reversal and abs(d) > state.internal[i, LARGEST_REVERSAL]:
+        state.internal[i, LARGEST_REVERSAL] = abs(d)
+        state.internal[i, SECANT_STIFFNESS] = max(law_force(laws, rules, i, d, 0.0) / d, 0.0)
     at, m = transition_of(
         rules,
         laws.definition.rule[i],
@@ -142,7 +149,7 @@ def leave_branch(laws: Laws, rules: Tables, i: int, event: int, d: float, v: flo
     enter_branch(laws, rules, i)
 
 
-def press_friction(state: LawState, i: int, force: float, rate: float, v: float) -> None:
+def store_normal_force(state: LawState, i: int, force: float, rate: float, v: float) -> None:
     """Set the normal force of coupled law `i`, and its rate, to those of its contact; zero while that
     pulls.
 
@@ -156,28 +163,31 @@ def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
     """Compute the normal force of coupled law `i` and its rate from the motion of its contact."""
     j = laws.friction.normal_law[i]
     rate = laws.tangent.stiffness[j] * v + laws.tangent.damping[j] * a
-    press_friction(laws.state, i, linear_force(laws.tangent, j, d, v), rate, v)
+    store_normal_force(laws.state, i, linear_force(laws.tangent, j, d, v), rate, v)
 
 
-def enter_coupled(laws: Laws, rules: Tables, i: int) -> None:
+def enter_coupled(laws: Laws, rules: RuleFunctions, i: int) -> None:
     """Copy the branch of coupled law `i` and its event functions into the arrays, with the rates at which
-    its force and the limits of its events change: they are linear in the normal force.
+    its force and the limits of its events change.
+
+    Both are linear in the normal force N, so that the rates are differences between the branch at N plus
+    its change in a unit of time, and the branch at N.
     """
     state, coefficients, friction = laws.state, laws.events.coefficients, laws.friction
-    push = state.internal[i, NORMAL_FORCE]
-    state.internal[i, NORMAL_FORCE] = push + state.internal[i, NORMAL_FORCE_RATE]
+    force = state.internal[i, NORMAL_FORCE]
+    state.internal[i, NORMAL_FORCE] = force + state.internal[i, NORMAL_FORCE_RATE]
     enter_branch(laws, rules, i)
     friction.offset_rate[i] = laws.tangent.offset[i]
     for e in range(coefficients.shape[1]):
         friction.limit_rates[i, e] = coefficients[i, e, 2]
-    state.internal[i, NORMAL_FORCE] = push
+    state.internal[i, NORMAL_FORCE] = force
     enter_branch(laws, rules, i)
     friction.offset_rate[i] -= laws.tangent.offset[i]
     for e in range(coefficients.shape[1]):
         friction.limit_rates[i, e] -= coefficients[i, e, 2]
 
 
-def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> None:
+def update_friction_limits(laws: Laws, rules: RuleFunctions, acceleration: Array) -> None:
     """Strengths of the coupled laws at the end of a step."""
     for i in laws.friction.coupled:
         j = laws.friction.normal_law[i]
@@ -186,7 +196,7 @@ def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> No
         enter_coupled(laws, rules, i)
 
 
-def hold_friction_limits(laws: Laws) -> None:
+def save_friction_limits(laws: Laws) -> None:
     """Store the limits of the coupled laws and their rates as those at the start of the next step."""
     coefficients, friction = laws.events.coefficients, laws.friction
     for i in friction.coupled:
@@ -206,7 +216,7 @@ def add_slip_work(laws: Laws, h: float) -> None:
             friction.force[i], laws.state.entry_deformation[i] = f1, laws.trial.deformation[i]
 
 
-def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> None:
+def couple_friction(laws: Laws, rules: RuleFunctions, acceleration: Array, i: int) -> None:
     """Let coupled law `i` engage or release with the contact that presses it, at the present normal
     force.
     """
@@ -219,15 +229,16 @@ def couple_friction(laws: Laws, rules: Tables, acceleration: Array, i: int) -> N
         force = c[0]
         if force == 0.0 == c[1]:  # outside by rounding: the rate is that from inside
             c = curved_force(laws, rules, j, d + EVENT_TOLERANCE * laws.largest.deformation[j], v)
-        press_friction(laws.state, i, force, c[1] * v + c[2] * a, v)
+        store_normal_force(laws.state, i, force, c[1] * v + c[2] * a, v)
     pressed = (friction.pressed_branches[i] >> laws.state.branch[j]) & 1
-    if pressed != (laws.state.branch[i] != 0):
-        leave_branch(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
+    if pressed != (laws.state.branch[i] != OPEN):
+        event = CONTACT_CLOSES if pressed else CONTACT_OPENS
+        leave_branch(laws, rules, i, event, laws.now.deformation[i], laws.now.rate[i])
     enter_coupled(laws, rules, i)
     friction.force[i] = laws.tangent.stiffness[i] * laws.now.deformation[i] + laws.tangent.offset[i]
 
 
-def linearise_law(laws: Laws, rules: Tables, i: int, d: float, v: float) -> None:
+def linearise_law(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> None:
     """Put the tangent of a curved law at deformation `d` and rate `v` in the place of its branch."""
     tangent = laws.tangent
     c = curved_force(laws, rules, i, d, v)
@@ -236,7 +247,7 @@ def linearise_law(laws: Laws, rules: Tables, i: int, d: float, v: float) -> None
     tangent.offset[i] = c[0] - k * d - c[2] * v
 
 
-def linearise_laws(laws: Laws, rules: Tables) -> None:
+def linearise_laws(laws: Laws, rules: RuleFunctions) -> None:
     """Linearise all curved laws at the start of the step."""
     for i in range(len(laws.definition.rule)):
         if laws.definition.curved[i]:
@@ -251,7 +262,7 @@ def save_state(laws: Laws, i: int) -> None:
         saved[3 + j] = state.internal[i, j]
 
 
-def restore_state(laws: Laws, rules: Tables, i: int) -> None:
+def restore_state(laws: Laws, rules: RuleFunctions, i: int) -> None:
     """Restore the saved state of law `i`."""
     state, saved = laws.state, laws.saved.values[i]
     state.branch[i], state.entry_deformation[i], state.entry_work[i] = int(saved[0]), saved[1], saved[2]

@@ -56,14 +56,14 @@ class KernelPresent:
         """Force of a law at rest at deformation `d`, and its tangent."""
         return self.engine.law_springs[law].law.force(self.engine.law_state(law), d)[:2]
 
-    def take_release(self, law: int, lost: float, put_in: float) -> None:
+    def add_release_work(self, law: int, lost: float, put_in: float) -> None:
         """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
         the input.
         """
         self.engine.laws.state.entry_work[law] += lost
-        self.take_input(put_in)
+        self.add_input_work(put_in)
 
-    def take_input(self, put_in: float) -> None:
+    def add_input_work(self, put_in: float) -> None:
         """Add work that is put in at one instant."""
         works = self.engine.accumulator.works
         works.input += put_in
@@ -80,4 +80,4 @@ class KernelPresent:
         inputs = [self.system.excitation.value(self.t, derivative) for derivative in (0, 1)]
         laws.now.deformation[:] = self.system.law_rows @ self.u + self.system.law_inputs @ inputs[0]
         laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs[1]
-        self.engine.state.stale = 1
+        self.engine.state.branches_changed = self.engine.state.massless_factor_stale = 1

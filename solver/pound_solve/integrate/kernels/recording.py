@@ -6,8 +6,22 @@ from pound_solve.integrate.kernels.consistency import make_consistent, touches_m
 from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.state import Run, Simulation, Step
-from pound_solve.laws.functions import Tables, recoverable_of
+from pound_solve.integrate.kernels.state import (
+    LOG_AFTER,
+    LOG_BEFORE,
+    LOG_DEFORMATION,
+    LOG_FORCE,
+    LOG_IMPULSE,
+    LOG_LAW,
+    LOG_PEAK,
+    LOG_PEAK_TIME,
+    LOG_RATE,
+    LOG_TIME,
+    Run,
+    Simulation,
+    Step,
+)
+from pound_solve.laws.functions import RuleFunctions, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
 
 #: steps, and steps times unknowns, after which Python may look whether the user wants to stop
@@ -19,7 +33,7 @@ def next_pause(step: Step, run: Run) -> int:
     return run.steps + min(PAUSE, 1 + BUSY // (1 + len(step.residual)))
 
 
-def count_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: float) -> None:
+def update_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: float) -> None:
     """Count a value into peak `i`; `law` is not negative for the force of a law."""
     collision = laws.collision
     extremes = step.extremes
@@ -48,7 +62,7 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     law = i - outputs - n_laws
     d, v = laws.now.deformation[law], laws.now.rate[law]
     value, slope = tangent.stiffness[law] * d + tangent.offset[law], tangent.stiffness[law] * v
-    if definition.viscous[law] and tangent.damping[law] != 0.0:  # a spring is reported without its damping
+    if definition.reports_damping[law] and tangent.damping[law] != 0.0:
         value += tangent.damping[law] * v
         slope += tangent.damping[law] * row_product(rows, law, now.acceleration)
         # the acceleration of an unknown without mass is a jump of its velocity over a step, or a part
@@ -65,13 +79,13 @@ def track_peaks(sim: Simulation, t: float, since: float) -> None:
     extremes, forces = step.extremes, len(sim.linear.monitored_constants) + len(laws.definition.rule)
     for i in range(forces + len(laws.definition.rule)):
         value, slope = tracked_value(sim, i)
-        count_extreme(laws, step, i - forces, i, value, t)
+        update_extreme(laws, step, i - forces, i, value, t)
         if since > 0.0 and extremes.slope[i] * slope < 0.0:
             sign = 1.0 if extremes.slope[i] > 0.0 else -1.0
             place, top = cubic_peak(
                 sign * extremes.value[i], sign * value, sign * extremes.slope[i], sign * slope, since
             )
-            count_extreme(laws, step, i - forces, i, sign * top, t - since + place)
+            update_extreme(laws, step, i - forces, i, sign * top, t - since + place)
         extremes.value[i], extremes.slope[i] = value, slope
         extremes.steepest[i] = max(extremes.steepest[i], abs(slope))
         extremes.reached[i] = max(extremes.reached[i], abs(value))
@@ -82,15 +96,16 @@ def log_transition(sim: Simulation, i: int, before: int, t: float, force: float)
     laws = sim.laws
     collision = laws.collision
     row = sim.buffers.log[sim.run.n_transitions]
-    row[0], row[1], row[2], row[3] = i, before, laws.state.branch[i], t
-    row[4], row[5], row[6] = laws.now.deformation[i], laws.now.rate[i], force
-    row[7], row[8], row[9] = collision.peak_force[i], collision.peak_time[i], collision.impulse[i]
+    row[LOG_LAW], row[LOG_BEFORE], row[LOG_AFTER], row[LOG_TIME] = i, before, laws.state.branch[i], t
+    row[LOG_DEFORMATION], row[LOG_RATE], row[LOG_FORCE] = laws.now.deformation[i], laws.now.rate[i], force
+    row[LOG_PEAK], row[LOG_PEAK_TIME] = collision.peak_force[i], collision.peak_time[i]
+    row[LOG_IMPULSE] = collision.impulse[i]
     sim.run.n_transitions += 1
     if laws.definition.contact[i]:
         collision.peak_force[i], collision.peak_time[i], collision.impulse[i] = force, t, 0.0
 
 
-def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
+def store_sample(sim: Simulation, rules: RuleFunctions, t: float) -> None:
     """Keep the motion, the laws' forces and energies, and the works."""
     laws, buffers, works = sim.laws, sim.buffers, sim.works
     definition, state = laws.definition, laws.state
@@ -104,7 +119,7 @@ def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
         d = laws.now.deformation[i]
         still = law_force(laws, rules, i, d, 0.0)
         whole = law_force(laws, rules, i, d, laws.now.rate[i])
-        buffers.force[at, i] = whole if definition.viscous[i] else still
+        buffers.force[at, i] = whole if definition.reports_damping[i] else still
         buffers.dashpot[at, i] = whole - buffers.force[at, i]
         stored = recoverable_of(
             rules,
@@ -124,7 +139,7 @@ def store_sample(sim: Simulation, rules: Tables, t: float) -> None:
     sim.run.n_samples += 1
 
 
-def take_first_sample(sim: Simulation, rules: Tables) -> None:
+def take_first_sample(sim: Simulation, rules: RuleFunctions) -> None:
     """Make the start consistent and keep it as the first sample."""
     run = sim.run
     make_consistent(sim)
@@ -133,7 +148,7 @@ def take_first_sample(sim: Simulation, rules: Tables) -> None:
     run.started = 1
 
 
-def store_motion(sim: Simulation, rules: Tables, t: float) -> None:
+def store_motion(sim: Simulation, rules: RuleFunctions, t: float) -> None:
     """Keep the present motion for the envelopes.
 
     If a step is cut into more parts than there is room for, the rest is not kept.

@@ -30,8 +30,14 @@ RIGID_EVENT = 10  #: a rigid contact strikes or parts
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns
 WHOLE, PART, MASS, MASSLESS = range(4)
-#: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
-LOGGED = 10
+M_ROW, C_ROW, K_ROW = range(3)  #: rows of `LinearSystem.on_pattern`
+#: columns of `Buffers.log`: the law, its branches before and after, time, deformation, rate, force; peak
+#: force, its time and impulse of the contact since the last change
+LOG_LAW, LOG_BEFORE, LOG_AFTER, LOG_TIME, LOG_DEFORMATION, LOG_RATE, LOG_FORCE = range(7)
+LOG_PEAK, LOG_PEAK_TIME, LOG_IMPULSE, LOG_COLUMNS = range(7, 11)
+#: rows of `Buffers.ties` of an instant; of a law that loses its force, the first holds minus infinity and
+#: the second its next branch
+TIE_STIFFNESS, TIE_DAMPING, TIE_RATE = range(3)
 
 
 class Run(Protocol):
@@ -48,17 +54,22 @@ class Run(Protocol):
     changes_at_instant: int  #: transitions at one instant
     lost_force: int  #: law that held a joint without mass and lost its force, -1 for none
     branches_passed: int  #: branches left in a step that is not cut at events
-    updates: int  #: of rank one since the factor was made
-    stale: int  #: whether quantities that depend on the branches, such as factors, must be recomputed
+    updates: int  #: of rank one since the factor was made; above `MAX_UPDATES` if it is invalid
+    branches_changed: int  #: whether sums, modes and factors over the laws must be made anew (series)
+    massless_factor_stale: int  #: whether row `MASSLESS` of the factors must be made anew (steps)
     softening: int  #: steps that are too long for a softening branch
     n_ties: int  #: instants at which laws give way together in the buffers
     n_rests: int  #: laws that rest where a branch begins in the buffers
-    fault: int  #: law or unknown at fault, -1 for none
+    changed_law: int  #: law that changed its branch last, -1 for none
+    failed_law: int  #: law by which the last of Newton's iterations failed, -1 for none
+    failed_unknown: int  #: unknown whose pivot vanished, -1 for none
     time: float
     factor_length: float  #: step that the factor at hand is for
     initial_energy: float  #: kinetic and recoverable
+    runaway_energy: float  #: kinetic energy that stopped the run
     longest_part: float  #: that a step may take at once for now
-    remaining_step: float  #: of a step that stopped where a force lost_force, negative for none
+    #: what is left of a step in which a law lost the force that held a massless unknown, negative for none
+    remaining_step: float
     last_event: float  #: time of the last transition
     load_jump_time: float  #: time at which a load has jumped, negative for none
 
@@ -90,7 +101,7 @@ class LinearSystem(NamedTuple):
         members.
     instant : float
         A time that is tiny against a step, for the velocities of massless unknowns.
-    implicit : bool
+    has_stiffness : bool
         Whether the stiffness is in the pattern.
     diagonal : bool
         Whether M is.
@@ -120,7 +131,7 @@ class LinearSystem(NamedTuple):
     all_mass: bool
     massless_vary: bool
     instant: float
-    implicit: bool
+    has_stiffness: bool
     diagonal: bool
     explicit: bool
     monitored: Rows

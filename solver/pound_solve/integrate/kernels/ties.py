@@ -16,8 +16,14 @@ import numpy as np
 from pound_solve.integrate.kernels.consistency import loses_force, touches_massless
 from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import leave_branch, restore_state, save_state
-from pound_solve.integrate.kernels.state import LinearSystem, Simulation
-from pound_solve.laws.functions import Tables
+from pound_solve.integrate.kernels.state import (
+    TIE_DAMPING,
+    TIE_RATE,
+    TIE_STIFFNESS,
+    LinearSystem,
+    Simulation,
+)
+from pound_solve.laws.functions import RuleFunctions
 
 #: fraction of its largest terms that an event function may lack of an event at the same instant
 NEAR_EVENT = 1e-9
@@ -55,7 +61,7 @@ def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
     return -1
 
 
-def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event: int) -> bool:
+def becomes_slack(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, event: int) -> bool:
     """Whether a law that holds an unknown without mass has neither stiffness nor force after an event, and
     loses no force by it.
     """
@@ -71,7 +77,7 @@ def becomes_slack(linear: LinearSystem, laws: Laws, rules: Tables, i: int, event
     return slack
 
 
-def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> tuple[int, int]:
+def event_before_slack(sim: Simulation, rules: RuleFunctions, law: int, event: int) -> tuple[int, int]:
     """Law and event to be taken first where `law` becomes slack by its `event`: those of another law that
     comes to zero force at the same instant and keeps a stiffness (see the module's head); else the given
     ones.
@@ -85,9 +91,9 @@ def event_before_slack(sim: Simulation, rules: Tables, law: int, event: int) -> 
     return law, event
 
 
-def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns: bool) -> int:
-    """Branch at whose beginning law `i` stands, as it `turns` or else rests; -1 for none, and for laws that
-    hold no unknown without mass.
+def branch_begun(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, reverses: bool) -> int:
+    """Return the branch at whose beginning law `i` stands, as it `reverses` or else rests; -1 for none, and
+    for laws that hold no unknown without mass.
     """
     definition, coefficients, state = laws.definition, laws.events.coefficients, laws.state
     if (
@@ -99,7 +105,7 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns:
         return -1
     d, v, largest = laws.now.deformation[i], laws.now.rate[i], laws.largest.deformation[i]
     entered = abs(d - state.entry_deformation[i]) <= NEAR_EVENT * largest
-    if not turns and (entered or abs(v) > STATIONARY_RATE * laws.largest.rate[i]):
+    if not reverses and (entered or abs(v) > STATIONARY_RATE * laws.largest.rate[i]):
         return -1
     for e in range(laws.events.n_events[i]):
         if event_near(coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2], d, largest):
@@ -111,14 +117,14 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: Tables, i: int, turns:
     return state.branch[i] if entered else -1
 
 
-def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
+def note_rests(sim: Simulation, rules: RuleFunctions, law: int, event: int) -> None:
     """Record which laws, `law` included, stand at the beginning of a branch as `law` reverses by its
     `event`.
     """
     laws, buffers, run = sim.laws, sim.buffers, sim.run
     definition, coefficients = laws.definition, laws.events.coefficients
-    turns = coefficients[law, event, 0] == 0.0 and coefficients[law, event, 1] != 0.0
-    if not turns or definition.contact[law] or not touches_massless(sim.linear, definition.rows, law):
+    reverses = coefficients[law, event, 0] == 0.0 and coefficients[law, event, 1] != 0.0
+    if not reverses or definition.contact[law] or not touches_massless(sim.linear, definition.rows, law):
         return
     for i in range(len(definition.rule)):
         branch = branch_begun(sim.linear, laws, rules, i, i == law)
@@ -128,7 +134,7 @@ def note_rests(sim: Simulation, rules: Tables, law: int, event: int) -> None:
             run.n_rests += 1
 
 
-def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset: float) -> None:
+def note_ties(sim: Simulation, rules: RuleFunctions, law: int, stiffness: float, offset: float) -> None:
     """Record the tangents that the laws have if all that come to their events together with `law` change
     branch; nothing where no other does.
 
@@ -146,7 +152,11 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
     row, count = buffers.ties[run.n_ties], 0
     rate = laws.now.rate
     for i in range(len(definition.rule)):
-        row[0, i], row[1, i], row[2, i] = tangent.stiffness[i], tangent.damping[i], 0.0
+        row[TIE_STIFFNESS, i], row[TIE_DAMPING, i], row[TIE_RATE, i] = (
+            tangent.stiffness[i],
+            tangent.damping[i],
+            0.0,
+        )
         e = arriving_event(linear, laws, i) if i != law else -1
         if e < 0:
             continue
@@ -154,13 +164,13 @@ def note_ties(sim: Simulation, rules: Tables, law: int, stiffness: float, offset
         save_state(laws, i)
         leave_branch(laws, rules, i, e, d, v)
         if lost_force and loses_force(linear, laws, i, k, f0, d):
-            row[0, i], row[1, i], row[2, i] = -np.inf, laws.state.branch[i], v
+            row[TIE_STIFFNESS, i], row[TIE_DAMPING, i], row[TIE_RATE, i] = -np.inf, laws.state.branch[i], v
             count += 1
         elif not lost_force and tangent.stiffness[i] < k:
-            row[0, i], row[2, i] = tangent.stiffness[i], v
+            row[TIE_STIFFNESS, i], row[TIE_RATE, i] = tangent.stiffness[i], v
             count += 1
         restore_state(laws, rules, i)
     if count > 0:
-        row[2, law] = rate[law]
+        row[TIE_RATE, law] = rate[law]
         buffers.tie_time[run.n_ties] = run.time
         run.n_ties += 1

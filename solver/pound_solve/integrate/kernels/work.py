@@ -54,8 +54,10 @@ def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
 
 
 @reorder_sums
-def mean_damping_power(now: MotionState, trial: MotionState) -> float:
-    """Three times the mean power that the dashpots of the structure take in a step."""
+def damping_power_sum(now: MotionState, trial: MotionState) -> float:
+    """Sum of which a third is the mean power that the structure's dashpots take in a step, in which forces
+    and velocities are linear.
+    """
     loss = 0.0
     for i in range(len(now.velocity)):
         loss += (
@@ -66,8 +68,10 @@ def mean_damping_power(now: MotionState, trial: MotionState) -> float:
 
 
 @reorder_sums
-def mean_load_power(now: MotionState, trial: MotionState) -> float:
-    """Six times the mean power that the loads put in, in a step."""
+def load_power_sum(now: MotionState, trial: MotionState) -> float:
+    """Sum of which a sixth is the mean power of the loads in a step, in which loads and velocities are
+    linear.
+    """
     work = 0.0
     for i in range(len(now.velocity)):
         work += (2.0 * now.load[i] + trial.load[i]) * now.velocity[i] + (

@@ -50,7 +50,7 @@ class RigidRun(Protocol):
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
 
-    def take_impact(self, put_in: float, lost: Array) -> None:
+    def add_impact_work(self, put_in: float, lost: Array) -> None:
         """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
 
     def stop(self, code: str, why: str) -> Stop:
@@ -134,7 +134,7 @@ class RigidInstants:
         run.v = run.v - x.velocity_change @ impulse
         losses = np.zeros(len(run.branches))
         losses[x.laws] = lost
-        run.take_impact(float(impulse @ (x.inputs @ s[1])), losses)
+        run.add_impact_work(float(impulse @ (x.inputs @ s[1])), losses)
         stays = touching & (after >= -ACCELERATION_ROUNDING * fastest)
         for i, law in enumerate(x.laws):
             if not closed[i] and (stays[i] or impulse[i] > 0.0):

@@ -17,38 +17,40 @@ from pound_solve.integrate.kernels.state import (
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
 from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW, SAME_INSTANT
 from pound_solve.integrate.series.expansion import begin_series, next_term
-from pound_solve.integrate.series.forces import take_over, update_branch_forces
+from pound_solve.integrate.series.forces import refresh_branch_series, update_branch_forces
 from pound_solve.integrate.series.friction import touch_event
 from pound_solve.integrate.series.massless import factorise_orders, first_violated, joints_jump
-from pound_solve.integrate.series.modal import renew_modes
+from pound_solve.integrate.series.modal import refresh_modes
+from pound_solve.integrate.series.power_dampers import linearise_dampers, tangents_settled
 from pound_solve.integrate.series.smooth import linearise_smooth
 from pound_solve.integrate.series.springs import add_up, deformation_term
 from pound_solve.integrate.series.state import Extent, Series
 from pound_solve.integrate.series.tracking import event_of
-from pound_solve.integrate.series.viscous import linearise_dampers, tangents_settled
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 
 AHEAD = 1e-3  #: part of a step in which laws are searched for events at the instant of another one's
 
 
-def change_branch(sim: Simulation, rules: Tables, series: Series, t: float, event: LocatedEvent) -> None:
+def change_branch(
+    sim: Simulation, rules: RuleFunctions, series: Series, t: float, event: LocatedEvent
+) -> None:
     """Let a law leave its branch."""
     laws, run = sim.laws, sim.run
     law = event.law
     before, d, v = laws.state.branch[law], laws.now.deformation[law], laws.now.rate[law]
     note_rests(sim, rules, law, event.event_index)
     leave_branch(laws, rules, law, event.event_index, d, v)
-    take_over(laws, rules, series, law)
+    refresh_branch_series(laws, rules, series, law)
     # the rate of an unknown without mass jumps, and the force of its dashpot with it
     force = law_force(laws, rules, law, d, 0.0 if series.massless.index_of_law[law] >= 0 else v)
     if before != laws.state.branch[law]:
         log_transition(sim, law, before, t, force)
     run.events += 1
-    run.fault = law
-    run.stale = 1
+    run.changed_law = law
+    run.branches_changed = 1
 
 
-def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
+def change_friction(sim: Simulation, rules: RuleFunctions, series: Series) -> None:
     """Let friction laws engage or release with the contacts that have touched or parted."""
     for r in range(len(series.friction.laws)):
         event = touch_event(sim.laws, rules, series.friction, r)
@@ -58,7 +60,7 @@ def change_friction(sim: Simulation, rules: Tables, series: Series) -> None:
 
 
 def change_branches(
-    sim: Simulation, rules: Tables, series: Series, extent: Extent, event: LocatedEvent
+    sim: Simulation, rules: RuleFunctions, series: Series, extent: Extent, event: LocatedEvent
 ) -> None:
     """Change the branch of a law, and of others whose events are at the same instant."""
     laws = sim.laws
@@ -85,26 +87,26 @@ def count_instant(run: Run, h: float) -> None:
     run.last_event = run.time
 
 
-def renew_branches(sim: Simulation, rules: Tables, series: Series) -> bool:
+def refresh_branches(sim: Simulation, rules: RuleFunctions, series: Series) -> bool:
     """Update what depends on the branches after a change: tangents of smooth laws and dampers, sums, modes,
-    factors; False where an unknown without mass is not held, which `run.fault` names.
+    factors; False where an unknown without mass is not held, which `run.failed_unknown` names.
     """
     laws, run = sim.laws, sim.run
     massless = series.massless
-    if run.stale:
+    if run.branches_changed:
         linearise_smooth(laws, rules, series.smooth)
-        linearise_dampers(laws, rules, series.viscous)
+        linearise_dampers(laws, rules, series.power_dampers)
         add_up(sim.linear, laws, series)
-        renew_modes(laws, series)
+        refresh_modes(laws, series)
         fault = factorise_orders(laws, massless) if len(massless.unknown) else -1
         if fault >= 0:
-            run.fault = massless.unknown[fault]
+            run.failed_unknown = massless.unknown[fault]
             return False
-        run.stale, run.factor_length = 0, -1.0
+        run.branches_changed, run.factor_length = 0, -1.0
     return True
 
 
-def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -> int:
+def settle_state(sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece) -> int:
     """Make the velocities of unknowns without mass and the forces of closed rigid contacts consistent with
     the present branches.
 
@@ -125,27 +127,27 @@ def settle_state(sim: Simulation, rules: Tables, series: Series, piece: Piece) -
     """
     laws, run = sim.laws, sim.run
     massless, now, n_powers = series.massless, sim.step.now, len(piece.coefs)
-    in_series = series.rigid.n_closed[0] + len(series.curved.laws) + len(series.friction.laws)
-    in_series += len(series.smooth.laws) + len(series.viscous.laws)
+    in_series = series.rigid.n_closed[0] + len(series.power_contacts.laws) + len(series.friction.laws)
+    in_series += len(series.smooth.laws) + len(series.power_dampers.laws)
     if len(massless.unknown) + in_series == 0:
         return DONE
     for _ in range(MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule)):
         change_friction(sim, rules, series)
-        if not renew_branches(sim, rules, series):
+        if not refresh_branches(sim, rules, series):
             return UNRESTRAINED
         begin_series(sim, series, piece, 1.0)
         if in_series:  # forces that are series need the accelerations
             next_term(sim, series, 0, 1.0, n_powers)
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
-        if run.fault >= 0 and joints_jump(laws, series, n_powers):
+        if run.changed_law >= 0 and joints_jump(laws, series, n_powers):
             return LOST_FORCE
         for i in massless.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in massless.laws:
             laws.now.deformation[i] = deformation_term(laws.definition, series, 0, n_powers, i)
             laws.now.rate[i] = deformation_term(laws.definition, series, 1, n_powers, i)
-        if not tangents_settled(laws, series.viscous, now.velocity):
-            run.stale = 1
+        if not tangents_settled(laws, series.power_dampers, now.velocity):
+            run.branches_changed = 1
             continue
         law, event = first_violated(laws, massless.laws)
         if law < 0:

@@ -132,7 +132,7 @@ class IntervalCourse:
     def __init__(self, envelope: EnvelopeBuffers, modal: Modal, order: Index) -> None:
         self.envelope, self.modal, self.size = envelope, modal, len(order)
         self.unknowns = order[envelope.unknowns]
-        self.cells = modal.growth.shape[1] - 1
+        self.cells = modal.exponentials.shape[1] - 1
         self.rows = [self._rows(b) for b in range(len(modal.counts))]
 
     def _rows(self, b: int) -> Array:
@@ -144,13 +144,15 @@ class IntervalCourse:
         force = np.where(
             place[:, None] >= 0, modal.stiffness[laws, None] * modal.rows[b, np.maximum(place, 0)], 0.0
         )
-        return np.vstack([*modal.motion[b, :, :seen], force])[:, : 2 * q + modal.steady.shape[2]]
+        n_x = 2 * q + modal.particular_solution.shape[2]
+        return np.vstack([*modal.motion[b, :, :seen], force])[:, :n_x]
 
     def _rates(self, b: int) -> tuple[Complex, int, int]:
         """Eigenvalues of a part times the length of the interval; numbers of modes and of inputs."""
         modal, q = self.modal, int(self.modal.counts[b, 1])
-        rate = (modal.turn[b, 0, :q] + 1j * modal.turn[b, 1, :q]) * (self.cells // 2)
-        return rate, q, modal.steady.shape[2] // 2
+        real, imaginary = modal.exponent_per_cell[b, :, :q]
+        rate = (real + 1j * imaginary) * (self.cells // 2)
+        return rate, q, modal.particular_solution.shape[2] // 2
 
     def _on_grid(self, b: int, count: int) -> Array:
         """The rows of a part at the starts of all cells of the first `count` intervals, shape (n_rows,

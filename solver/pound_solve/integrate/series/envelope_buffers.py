@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.law_state import Laws, LawTangent
-from pound_solve.integrate.series.forces import whole_force
+from pound_solve.integrate.series.forces import total_force
 from pound_solve.integrate.series.state import EnvelopeBuffers, Extent, Modal, Series
 from pound_solve.numerics.types import Index
 
@@ -57,7 +57,7 @@ def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
         for k in range(degree + 1):
             coefs[k] = series.motion[k, unknown]
     for i in range(len(envelope.laws)):
-        whole_force(laws, series, degree, h, envelope.laws[i], envelope.coefs[at, n + i])
+        total_force(laws, series, degree, h, envelope.laws[i], envelope.coefs[at, n + i])
     for i in range(envelope.coefs.shape[1]):
         for k in range(degree + 1, envelope.coefs.shape[2]):
             envelope.coefs[at, i, k] = 0.0

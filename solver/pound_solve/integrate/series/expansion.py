@@ -21,15 +21,19 @@ import numpy as np
 from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import add_row, multiply, row_product
 from pound_solve.integrate.kernels.state import MASS, LinearSystem, Piece, Simulation
-from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_valid_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
+from pound_solve.integrate.series.p_delta import add_p_delta
+from pound_solve.integrate.series.power_contacts import add_contacts, any_overlap, contacts_valid_up_to
+from pound_solve.integrate.series.power_dampers import (
+    add_damper_remainders,
+    dampers_valid_up_to,
+    find_damper_remainders,
+)
 from pound_solve.integrate.series.rigid import hold_contacts
 from pound_solve.integrate.series.smooth import add_remainders, find_remainders, smooth_valid_up_to
 from pound_solve.integrate.series.springs import add_product, deformation_term
 from pound_solve.integrate.series.state import Series
-from pound_solve.integrate.series.strings import add_strings
-from pound_solve.integrate.series.viscous import add_drags, drags_valid_up_to, find_drags
 from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
@@ -99,10 +103,11 @@ def structural_forces(
     if len(massless.unknown):
         for i in massless.unknown:
             out[i] = 0.0
-        for r in range(len(massless.heavy)):
-            i = massless.heavy[r]
+        for r in range(len(massless.with_mass)):
+            i = massless.with_mass[r]
             elastic = row_product(springs.rows, springs.index_of[i], c[k])
-            out[i] = -on_stiffness * elastic - on_damping * row_product(massless.heavy_damping, r, c[k + 1])
+            damping = row_product(massless.damping_with_mass, r, c[k + 1])
+            out[i] = -on_stiffness * elastic - on_damping * damping
         return
     multiply(linear.stiffness, c[k], series.stiffness_product)
     add_product(springs, c[k], series.stiffness_product)
@@ -112,7 +117,12 @@ def structural_forces(
 
 
 def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) -> None:
-    """Coefficients `k` + 2 of the unknowns from the two before (see the module's head)."""
+    """Coefficients `k` + 2 of the unknowns from the two before (see the module's head).
+
+    The order matters: forces `k` give the unknowns with mass; closed contacts constrain these; remainders
+    of smooth laws (`k` + 2) and of dampers (`k` + 1) follow from the motion so far, and the unknowns
+    without mass from all of them.
+    """
     linear, laws, step = sim.linear, sim.laws, sim.step
     new = series.motion[k + 2]
     n = len(new)
@@ -136,8 +146,8 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) 
     add_contacts(laws, series, k, h, n_powers, new)
     add_friction(laws, series, k, h, n_powers, new)
     add_remainders(laws, series.smooth, k, h, new)
-    add_drags(laws.definition, series.viscous, k, h, new)
-    add_strings(sim.members, series, k, h, n_powers, new)
+    add_damper_remainders(laws.definition, series.power_dampers, k, h, new)
+    add_p_delta(sim.members, series, k, h, n_powers, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -150,7 +160,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) 
             new[i] = 0.0
     hold_contacts(laws, series, k + 2, h, n_powers)
     find_remainders(laws, series, k + 2, n_powers)
-    find_drags(laws, series, k + 1, h, n_powers)
+    find_damper_remainders(laws, series, k + 1, h, n_powers)
     if len(series.massless.unknown):
         add_massless(laws, step, series, k + 2, h, n_powers)
 
@@ -166,16 +176,16 @@ def begin_series(sim: Simulation, series: Series, piece: Piece, h: float) -> Non
         hold_contacts(laws, series, k, h, n_powers)
         find_remainders(laws, series, k, n_powers)
         if k == 1:
-            find_drags(laws, series, 0, h, n_powers)
+            find_damper_remainders(laws, series, 0, h, n_powers)
         if len(series.massless.unknown):
             add_massless(laws, sim.step, series, k, h, n_powers)
 
 
 def valid_up_to(series: Series, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which forces that are series are accurate, at most `end`."""
-    end = contacts_valid_up_to(series.curved, degree, end)
+    end = contacts_valid_up_to(series.power_contacts, degree, end)
     end = smooth_valid_up_to(series.smooth, degree, end)
-    return drags_valid_up_to(series.viscous, degree, end)
+    return dampers_valid_up_to(series.power_dampers, degree, end)
 
 
 def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
@@ -189,12 +199,12 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
         Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all
         bounds.
     """
-    lengths = series.lengths
+    control = series.control
     linear = sim.linear
     n_powers = len(piece.coefs)
     begin_series(sim, series, piece, h)
-    lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
-    most, k, tail, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, UNCHECKED_TERMS
+    control.largest_kinetic = max(control.largest_kinetic, kinetic_of_term(linear, series, 1, h))
+    most, k, tail, last, control.quadrature_degree = control.largest_kinetic, 0, 0.0, 0.0, UNCHECKED_TERMS
     while k + 2 <= MAX_DEGREE:
         while True:
             next_term(sim, series, k, h, n_powers)
@@ -209,14 +219,14 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
         if most == 0.0:  # from rest
             most = max(energy_of_term(linear, series, 2, h), last, tail)
         if tail + last > UNSEEN_ENERGY * most:
-            lengths.carried = degree + UNCHECKED_TERMS
+            control.quadrature_degree = degree + UNCHECKED_TERMS
         enough = degree > n_powers and tail + last <= TRUNCATION * TRUNCATION * most
         if enough and valid_up_to(series, degree, 1.0) == 1.0:
             break
     # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
-    others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
-    if any_overlap(series.curved) or others:
-        lengths.carried = degree + UNCHECKED_TERMS
+    others = len(series.smooth.laws) + len(series.power_dampers.laws) + len(series.p_delta.force)
+    if any_overlap(series.power_contacts) or others:
+        control.quadrature_degree = degree + UNCHECKED_TERMS
     if not tail + last < np.inf:
         return degree, np.nan
     expand_deformations(sim.laws, series, degree, n_powers)

@@ -96,7 +96,7 @@ def form_row(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtremes, s:
             add_derivative(inputs[s, i - n], degree, order, factor, p)
 
 
-def count_row(envelope: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> None:
+def update_row_extremes(envelope: EnvelopeBuffers, extremes: RowExtremes, s: int, r: int) -> None:
     """Update the extremes of row `r` with the polynomial in the work space."""
     p, degree, begin, h = extremes.polynomial, envelope.degree[s], envelope.begin[s], envelope.length[s]
     first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, degree)
@@ -118,7 +118,7 @@ def find_extremes(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtreme
     Parameters
     ----------
     envelope : EnvelopeBuffers
-    inputs : ndarray, shape (n_steps, n_inputs, TERMS + 1)
+    inputs : ndarray, shape (n_steps, n_inputs, MAX_DEGREE + 1)
         Series of the inputs over each step.
     extremes : RowExtremes
 
@@ -136,5 +136,5 @@ def find_extremes(envelope: EnvelopeBuffers, inputs: Array, extremes: RowExtreme
         for r in range(len(extremes.high)):
             if may_exceed(extremes, r):
                 form_row(envelope, inputs, extremes, s, r)
-                count_row(envelope, extremes, s, r)
+                update_row_extremes(envelope, extremes, s, r)
     return 0

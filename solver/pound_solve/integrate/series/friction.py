@@ -16,13 +16,13 @@ from pound_solve.integrate.kernels.law_state import Laws, LawState
 from pound_solve.integrate.kernels.laws import curved_force, linear_force
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.force_events import LIFT
+from pound_solve.integrate.series.power_contacts import PRESSED
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Extent, Friction, Series
 from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
-from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS, RELEASED
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.contact.friction import ANCHOR, CONTACT_CLOSES, CONTACT_OPENS, MINUS, OPEN, PLUS
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array, Index
 
 KT, MU, MUD = range(3)  #: among the parameters
@@ -60,10 +60,10 @@ def is_sliding(friction: Friction, i: int) -> bool:
 def normal_force_term(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: int) -> float:
     """Coefficient `k` of the normal force of friction `r`."""
     tangent = laws.tangent
-    j, curved = series.friction.normal[r], series.curved
-    row = curved.index_of[j]
+    j, contacts = series.friction.normal[r], series.power_contacts
+    row = contacts.index_of[j]
     if row >= 0:
-        force: float = curved.force[row, k] if curved.phase[row] == PRESSED else 0.0
+        force: float = contacts.force[row, k] if contacts.phase[row] == PRESSED else 0.0
         return force
     linear: float = tangent.stiffness[j] * deformation_term(laws.definition, series, k, n_powers, j)
     if tangent.damping[j] != 0.0:
@@ -111,7 +111,7 @@ def update_friction(laws: Laws, series: Series, degree: int, s: float, h: float)
             )
 
 
-def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
+def touch_event(laws: Laws, rules: RuleFunctions, friction: Friction, r: int) -> int:
     """Set the normal force of friction `r` after a change of its contact, and return the event that
     follows; -1 for none.
     """
@@ -127,7 +127,7 @@ def touch_event(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
         force, rate = response[0], response[1] * v
     friction.pressing[r] = force >= 0.0
     state.internal[i, NORMAL_FORCE], state.internal[i, NORMAL_FORCE_RATE] = max(force, 0.0), rate
-    return 0 if pressed else RELEASED
+    return CONTACT_CLOSES if pressed else CONTACT_OPENS
 
 
 def lift_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
@@ -142,7 +142,7 @@ def lift_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
 
 
 def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
-    """The first event of friction law `i` before the place `end`, see `none`."""
+    """The first event of friction law `i` before the place `end`, see `no_event`."""
     friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
     r, parameters = friction.index_of[i], laws.definition.parameters[i]
     if laws.state.branch[i] == OPEN:

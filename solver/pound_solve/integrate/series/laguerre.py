@@ -33,14 +33,14 @@ class Laguerre(Taylor):
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
-        lengths = self.lengths
+        control, shortest = self.control, float(self.control.shortest_length)
         return {
             "method": self.name,
-            "steps": int(self.state.steps - lengths.in_modes),
-            **({"intervals in modes": in_modes} if (in_modes := int(lengths.in_modes)) else {}),
-            **({"shortest step": f"{lengths.shortest:.4g}"} if np.isfinite(lengths.shortest) else {}),
-            "steps taken again": int(lengths.rejected),
-            "factorisations": int(lengths.factored),
+            "steps": int(self.state.steps - control.n_modal_intervals),
+            **({"intervals in modes": in_modes} if (in_modes := int(control.n_modal_intervals)) else {}),
+            **({"shortest step": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
+            "steps taken again": int(control.n_rejected),
+            "factorisations": int(control.n_factorisations),
             "events": int(self.state.events),
         }
 

@@ -31,10 +31,9 @@ from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW
 from pound_solve.integrate.series.branches import (
     change_branches,
     count_instant,
-    renew_branches,
+    refresh_branches,
     settle_state,
 )
-from pound_solve.integrate.series.curved import change_phase
 from pound_solve.integrate.series.envelope_buffers import has_room, is_full, keep_step
 from pound_solve.integrate.series.expansion import (
     MAX_DEGREE,
@@ -45,17 +44,18 @@ from pound_solve.integrate.series.expansion import (
     law_at,
     next_term,
 )
-from pound_solve.integrate.series.force_events import BENDS, LIFT, TURNS
-from pound_solve.integrate.series.forces import count_largest, update_branch_forces
+from pound_solve.integrate.series.force_events import CROSSES_LINEAR_RANGE, LIFT, POWER_CHANGES
+from pound_solve.integrate.series.forces import update_branch_forces, update_largest_forces
 from pound_solve.integrate.series.friction import is_sliding
-from pound_solve.integrate.series.modal import from_modes, take_in_modes
+from pound_solve.integrate.series.modal import advance_in_modes, from_modes
+from pound_solve.integrate.series.power_contacts import change_phase
 from pound_solve.integrate.series.rigid import is_closed
-from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
-from pound_solve.integrate.series.smooth import shorten_for_bend
-from pound_solve.integrate.series.state import Extent, Lengths, Series
+from pound_solve.integrate.series.single_pole import expand_laguerre, is_laguerre
+from pound_solve.integrate.series.smooth import shorten_for_power_change
+from pound_solve.integrate.series.state import Extent, Series, StepControl
 from pound_solve.integrate.series.tracking import first_event, track_laws, track_outputs
 from pound_solve.integrate.series.works import add_works
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 
 MIN_SHORTENING = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
 MAX_SHORTENING = 0.9  #: this factor, at most
@@ -96,7 +96,7 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
         largest.deformation[i] = max(largest.deformation[i], abs(d))
         largest.rate[i] = max(largest.rate[i], abs(v))
     update_branch_forces(laws, series, degree, end, h)
-    count_largest(laws.tangent, series)
+    update_largest_forces(laws.tangent, series)
 
 
 def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
@@ -104,7 +104,7 @@ def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
     the error of the polynomial, so that its direction is unreliable.
     """
     at_rest = event.law >= 0 and laws.definition.contact[event.law] and laws.now.rate[event.law] == 0.0
-    return at_rest and is_implicit(series)
+    return at_rest and is_laguerre(series)
 
 
 def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
@@ -114,28 +114,35 @@ def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
     return crowded or run.steps >= pause or is_full(series.envelope)
 
 
-def step_length(lengths: Lengths, t: float, goal: float) -> float:
+def step_length(control: StepControl, t: float, goal: float) -> float:
     """Length of the next step: what is left to the goal in equal parts; 0 where it vanishes in the rounding
     of the time.
     """
     left = goal - t
-    h: float = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
+    h: float = left / np.ceil(max(left / control.next_length, 1.0) * (1.0 - 1e-9))
     if h == left:
         return h
     # the step is what the rounded clock advances by, except at time 0, where the clock resolves any step
     return t + h - t if goal + h > goal else 0.0
 
 
-def shorten_step(lengths: Lengths, h: float, fit: float) -> None:
+def shorten_step(control: StepControl, h: float, fit: float) -> None:
     """Choose a shorter step after one that did not fit, shorter by a tenth at least: with less, the equal
     parts of what is left would be as long as before.
     """
-    lengths.next = h * (min(fit, MAX_SHORTENING) if fit > MIN_SHORTENING else MIN_SHORTENING)
-    lengths.rejected += 1
+    control.next_length = h * (min(fit, MAX_SHORTENING) if fit > MIN_SHORTENING else MIN_SHORTENING)
+    control.n_rejected += 1
 
 
-def take_step(sim: Simulation, rules: Tables, series: Series, piece: Piece, extent: Extent) -> None:
-    """Accept a step: update peaks, kept motion, works, and the present motion."""
+def complete_step(
+    sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, extent: Extent
+) -> None:
+    """Accept a step: update peaks, kept motion, works, and the present motion.
+
+    What reads the tangents of the step's start comes before `add_works`, which leaves those of its last
+    Gauss point behind; `accept_step` then sets the forces at the end, and smooth laws and dampers get new
+    tangents.
+    """
     laws, run = sim.laws, sim.run
     track_outputs(sim, series, extent, len(piece.coefs))
     track_laws(laws, sim.step, series, extent, len(sim.linear.monitored_constants))
@@ -143,13 +150,13 @@ def take_step(sim: Simulation, rules: Tables, series: Series, piece: Piece, exte
         keep_step(laws, series, extent)
         add_works(sim, rules, series, piece, extent)
         accept_step(laws, sim.step.now, series, extent)
-        if len(series.smooth.laws) + len(series.viscous.laws):
-            run.stale = 1
+        if len(series.smooth.laws) + len(series.power_dampers.laws):
+            run.branches_changed = 1
     run.steps += 1
 
 
 def answer_event(
-    sim: Simulation, rules: Tables, series: Series, piece: Piece, extent: Extent, event: LocatedEvent
+    sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, extent: Extent, event: LocatedEvent
 ) -> int:
     """Carry out an event at the present time; `extent` is where its step was searched for events.
 
@@ -158,29 +165,29 @@ def answer_event(
     int
         DONE, or what is wrong.
     """
-    laws, lengths, kind = sim.laws, series.lengths, event.event_index
+    laws, control, kind = sim.laws, series.control, event.event_index
     if kind == LIFT:
         r = series.friction.index_of[event.law]
         series.friction.pressing[r] = not series.friction.pressing[r]
         return DONE
-    if kind == BENDS:
-        shorten_for_bend(laws.now, series.smooth, lengths, event.law)
+    if kind == POWER_CHANGES:
+        shorten_for_power_change(laws.now, series.smooth, control, event.law)
         return DONE
-    if kind == TURNS:
-        sim.run.stale = 1
+    if kind == CROSSES_LINEAR_RANGE:
+        sim.run.branches_changed = 1
         return DONE
     if kind < 0:
-        change_phase(laws, series.curved, lengths, event.law, kind)
+        change_phase(laws, series.power_contacts, control, event.law, kind)
         return DONE
     if series.rigid.index_of[event.law] >= 0:
-        sim.run.fault = event.law
+        sim.run.changed_law = event.law
         return RIGID_EVENT
     change_branches(sim, rules, series, extent, event)
     return settle_state(sim, rules, series, piece)
 
 
 def step_to_goal(
-    sim: Simulation, rules: Tables, series: Series, piece: Piece, goal: float, pause: int
+    sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, goal: float, pause: int
 ) -> int:
     """Take steps on one piece of the excitation up to a goal, or until control must return to Python.
 
@@ -189,55 +196,57 @@ def step_to_goal(
     int
         DONE, or what is wrong.
     """
-    lengths = series.lengths
+    control = series.control
     laws, run = sim.laws, sim.run
     while run.time < goal:
         if must_pause(sim.buffers, series, run, pause):
             return BUFFERS_FULL
         t = run.time
-        h = step_length(lengths, t, goal)
+        h = step_length(control, t, goal)
         if h == 0.0:
             return STEP_TOO_SHORT
-        if not renew_branches(sim, rules, series):
+        if not refresh_branches(sim, rules, series):
             return UNRESTRAINED
-        if len(series.viscous.light):
+        if len(series.power_dampers.on_massless):
             why = settle_state(sim, rules, series, piece)
             if why != DONE:
                 return why
-        if is_implicit(series):
-            degree, fit = expand_implicit(sim, series, piece, h)
+        if is_laguerre(series):
+            degree, fit = expand_laguerre(sim, series, piece, h)
             least, room = 1.0, 1.0
         else:
             degree, fit = expand_series(sim, series, piece, h)
             # terms that were not needed make room for a longer step
             least, room = MIN_PART, MAX_DEGREE / degree
         if not fit >= least:  # terms far too large say nothing about the motion
-            shorten_step(lengths, h, fit)
-            pause -= 1
+            shorten_step(control, h, fit)
+            pause -= 1  # or a run that shortens its steps without end could not be interrupted
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
             return STEP_TOO_SHORT
         whole = end == 1.0 and h == goal - t
-        lengths.next = max(h * min(fit * room, MAX_GROWTH), lengths.next if end == 1.0 else 0.0)
+        # a step that an event cuts is no reason to forget a longer length, a truncated one is
+        remembered = control.next_length if end == 1.0 else 0.0
+        control.next_length = max(h * min(fit * room, MAX_GROWTH), remembered)
         searched = Extent(t, h, degree, end)
         update_displacement_scale(laws, series, searched)
         event = first_event(laws, series, searched)
         at = event.time
         if h > MAX_FIRST_STEP * (goal - t) and begins_to_move(laws, series, event):
-            shorten_step(lengths, h, MIN_SHORTENING)
+            shorten_step(control, h, MIN_SHORTENING)
             pause -= 1
             continue
-        take_step(sim, rules, series, piece, Extent(t, h, degree, at))
+        complete_step(sim, rules, series, piece, Extent(t, h, degree, at))
         if event.law < 0:
             if not whole:
-                lengths.shortest = min(lengths.shortest, at * h)
+                control.shortest_length = min(control.shortest_length, at * h)
             run.time = goal if whole else t + at * h
             continue
         run.time = t + at * h
         count_instant(run, h)
         if run.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule):
-            run.fault = event.law
+            run.changed_law = event.law
             return CHATTER
         why = answer_event(sim, rules, series, piece, searched, event)
         if why != DONE:
@@ -246,13 +255,13 @@ def step_to_goal(
 
 
 def reach_goal(
-    sim: Simulation, rules: Tables, series: Series, piece: Piece, goal: float, pause: int
+    sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, goal: float, pause: int
 ) -> int:
     """Advance the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
     step, run = sim.step, sim.run
     if not has_room(series.envelope):
         return BUFFERS_FULL
-    if run.steps < pause and take_in_modes(sim, series, piece, goal):
+    if run.steps < pause and advance_in_modes(sim, series, piece, goal):
         return DONE
     from_modes(sim.laws, series.modal, step)
     series.modal.is_present[0] = 0
@@ -262,12 +271,12 @@ def reach_goal(
         multiply(sim.linear.mass, step.now.velocity, momentum)
         kinetic = 0.5 * dot(step.now.velocity, momentum)
         if runs_away(kinetic, run.initial_energy, sim.works.gross_input):
-            run.initial_energy = kinetic
+            run.runaway_energy = kinetic
             return RUNAWAY
     return why
 
 
-def take_sample(sim: Simulation, rules: Tables, series: Series, piece: Piece) -> None:
+def store_sample_at_goal(sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece) -> None:
     """Keep the present motion; as the first sample, count it into the peaks."""
     run = sim.run
     now = sim.step.now
@@ -295,7 +304,9 @@ def massless_load_work(sim: Simulation, series: Series, piece: Piece) -> float:
     return total
 
 
-def settle_after_jump(sim: Simulation, rules: Tables, series: Series, before: Piece, after: Piece) -> int:
+def settle_after_jump(
+    sim: Simulation, rules: RuleFunctions, series: Series, before: Piece, after: Piece
+) -> int:
     """Settle the state at the start of another piece of the excitation.  Massless unknowns jump with the
     load; the work done is the mean load times the jump.
     """
@@ -312,7 +323,7 @@ def settle_after_jump(sim: Simulation, rules: Tables, series: Series, before: Pi
     return DONE
 
 
-def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
+def march(sim: Simulation, rules: RuleFunctions, series: Series, goals: Goals) -> int:
     """Integrate to the last goal, or until control must return to Python (see
     `stepping.kernel.advance`).
     """
@@ -322,7 +333,7 @@ def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
         goal = run.goal
         piece, before = piece_of(goals, goal), piece_of(goals, max(goal - 1, 0))
         if run.started == 0:
-            take_sample(sim, rules, series, piece)
+            store_sample_at_goal(sim, rules, series, piece)
         # the excitation may have a kink here, or jump
         why = settle_after_jump(sim, rules, series, before, piece)
         if why != DONE:
@@ -333,7 +344,7 @@ def march(sim: Simulation, rules: Tables, series: Series, goals: Goals) -> int:
         run.goal += 1
         if goals.sampled[goal]:
             from_modes(sim.laws, series.modal, sim.step)
-            take_sample(sim, rules, series, piece)
+            store_sample_at_goal(sim, rules, series, piece)
             if run.n_samples == len(sim.buffers.time):
                 return BUFFERS_FULL
     return DONE

@@ -52,7 +52,8 @@ from pound_solve.numerics.types import Array, Index
 DEFORMATION_JUMP = (
     1e-9  #: fraction of the largest deformation above which a change at one instant is a jump
 )
-DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
+#: rows of `Massless.factors`: unknowns that a dashpot resists, and those that springs alone hold
+ORDER_ONE, ORDER_ZERO = range(2)
 PARTICIPATION = 1e-6  #: fraction of the largest component of a motion above which an unknown takes part
 
 
@@ -84,9 +85,9 @@ def allocate(
     springs = weighted(touched[:, order], elastic[laws])
     return Massless(
         unknown=unknown,
-        heavy=np.flatnonzero(linear.has_mass),
+        with_mass=np.flatnonzero(linear.has_mass),
         damping=sparse_rows(damping[unknown]),
-        heavy_damping=sparse_rows(damping[linear.has_mass]),
+        damping_with_mass=sparse_rows(damping[linear.has_mass]),
         laws=laws,
         index_of_law=inverse_index(laws, law_rows.shape[0]),
         rows=rows,
@@ -97,10 +98,11 @@ def allocate(
         pair_places=pairs,
         pair_values=values,
         damped=np.zeros(len(first), bool),
-        members=np.zeros((2, len(first)), np.int64),
-        counts=np.zeros(2, np.int64),
+        unknowns_of_order=np.zeros((2, len(first)), np.int64),
+        n_of_order=np.zeros(2, np.int64),
         factors=np.zeros((2, len(pattern.li))),
-        pivots=np.ones((2, len(first))),
+        failed_pivot=np.zeros(1),
+        inverse_pivots=np.ones((2, len(first))),
         matrix=np.zeros(len(column)),
         row=np.zeros(len(first)),
         right_side=np.zeros(len(first)),
@@ -114,7 +116,7 @@ def form_matrix(tangent: LawTangent, massless: Massless, which: int) -> None:
         massless.matrix[q] = massless.on_pattern[which, q]
     for n in range(len(massless.laws)):
         i = massless.laws[n]
-        coefficient = tangent.damping[i] if which == DAMPING else tangent.stiffness[i]
+        coefficient = tangent.damping[i] if which == ORDER_ONE else tangent.stiffness[i]
         for q in range(massless.pair_pointers[n], massless.pair_pointers[n + 1]):
             massless.matrix[massless.pair_places[q]] += coefficient * massless.pair_values[q]
 
@@ -128,36 +130,36 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
         -1, or the number of one that nothing holds, or that would snap through, by K; one that is held by
         dashpots between such unknowns alone, by C.
     """
-    form_matrix(laws.tangent, massless, DAMPING)
-    massless.counts[DAMPING] = massless.counts[STIFFNESS] = 0
+    form_matrix(laws.tangent, massless, ORDER_ONE)
+    massless.n_of_order[ORDER_ONE] = massless.n_of_order[ORDER_ZERO] = 0
     for i in range(len(massless.unknown)):
         massless.damped[i] = massless.matrix[massless.pattern.ap[i]] != 0.0
-        which = DAMPING if massless.damped[i] else STIFFNESS
-        massless.members[which, massless.counts[which]] = i
-        massless.counts[which] += 1
+        which = ORDER_ONE if massless.damped[i] else ORDER_ZERO
+        massless.unknowns_of_order[which, massless.n_of_order[which]] = i
+        massless.n_of_order[which] += 1
     for which in range(2):
-        if which == STIFFNESS:
-            form_matrix(laws.tangent, massless, STIFFNESS)
+        if which == ORDER_ZERO:
+            form_matrix(laws.tangent, massless, ORDER_ZERO)
         for q in range(len(massless.matrix)):
             i, j = massless.pattern.ai[q], massless.column[q]
-            if massless.damped[i] != (which == DAMPING) or massless.damped[j] != (which == DAMPING):
+            if massless.damped[i] != (which == ORDER_ONE) or massless.damped[j] != (which == ORDER_ONE):
                 massless.matrix[q] = 1.0 if i == j else 0.0
-        fault = factor(
-            massless.pattern, massless.matrix, massless.factors[which], massless.pivots[which], massless.row
-        )
+        pivots = massless.inverse_pivots[which]  # at first the pivots themselves
+        fault = factor(massless.pattern, massless.matrix, massless.factors[which], pivots, massless.row)
+        for i in range(len(massless.unknown)):
+            if fault < 0 and pivots[i] < 0.0:
+                fault = i
         if fault >= 0:
+            massless.failed_pivot[0] = pivots[fault]
             return fault
         for i in range(len(massless.unknown)):
-            if massless.pivots[which, i] < 0.0:
-                return i
-        for i in range(len(massless.unknown)):
-            massless.pivots[which, i] = 1.0 / massless.pivots[which, i]
+            pivots[i] = 1.0 / pivots[i]
     return -1
 
 
 def least_damped_unknowns(laws: Laws, massless: Massless) -> Index:
     """Numbers of the unknowns of order one that take part in their least damped motion."""
-    form_matrix(laws.tangent, massless, DAMPING)
+    form_matrix(laws.tangent, massless, ORDER_ONE)
     c = np.zeros((len(massless.unknown), len(massless.unknown)))
     c[massless.pattern.ai, massless.column] = c[massless.column, massless.pattern.ai] = massless.matrix
     at = np.flatnonzero(massless.damped)
@@ -166,20 +168,23 @@ def least_damped_unknowns(laws: Laws, massless: Massless) -> Index:
 
 
 def solve_order(massless: Massless, which: int) -> None:
-    """Solve in place for the unknowns of one order; the right sides of the others do not matter."""
-    s, l, d, x = massless.pattern, massless.factors[which], massless.pivots[which], massless.right_side  # noqa: E741
-    members = massless.members[which]
-    for q in range(massless.counts[which]):
-        j = members[q]
-        t = x[j]
-        for y in range(s.lp[j], s.lp[j + 1]):
-            x[s.li[y]] -= l[y] * t
-    for q in range(massless.counts[which] - 1, -1, -1):
-        j = members[q]
-        t = x[j] * d[j]
-        for y in range(s.lp[j], s.lp[j + 1]):
-            t -= l[y] * x[s.li[y]]
-        x[j] = t
+    """Solve in place for the unknowns of one order; the right sides of the others do not matter.
+
+    As `ldl.solve`, but for some unknowns only: those of the other order have unit rows, so that their part
+    of L is zero.  The unknowns come in ascending order of elimination.
+    """
+    pattern, lower, x = massless.pattern, massless.factors[which], massless.right_side
+    unknowns, inverse_pivots = massless.unknowns_of_order[which], massless.inverse_pivots[which]
+    for q in range(massless.n_of_order[which]):
+        j = unknowns[q]
+        for e in range(pattern.lp[j], pattern.lp[j + 1]):
+            x[pattern.li[e]] -= lower[e] * x[j]
+    for q in range(massless.n_of_order[which] - 1, -1, -1):
+        j = unknowns[q]
+        total = x[j] * inverse_pivots[j]
+        for e in range(pattern.lp[j], pattern.lp[j + 1]):
+            total -= lower[e] * x[pattern.li[e]]
+        x[j] = total
 
 
 def balance_forces(series: Series, k: int, n_powers: int, which: int) -> None:
@@ -187,30 +192,30 @@ def balance_forces(series: Series, k: int, n_powers: int, which: int) -> None:
     of smooth laws and dampers beyond their tangents, at the coefficients `k`.
     """
     massless, springs, c = series.massless, series.springs, series.motion[k]
-    members, x = massless.members[which], massless.right_side
-    for q in range(massless.counts[which]):
+    members, x = massless.unknowns_of_order[which], massless.right_side
+    for q in range(massless.n_of_order[which]):
         x[members[q]] = -row_product(springs.rows, massless.unknown[members[q]], c)
     if k < n_powers:
-        for q in range(massless.counts[which]):
+        for q in range(massless.n_of_order[which]):
             x[members[q]] += load_term(springs, series, k, n_powers, massless.unknown[members[q]])
     smooth = series.smooth
     for r in range(len(smooth.laws)):
         n = massless.index_of_law[smooth.laws[r]]
         if n >= 0:
             add_row(massless.rows, n, -smooth.constants[r, Q] * smooth.remainder[r, k], x)
-    viscous = series.viscous
-    for r in range(len(viscous.laws)):
-        n = massless.index_of_law[viscous.laws[r]]
-        if n >= 0 and viscous.fast[r]:
-            add_row(massless.rows, n, -viscous.remainder[r, k], x)
+    dampers = series.power_dampers
+    for r in range(len(dampers.laws)):
+        n = massless.index_of_law[dampers.laws[r]]
+        if n >= 0 and dampers.is_series[r]:
+            add_row(massless.rows, n, -dampers.remainder[r, k], x)
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` > 0 of the unknowns of order one."""
     massless, c, x = series.massless, series.motion, series.massless.right_side
-    members = massless.members[DAMPING]
-    balance_forces(series, k - 1, n_powers, DAMPING)
-    for q in range(massless.counts[DAMPING]):
+    members = massless.unknowns_of_order[ORDER_ONE]
+    balance_forces(series, k - 1, n_powers, ORDER_ONE)
+    for q in range(massless.n_of_order[ORDER_ONE]):
         x[members[q]] -= k / h * row_product(massless.damping, members[q], c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
@@ -223,8 +228,8 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> N
         n = massless.index_of_law[series.smooth.laws[r]]
         if n >= 0:
             add_row(massless.rows, n, -dashpot_remainder(laws.definition, series.smooth, r, k - 1, h), x)
-    solve_order(massless, DAMPING)
-    for q in range(massless.counts[DAMPING]):
+    solve_order(massless, ORDER_ONE)
+    for q in range(massless.n_of_order[ORDER_ONE]):
         c[k, massless.unknown[members[q]]] = x[members[q]] * (h / k)
 
 
@@ -237,12 +242,12 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_pow
         for n in range(len(x)):
             i = massless.unknown[n]
             c[k, i] = step.now.displacement[i] if k == 0 and massless.damped[n] else 0.0
-    if k > 0 and massless.counts[DAMPING] > 0:
+    if k > 0 and massless.n_of_order[ORDER_ONE] > 0:
         add_damped(laws, series, k, h, n_powers)
-    balance_forces(series, k, n_powers, STIFFNESS)
-    solve_order(massless, STIFFNESS)
-    members = massless.members[STIFFNESS]
-    for q in range(massless.counts[STIFFNESS]):
+    balance_forces(series, k, n_powers, ORDER_ZERO)
+    solve_order(massless, ORDER_ZERO)
+    members = massless.unknowns_of_order[ORDER_ZERO]
+    for q in range(massless.n_of_order[ORDER_ZERO]):
         c[k, massless.unknown[members[q]]] = x[members[q]]
 
 

@@ -24,12 +24,12 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME_LENGTH
 from pound_solve.integrate.kernels.law_state import BranchEvents, Laws
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.kernels.recording import count_extreme
+from pound_solve.integrate.kernels.recording import update_extreme
 from pound_solve.integrate.kernels.state import LinearSystem, Piece, Simulation, Step
 from pound_solve.integrate.series.envelope_buffers import keep_interval
 from pound_solve.integrate.series.expansion import MAX_DEGREE, UNCHECKED_TERMS, dot, expand_inputs
 from pound_solve.integrate.series.state import Extent, Modal, Series
-from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
+from pound_solve.integrate.series.tracking import event_of, track_law, update_peak
 from pound_solve.integrate.tracker import TrackedExtremes
 from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.types import Array
@@ -51,16 +51,16 @@ def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, befo
         out[i] = total
 
 
-def renew_modes(laws: Laws, series: Series) -> None:
+def refresh_modes(laws: Laws, series: Series) -> None:
     """Check whether the modes are valid on the present branches, and compute where these come to rest."""
     modal = series.modal
-    modal.serves[0] = 0
+    modal.is_valid[0] = 0
     if modal.length[0] == 0.0:
         return
     for i in range(len(laws.definition.rule)):
         if laws.tangent.stiffness[i] != modal.stiffness[i] or laws.tangent.damping[i] != 0.0:
             return
-    modal.serves[0] = 1
+    modal.is_valid[0] = 1
     for i in range(len(modal.offset)):
         modal.offset[i] = 0.0
     for b in range(len(modal.counts)):
@@ -110,7 +110,7 @@ def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
 
 def start_interval(modal: Modal, inputs: Array) -> None:
     """Compute the state x, of modes and inputs, at the ends and the middles of all cells."""
-    n_inputs, places = inputs.shape[1], modal.growth.shape[1]
+    n_inputs, places = inputs.shape[1], modal.exponentials.shape[1]
     for b in range(len(modal.counts)):
         count, x = modal.counts[b, MODES], modal.x[b]
         for place in range(places):
@@ -123,9 +123,9 @@ def start_interval(modal: Modal, inputs: Array) -> None:
         for i in range(2 * count):
             x[0, i] = modal.modes[b, i] - modal.equilibrium[b, i]
             for j in range(2 * n_inputs):
-                x[0, i] -= modal.steady[b, i, j] * x[0, 2 * count + j]
+                x[0, i] -= modal.particular_solution[b, i, j] * x[0, 2 * count + j]
         for place in range(1, places):
-            re, im = modal.growth[b, place, 0], modal.growth[b, place, 1]
+            re, im = modal.exponentials[b, place, 0], modal.exponentials[b, place, 1]
             for j in range(count):
                 x[place, j] = re[j] * x[0, j] - im[j] * x[0, count + j]
                 x[place, count + j] = re[j] * x[0, count + j] + im[j] * x[0, j]
@@ -137,7 +137,7 @@ def follow_cells(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
     """
     n_followed, outputs, ends = len(modal.offset), len(linear.monitored_constants), len(modal.values)
     for i in range(n_followed):
-        modal.apart[i] = 0.0
+        modal.chord_error[i] = 0.0
         constant = modal.offset[i]
         if i >= n_followed - outputs:
             constant += linear.monitored_constants[i - n_followed + outputs]
@@ -148,10 +148,10 @@ def follow_cells(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
         size = 2 * (count + n_inputs)
         for j in range(count):
             free = np.sqrt(x[0, j] * x[0, j] + x[0, count + j] * x[0, count + j])
-            modal.departure[b, j] = modal.bend[b, j] * free
+            modal.mode_chord_error[b, j] = modal.chord_error_factor[b, j] * free
         for i in range(modal.counts[b, FOLLOWED]):
             at, row = modal.followed[b, i], modal.rows[b, i, :size]
-            modal.apart[at] += dot(modal.share[b, i, :count], modal.departure[b, :count])
+            modal.chord_error[at] += dot(modal.amplitude[b, i, :count], modal.mode_chord_error[b, :count])
             for end in range(ends):
                 modal.values[end, at] += dot(row, x[2 * end, :size])
 
@@ -159,7 +159,7 @@ def follow_cells(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
 def cell_bounds(modal: Modal, cell: int, i: int) -> tuple[float, float]:
     """Bounds of a followed quantity over a cell."""
     begin, end = modal.values[cell, i], modal.values[cell + 1, i]
-    return min(begin, end) - modal.apart[i], max(begin, end) + modal.apart[i]
+    return min(begin, end) - modal.chord_error[i], max(begin, end) + modal.chord_error[i]
 
 
 @reorder_sums
@@ -189,7 +189,7 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
         row, x, later = modal.rows[b, at], modal.x[b, 2 * cell], modal.x[b, 2 * cell + 2]
         for j in range(2 * count, 2 * (count + n_inputs)):
             p[1] += row[j] * (later[j] - x[j])
-        re, im, turn = modal.term[0], modal.term[1], modal.turn[b]
+        re, im, turn = modal.term[0], modal.term[1], modal.exponent_per_cell[b]
         first, fastest = abs(p[0]), 0.0
         for j in range(count):
             re[j] = row[j] * x[j] + row[count + j] * x[count + j]
@@ -239,7 +239,7 @@ def exceeds_peaks(extremes: TrackedExtremes, i: int, low: float, high: float) ->
     return not (high <= extremes.high[i] and low >= extremes.low[i])
 
 
-def count_ends(
+def update_peaks_at_cell_ends(
     laws: Laws, step: Step, modal: Modal, i: int, at: int, k: float, constant: float, t: float
 ) -> None:
     """Update peak `at` with ``k y + constant`` at the ends of the cells, y being followed quantity `i`: the
@@ -248,10 +248,10 @@ def count_ends(
     cells = len(modal.values) - 1
     for end in range(cells + 1):
         when = t + end * modal.length[0] / cells
-        count_extreme(laws, step, -1, at, k * modal.values[end, i] + constant, when)
+        update_extreme(laws, step, -1, at, k * modal.values[end, i] + constant, when)
 
 
-def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> bool:
+def update_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> bool:
     """Update the peaks with the motion within the interval; False if a power series would be too long."""
     laws, step = sim.laws, sim.step
     tangent = laws.tangent
@@ -260,10 +260,10 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
     h = modal.length[0] / cells
     for i in range(n_laws):
         k, offset = tangent.stiffness[i], tangent.offset[i]
-        count_ends(laws, step, modal, i, outputs + i, 1.0, 0.0, t)
-        count_ends(laws, step, modal, i, outputs + n_laws + i, k, offset, t)
+        update_peaks_at_cell_ends(laws, step, modal, i, outputs + i, 1.0, 0.0, t)
+        update_peaks_at_cell_ends(laws, step, modal, i, outputs + n_laws + i, k, offset, t)
     for i in range(outputs):
-        count_ends(laws, step, modal, n_laws + i, i, 1.0, 0.0, t)
+        update_peaks_at_cell_ends(laws, step, modal, n_laws + i, i, 1.0, 0.0, t)
     for cell in range(cells):
         for i in range(n_laws):
             low, high = cell_bounds(modal, cell, i)
@@ -284,7 +284,7 @@ def count_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> boo
                 degree = expand_in_cell(modal, cell, n_laws + i, n_inputs, p)
                 if degree == 0:
                     return False
-                count_crest(laws, step, series, Extent(t + cell * h, h, degree, 1.0), i, -1)
+                update_peak(laws, step, series, Extent(t + cell * h, h, degree, 1.0), i, -1)
     return True
 
 
@@ -308,21 +308,21 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
     """Advance the modes to the end of the interval."""
     for b in range(len(modal.counts)):
         twice, modes = 2 * modal.counts[b, MODES], modal.modes[b]
-        x = modal.x[b, modal.growth.shape[1] - 1]
+        x = modal.x[b, modal.exponentials.shape[1] - 1]
         for i in range(twice):
             modes[i] = x[i] + modal.equilibrium[b, i]
             for j in range(2 * n_inputs):
-                modes[i] += modal.steady[b, i, j] * x[twice + j]
+                modes[i] += modal.particular_solution[b, i, j] * x[twice + j]
 
 
-def take_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float) -> bool:
+def advance_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float) -> bool:
     """Advance in modes over the interval up to a goal; False where that is not certain to be right.
 
     The motion stays in the modes, see `from_modes`.
     """
     run = sim.run
     modal, n_inputs = series.modal, series.inputs.shape[1]
-    if run.stale or not modal.serves[0]:
+    if run.branches_changed or not modal.is_valid[0]:
         return False
     h = modal.length[0]
     if abs(goal - run.time - h) > SAME_LENGTH * h:
@@ -334,12 +334,12 @@ def take_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float) ->
     follow_cells(sim.linear, modal, n_inputs)
     if not is_quiet(sim.laws, series, n_inputs, run.time):
         return False
-    if not count_peaks(sim, series, n_inputs, run.time):
+    if not update_peaks(sim, series, n_inputs, run.time):
         return False
     add_interval_works(modal, n_inputs, sim.works)
     keep_interval(sim.laws.tangent, series, run.time)
     advance_modes(modal, n_inputs)
     run.time = goal
     run.steps += 1
-    series.lengths.in_modes += 1
+    series.control.n_modal_intervals += 1
     return True

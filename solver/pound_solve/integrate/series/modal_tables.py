@@ -189,20 +189,20 @@ def allocate(
     modal = Modal(
         length=np.array([length if parts else 0.0]),
         is_present=np.zeros(1, np.int64),
-        serves=np.zeros(1, np.int64),
+        is_valid=np.zeros(1, np.int64),
         stiffness=stiffness,
         counts=np.array(counts, np.int64).reshape(b, 4),
         unknowns=np.zeros((b, n), np.int64),
         to_modes=np.zeros((b, 2, 2 * q, n)),
         from_modes=np.zeros((b, 2, n, 2 * q)),
         static_positions=np.zeros((b, 2 * q, n)),
-        growth=np.zeros((b, places, 2, q)),
-        steady=np.zeros((b, 2 * q, 2 * n_inputs)),
-        bend=np.zeros((b, q)),
+        exponentials=np.zeros((b, places, 2, q)),
+        particular_solution=np.zeros((b, 2 * q, 2 * n_inputs)),
+        chord_error_factor=np.zeros((b, q)),
         followed=np.zeros((b, r), np.int64),
         index_of=np.full((b, n_followed), -1),
-        turn=np.zeros((b, 2, q)),
-        share=np.zeros((b, r, q)),
+        exponent_per_cell=np.zeros((b, 2, q)),
+        amplitude=np.zeros((b, r, q)),
         rows=np.zeros((b, r, size)),
         damping_work=np.zeros((b, size, size)),
         input_work=np.zeros((b, 2 * n_inputs, size)),
@@ -213,10 +213,10 @@ def allocate(
         equilibrium=np.zeros((b, 2 * q)),
         offset=np.zeros(n_followed),
         x=np.zeros((b, places, size)),
-        departure=np.zeros((b, q)),
+        mode_chord_error=np.zeros((b, q)),
         term=np.zeros((2, q)),
         values=np.zeros((cells + 1, n_followed)),
-        apart=np.zeros(n_followed),
+        chord_error=np.zeros(n_followed),
     )
     for i, ((unknowns, p), numbers) in enumerate(zip(parts, seen)):
         fill_tables(modal, i, p, numbers, place[unknowns], enveloped[numbers])
@@ -243,14 +243,14 @@ def fill_tables(
     put(out.static_positions, np.vstack([part.static_positions.real, part.static_positions.imag]))
     cells = len(out.values) - 1
     growth = np.exp(rate * h * np.linspace(0.0, 1.0, 2 * cells + 1)[:, None])
-    put(out.growth, np.stack([growth.real, growth.imag], axis=1))
+    put(out.exponentials, np.stack([growth.real, growth.imag], axis=1))
     start = np.hstack([steady, steady / (rate * h)[:, None]])
-    put(out.steady, np.vstack([start.real, start.imag]))
-    put(out.bend, np.minimum(2.0, (np.abs(rate) * h / cells) ** 2 / 8.0))
+    put(out.particular_solution, np.vstack([start.real, start.imag]))
+    put(out.chord_error_factor, np.minimum(2.0, (np.abs(rate) * h / cells) ** 2 / 8.0))
     put(out.followed, part.followed)
     out.index_of[b, part.followed] = np.arange(len(part.followed))
-    put(out.turn, np.array([rate.real, rate.imag]) * h / cells)
-    put(out.share, np.abs(part.rows))
+    put(out.exponent_per_cell, np.array([rate.real, rate.imag]) * h / cells)
+    put(out.amplitude, np.abs(part.rows))
     put(out.rows, part.table(part.rows, START)[0])
     for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works):
         put(array, values)

@@ -8,7 +8,7 @@ from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.present import KernelPresent
 from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW
-from pound_solve.integrate.series.forces import take_over
+from pound_solve.integrate.series.forces import refresh_branch_series
 from pound_solve.integrate.series.massless import first_violated
 from pound_solve.integrate.series.state import Series
 from pound_solve.laws.automaton import NORMAL_FORCE
@@ -42,12 +42,12 @@ class Present(KernelPresent):
         return forces
 
     def enter(self, law: int) -> None:
-        """Copy the branch that a law has changed to into the arrays of curved contacts and of friction."""
-        take_over(self.engine.laws, self.engine.rules, self.series, law)
+        """Copy the branch that a law has changed to into the arrays of power contacts and of friction."""
+        refresh_branch_series(self.engine.laws, self.engine.rules, self.series, law)
 
-    def take_impact(self, put_in: float, lost: Array) -> None:
+    def add_impact_work(self, put_in: float, lost: Array) -> None:
         """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
-        self.take_input(put_in)
+        self.add_input_work(put_in)
         self.engine.accumulator.works.contact += float(lost.sum())
         self.engine.laws.state.dashpot_loss[:] += lost
 

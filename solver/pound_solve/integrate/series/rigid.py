@@ -42,7 +42,7 @@ def allocate(contacts: RigidContacts, order: Index, n_laws: int, n_coefs: int) -
     )
 
 
-def take_over(rigid: Rigid, contacts: RigidContacts, closed: Flags) -> None:
+def set_closed_contacts(rigid: Rigid, contacts: RigidContacts, closed: Flags) -> None:
     """Set which contacts are closed, and the inverse matrix for their forces."""
     at = np.flatnonzero(closed)
     rigid.is_closed[:], rigid.n_closed[0], rigid.closed[: len(at)] = closed, len(at), at

@@ -104,7 +104,7 @@ def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
     )
 
 
-def is_implicit(series: Series) -> bool:
+def is_laguerre(series: Series) -> bool:
     """Whether the steps of a run are Laguerre series."""
     return len(series.single_pole.basis) > 0
 
@@ -193,7 +193,7 @@ def find_terms(sim: Simulation, series: Series, h: float, n_powers: int) -> floa
         elastic_force(linear, series, u[n], force)
         if n == 0:
             kinetic = dot(v[0], delta)
-            series.lengths.kinetic = max(series.lengths.kinetic, kinetic)
+            series.control.largest_kinetic = max(series.control.largest_kinetic, kinetic)
             present = abs(kinetic) + abs(dot(u[0], force))
         for i in range(len(delta)):
             delta[i] -= scale * force[i]
@@ -218,7 +218,7 @@ def write_in_powers(series: Series) -> None:
                 term[i] += share * laguerre.displacement[n, i]
 
 
-def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
+def expand_laguerre(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
     """Find the series of a step of length `h` from the present state on, as `expansion.expand_series` does.
 
     Returns
@@ -229,7 +229,7 @@ def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> 
         Multiple of the step that would be right; below 1 the step must be taken again, shorter.  NaN where
         an unknown is loose or numbers are beyond all bounds.
     """
-    lengths = series.lengths
+    control = series.control
     run = sim.run
     laguerre, n_powers = series.single_pole, len(piece.coefs)
     last = len(laguerre.basis) - 1
@@ -239,15 +239,15 @@ def expand_implicit(sim: Simulation, series: Series, piece: Piece, h: float) -> 
         if factorise_effective_mass(sim, 1.0, scale, scale * scale, WHOLE) >= 0:
             return last, np.nan
         run.factor_length = h
-        lengths.factored += 1
+        control.n_factorisations += 1
     expand_inputs(series, piece, run.time, h)
     expand_loads(series, n_powers)
     present = find_terms(sim, series, h, n_powers)
     write_in_powers(series)
     match_initial_velocity(series, sim.step.now.velocity, h)
-    lengths.carried = TERMS_OF_WORK
+    control.quadrature_degree = TERMS_OF_WORK
     expand_deformations(sim.laws, series, last, n_powers)
-    most = lengths.kinetic
+    most = control.largest_kinetic
     if most == 0.0:  # from rest
         most = energy(sim.linear, series, 1)
     left_out = energy(sim.linear, series, last)

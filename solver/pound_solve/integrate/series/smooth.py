@@ -1,6 +1,6 @@
 r"""Smooth hysteresis in a power series: kernels.
 
-The tangent of a smooth rule depends on a power of a part w of its deformation (see `Rule.smooth`),
+The tangent of a smooth rule depends on a power of a part w of its deformation (see `Rule.smooth_curve`),
 
 .. math:: f = k d + q w + f_0, \qquad (1 + b p)\,\dot w = (1 + a p)\,\dot d, \qquad p = (w/y)^n .
 
@@ -29,12 +29,12 @@ from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.law_state import LawDefinition, LawExtremes, LawMotion, Laws
 from pound_solve.integrate.kernels.laws import curved_force, internal, parameters, proportional_damping
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.series.curved import FIRST_STEP, power_term, right_part
-from pound_solve.integrate.series.force_events import BENDS
+from pound_solve.integrate.series.force_events import POWER_CHANGES
+from pound_solve.integrate.series.power_contacts import FIRST_STEP, accurate_fraction, power_term
 from pound_solve.integrate.series.springs import deformation_term
-from pound_solve.integrate.series.state import Lengths, Series, Smooth
+from pound_solve.integrate.series.state import Series, Smooth, StepControl
 from pound_solve.laws.automaton import PAST
-from pound_solve.laws.functions import Tables, smooth_of
+from pound_solve.laws.functions import RuleFunctions, smooth_curve_of
 from pound_solve.numerics.types import Array, Flags
 
 POWER_LEFT_OUT = 1e-14  #: fraction of the force at w = y that a power left out may make
@@ -57,15 +57,15 @@ def allocate(smooth: Flags, n_coefs: int) -> Smooth:
         bent=np.zeros(n, bool),
         low=np.zeros(n),
         high=np.zeros(n),
-        share=np.zeros((n, 2 * MAX_POWER_BITS, n_coefs)),
-        power=np.zeros((n, n_coefs)),
+        ratio=np.zeros((n, 2 * MAX_POWER_BITS, n_coefs)),
+        ratio_power=np.zeros((n, n_coefs)),
         part=np.zeros((n, n_coefs)),
         remainder=np.zeros((n, n_coefs)),
         force=np.zeros((n, n_coefs)),
     )
 
 
-def count_creep(largest: LawExtremes, smooth: Smooth, length: float) -> None:
+def set_rate_floor(largest: LawExtremes, smooth: Smooth, length: float) -> None:
     """Raise the largest rates, which others are compared with, to a creep over the `length` of the run:
     otherwise laws at rest would reverse for ever with the rounding of other laws' rates.
     """
@@ -79,7 +79,7 @@ def is_product(n: float) -> bool:
     return n == np.floor(n) and n < 2.0**MAX_POWER_BITS
 
 
-def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
+def linearise_smooth(laws: Laws, rules: RuleFunctions, smooth: Smooth) -> None:
     """Replace the branches of the smooth laws by their present tangents, and find the ranges in which their
     series are valid.
     """
@@ -87,14 +87,16 @@ def linearise_smooth(laws: Laws, rules: Tables, smooth: Smooth) -> None:
         i, constants = smooth.laws[r], smooth.constants[r]
         d = laws.now.deformation[i]
         force, tangent, _, _ = curved_force(laws, rules, i, d, 0.0)
-        constants[W], constants[Y], constants[N], constants[A], constants[B], k, constants[Q] = smooth_of(
-            rules,
-            laws.definition.rule[i],
-            parameters(laws.definition.parameters, i),
-            laws.state.branch[i],
-            internal(laws.state.internal, i),
-            d,
-            force,
+        constants[W], constants[Y], constants[N], constants[A], constants[B], k, constants[Q] = (
+            smooth_curve_of(
+                rules,
+                laws.definition.rule[i],
+                parameters(laws.definition.parameters, i),
+                laws.state.branch[i],
+                internal(laws.state.internal, i),
+                d,
+                force,
+            )
         )
         x, n, most = constants[W] / constants[Y], constants[N], max(abs(constants[A]), abs(constants[B]))
         smooth.low[r], smooth.high[r], smooth.bent[r] = 0.0 if x > ZERO else -np.inf, np.inf, most > 0.0
@@ -135,10 +137,10 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
     return power
 
 
-def take_term(laws: Laws, series: Series, r: int, k: int, n_powers: int) -> None:
+def compute_term(laws: Laws, series: Series, r: int, k: int, n_powers: int) -> None:
     """Compute the coefficients `k` of deformation, force and power of smooth law `r` from the motion."""
     smooth, i = series.smooth, series.smooth.laws[r]
-    constants, share = smooth.constants[r], smooth.share[r]
+    constants, share = smooth.constants[r], smooth.ratio[r]
     d = deformation_term(laws.definition, series, k, n_powers, i)
     series.deformation[i, k] = d
     smooth.force[r, k] = laws.tangent.stiffness[i] * d + constants[Q] * smooth.remainder[r, k]
@@ -148,11 +150,11 @@ def take_term(laws: Laws, series: Series, r: int, k: int, n_powers: int) -> None
         smooth.part[r, 0] = constants[W] + constants[SLOPE] * (d - laws.now.deformation[i])
     share[0, k] = smooth.part[r, k] / constants[Y]
     if not smooth.bent[r]:
-        smooth.power[r, k] = 0.0
+        smooth.ratio_power[r, k] = 0.0
     elif is_product(constants[N]):
-        smooth.power[r, k] = whole_power_term(share, int(constants[N]), k)
+        smooth.ratio_power[r, k] = whole_power_term(share, int(constants[N]), k)
     else:
-        smooth.power[r, k] = power_term(constants[N], share[0, 0], share[0], smooth.power[r], k)
+        smooth.ratio_power[r, k] = power_term(constants[N], share[0, 0], share[0], smooth.ratio_power[r], k)
 
 
 def find_remainders(laws: Laws, series: Series, k: int, n_powers: int) -> None:
@@ -164,9 +166,9 @@ def find_remainders(laws: Laws, series: Series, k: int, n_powers: int) -> None:
         smooth.remainder[r, k] = 0.0
         if k == 0:
             continue
-        take_term(laws, series, r, k - 1, n_powers)
+        compute_term(laws, series, r, k - 1, n_powers)
         constants, d = smooth.constants[r], series.deformation[smooth.laws[r]]
-        power, part = smooth.power[r], smooth.part[r]
+        power, part = smooth.ratio_power[r], smooth.part[r]
         total = 0.0
         for j in range(1, k):
             total += (k - j) * power[j] * (constants[A] * d[k - j] - constants[B] * part[k - j])
@@ -193,11 +195,11 @@ def add_remainders(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> 
 
 def power_defect(smooth: Smooth, r: int, degree: int, s: float) -> float:
     """Relative error of w/y at the place `s` that comes from truncating the series of its power."""
-    constants, share = smooth.constants[r], smooth.share[r, 0]
+    constants, share = smooth.constants[r], smooth.ratio[r, 0]
     x, power = 0.0, 0.0
     for k in range(degree - 1, -1, -1):
         x = x * s + share[k]
-        power = power * s + smooth.power[r, k]
+        power = power * s + smooth.ratio_power[r, k]
     whole = (x if is_product(constants[N]) else max(x, 0.0)) ** constants[N]
     lacks: float = max(abs(constants[A]), abs(constants[B])) * abs(whole - power) * abs(x - share[0])
     return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
@@ -210,7 +212,7 @@ def smooth_valid_up_to(smooth: Smooth, degree: int, end: float) -> float:
     evaluated at the end, too.
     """
     for r in range(len(smooth.laws)):
-        end = right_part(smooth.force[r], degree, end)
+        end = accurate_fraction(smooth.force[r], degree, end)
         if smooth.bent[r]:
             at = min(end, 1.0)
             lacks = power_defect(smooth, r, degree, at)
@@ -229,16 +231,16 @@ def bend_event(series: Series, degree: int, first: LocatedEvent, i: int) -> Loca
         limit = smooth.low[r] if sign < 0.0 else smooth.high[r]
         if abs(limit) < np.inf:
             for k in range(degree):
-                p[k] = sign * smooth.share[r, 0, k]
+                p[k] = sign * smooth.ratio[r, 0, k]
             p[0] -= sign * limit
             p[degree] = 0.0
-            first = earlier(first, i, BENDS, first_rise(series.polynomial, degree, first.time, 0.0))
+            first = earlier(first, i, POWER_CHANGES, first_rise(series.polynomial, degree, first.time, 0.0))
     return first
 
 
-def shorten_for_bend(now: LawMotion, smooth: Smooth, lengths: Lengths, i: int) -> None:
+def shorten_for_power_change(now: LawMotion, smooth: Smooth, control: StepControl, i: int) -> None:
     """Shorten the first step in which the power of smooth law `i` is no longer negligible."""
     r = smooth.index_of[i]
     if smooth.high[r] < np.inf:
         far = smooth.high[r] * abs(smooth.constants[r, Y])
-        lengths.next = min(lengths.next, FIRST_STEP * far / abs(now.rate[i]))
+        control.next_length = min(control.next_length, FIRST_STEP * far / abs(now.rate[i]))

@@ -64,10 +64,11 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Ass
 def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
     """Sum the tangents, constant forces and input loads of the laws on their present branches.
 
-    The forces of rigid and of curved contacts, and of friction that slides, are series instead.
+    The forces of rigid and of power contacts, and of friction that slides, are series instead.
     """
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
-    springs, rigid, curved, friction = series.springs, series.rigid, series.curved, series.friction
+    springs, rigid = series.springs, series.rigid
+    friction, contacts = series.friction, series.power_contacts
     values, moved, n = springs.rows.values, springs.inputs, 0
     for q in range(len(values)):
         values[q] = springs.stiffness[q]
@@ -79,7 +80,7 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
         k, offset, rubs = tangent.stiffness[i], tangent.offset[i], friction.index_of[i]
         if (
             rigid.index_of[i] >= 0
-            or curved.index_of[i] >= 0
+            or contacts.index_of[i] >= 0
             or (rubs >= 0 and friction.sliding_direction[rubs] != 0.0)
         ):
             offset = 0.0

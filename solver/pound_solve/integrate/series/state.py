@@ -9,17 +9,17 @@ from pound_solve.numerics.ldl import Pattern, Positions
 from pound_solve.numerics.types import Array, Flags, Index
 
 
-class Lengths(Protocol):
-    """Lengths of steps and related sizes that later steps learn from earlier ones: a numpy record."""
+class StepControl(Protocol):
+    """Control of the step length, and counts of a run: a numpy record."""
 
-    next: float  #: length to try next
-    kinetic: float  #: largest value of v M v so far
-    shortest: float  #: length of the shortest step
-    before: float  #: length that was next when a curved contact began to press; 0 if none did
-    carried: int  #: terms of the present series that carry energy
-    in_modes: int  #: intervals that were taken in modes
-    factored: int  #: factorisations of the matrix of a step
-    rejected: int  #: steps that were taken again, shorter
+    next_length: float  #: length to try next
+    largest_kinetic: float  #: largest value of v M v so far
+    shortest_length: float  #: length of the shortest step
+    length_before_contact: float  #: `next_length` when a power contact began to press; 0 if none did
+    quadrature_degree: int  #: degree of the present series that still carries energy, for Gauss's rule
+    n_modal_intervals: int  #: intervals that were advanced in modes
+    n_factorisations: int  #: of the matrix of a step
+    n_rejected: int  #: steps that were taken again, shorter
 
 
 class AssembledSprings(NamedTuple):
@@ -66,9 +66,9 @@ class Massless(NamedTuple):
     ----------
     unknown : ndarray, shape (n_massless,)
         Their places in the order of elimination.
-    heavy : ndarray, shape (n - n_massless,)
+    with_mass : ndarray, shape (n - n_massless,)
         Places of the unknowns with mass.
-    damping, heavy_damping : Rows
+    damping, damping_with_mass : Rows
         Rows of C over all unknowns, for the unknowns without mass and for those with mass.
     laws : ndarray, shape (n_holding,)
         Laws that hold an unknown without mass, ascending.
@@ -85,14 +85,16 @@ class Massless(NamedTuple):
         Positions on the pattern at which each of the laws is added, and the values of ``b b^T``.
     damped : ndarray, shape (n_massless,)
         Whether a dashpot resists an unknown on the present branches: its order is one, else zero.
-    members : ndarray, shape (2, n_massless)
-        Rows `DAMPING` and `STIFFNESS`: those of order one and of order zero, ascending.
-    counts : ndarray, shape (2,)
+    unknowns_of_order : ndarray, shape (2, n_massless)
+        Rows `ORDER_ONE` and `ORDER_ZERO`: the unknowns of that order, ascending.
+    n_of_order : ndarray, shape (2,)
         Numbers of these.
     factors : ndarray, shape (2, n_entries of L)
-        Rows `DAMPING` (of order one, ones for the others), `STIFFNESS` (of order zero, likewise).
-    pivots : ndarray, shape (2, n_massless)
-        Their inverses.
+        Rows `ORDER_ONE` and `ORDER_ZERO`; unknowns of the other order have unit rows.
+    inverse_pivots : ndarray, shape (2, n_massless)
+        One over their pivots.
+    failed_pivot : ndarray, shape (1,)
+        Pivot by which the last factorisation failed.
     matrix : ndarray, shape (n_entries,)
         Scratch, as the others.
     row, right_side : ndarray, shape (n_massless,)
@@ -101,9 +103,9 @@ class Massless(NamedTuple):
     """
 
     unknown: Index
-    heavy: Index
+    with_mass: Index
     damping: Rows
-    heavy_damping: Rows
+    damping_with_mass: Rows
     laws: Index
     index_of_law: Index
     rows: Rows
@@ -114,10 +116,11 @@ class Massless(NamedTuple):
     pair_places: Positions
     pair_values: Array
     damped: Flags
-    members: Index
-    counts: Index
+    unknowns_of_order: Index
+    n_of_order: Index
     factors: Array
-    pivots: Array
+    inverse_pivots: Array
+    failed_pivot: Array
     matrix: Array
     row: Array
     right_side: Array
@@ -143,7 +146,7 @@ class Rigid(NamedTuple):
         Inverse of G over the closed contacts `closed`.
     violation : ndarray, shape (n_rigid,)
         Scratch: violation of the constraints by the present coefficients, by place in `closed`.
-    force : ndarray, shape (n_rigid, TERMS + 1)
+    force : ndarray, shape (n_rigid, MAX_DEGREE + 1)
         Coefficients of the forces.
     largest : ndarray, shape (n_rigid,)
         Largest magnitude of the force, or of its terms, so far.
@@ -162,8 +165,8 @@ class Rigid(NamedTuple):
     largest: Array
 
 
-class Curved(NamedTuple):
-    """The curved contacts, numbered among themselves (see `curved`).
+class PowerContacts(NamedTuple):
+    """The power contacts, numbered among themselves (see `power_contacts`).
 
     Attributes
     ----------
@@ -171,12 +174,12 @@ class Curved(NamedTuple):
     index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     constants : ndarray, shape (n_curved, 6)
-        Numbers that `Rule.powers` returns on the present branch.
+        Numbers that `Rule.power_law` returns on the present branch.
     phase : ndarray, shape (n_curved,)
-        APART, PRESSED or RELEASED, see `curved`: whether a force acts.
-    power : ndarray, shape (n_curved, 2, TERMS + 1)
+        APART, PRESSED or FORCE_FREE, see `power_contacts`: whether a force acts.
+    overlap_powers : ndarray, shape (n_curved, 2, MAX_DEGREE + 1)
         Coefficients of the powers of the overlap, of spring and dashpot.
-    force : ndarray, shape (n_curved, TERMS + 1)
+    force : ndarray, shape (n_curved, MAX_DEGREE + 1)
         Coefficients of the forces.
     largest : ndarray, shape (n_curved,)
         Largest force so far.
@@ -186,7 +189,7 @@ class Curved(NamedTuple):
     index_of: Index
     constants: Array
     phase: Index
-    power: Array
+    overlap_powers: Array
     force: Array
     largest: Array
 
@@ -205,9 +208,9 @@ class Friction(NamedTuple):
         Direction of sliding, 1 or -1; 0 if it does not slide.
     pressing : ndarray, shape (n_friction,)
         Whether the contact presses; a sticky one may pull.
-    normal_force : ndarray, shape (n_friction, TERMS + 1)
+    normal_force : ndarray, shape (n_friction, MAX_DEGREE + 1)
         Coefficients of the normal forces.
-    force : ndarray, shape (n_friction, TERMS + 1)
+    force : ndarray, shape (n_friction, MAX_DEGREE + 1)
         Coefficients of the forces of friction that slides.
     largest : ndarray, shape (n_friction,)
         Largest normal force so far.
@@ -232,14 +235,14 @@ class Smooth(NamedTuple):
     index_of : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     constants : ndarray, shape (n_smooth, 7)
-        w, y, n, a, b and q of `Rule.smooth`, and dw/dd, at the start of the step.
+        w, y, n, a, b and q of `Rule.smooth_curve`, and dw/dd, at the start of the step.
     bent : ndarray, shape (n_smooth,)
         Whether the power is not negligible.
     low, high : ndarray, shape (n_smooth,)
         Range of w/y in which the series is valid.
-    share : ndarray, shape (n_smooth, 2 BITS, TERMS + 1)
+    ratio : ndarray, shape (n_smooth, 2 MAX_POWER_BITS, MAX_DEGREE + 1)
         Coefficients of w/y, and of its powers on the way to n.
-    power, part, remainder, force : ndarray, shape (n_smooth, TERMS + 1)
+    ratio_power, part, remainder, force : ndarray, shape (n_smooth, MAX_DEGREE + 1)
         Coefficients of p and w, of the part of w beyond the tangent, and of the forces.
     """
 
@@ -249,15 +252,15 @@ class Smooth(NamedTuple):
     bent: Flags
     low: Array
     high: Array
-    share: Array
-    power: Array
+    ratio: Array
+    ratio_power: Array
     part: Array
     remainder: Array
     force: Array
 
 
-class Viscous(NamedTuple):
-    """The dampers that follow powers of the rate, numbered among themselves (see `viscous`).
+class PowerDampers(NamedTuple):
+    """The dampers that follow powers of the rate, numbered among themselves (see `power_dampers`).
 
     Attributes
     ----------
@@ -266,30 +269,30 @@ class Viscous(NamedTuple):
         Place of a law in `laws`, -1 for others.
     constants : ndarray, shape (n_viscous, 4)
         c, with the sign of the rate, and n; rate up to which the force is linear; rate of the tangent.
-    light : ndarray
+    on_massless : ndarray
         Dampers that hold unknowns without mass.
-    fast : ndarray, shape (n_viscous,)
+    is_series : ndarray, shape (n_viscous,)
         Whether the force is a series.
-    rate, remainder, force : ndarray, shape (n_viscous, TERMS + 1)
+    rate, remainder, force : ndarray, shape (n_viscous, MAX_DEGREE + 1)
         Coefficients of the rate's magnitude, of the force beyond the tangent, and of the force.
     """
 
     laws: Index
     index_of: Index
     constants: Array
-    light: Index
-    fast: Flags
+    on_massless: Index
+    is_series: Flags
     rate: Array
     remainder: Array
     force: Array
 
 
-class Strings(NamedTuple):
-    """The members with P-Delta by the present axial force (see `strings`).
+class PDeltaMembers(NamedTuple):
+    """The members with P-Delta by the present axial force (see `p_delta`).
 
     Attributes
     ----------
-    axial, across, force : ndarray, shape (n_members, TERMS + 1)
+    axial, across, force : ndarray, shape (n_members, MAX_DEGREE + 1)
         Coefficients of the axial forces, the displacements across and the forces there.
     """
 
@@ -306,7 +309,7 @@ class Damped(NamedTuple):
     unknown : ndarray, shape (n_damped,)
     damping : Product
         C among them.
-    motion : ndarray, shape (TERMS + 1, n_damped)
+    motion : ndarray, shape (MAX_DEGREE + 1, n_damped)
         Scratch: their coefficients, their velocities and the forces on them.
     velocity, force : ndarray, shape (n_damped,)
     """
@@ -330,7 +333,7 @@ class Modal(NamedTuple):
         Length of the interval; 0 where there are no tables.
     is_present : ndarray, shape (1,)
         Whether the present motion is in `modes`.
-    serves : ndarray, shape (1,)
+    is_valid : ndarray, shape (1,)
         Whether the laws are on branches as stiff as those of the tables.
     stiffness : ndarray, shape (n_laws,)
         Stiffness of the laws in the tables.
@@ -342,19 +345,19 @@ class Modal(NamedTuple):
         Real, then imaginary parts of the modes from displacements and velocities, and these from them.
     static_positions : ndarray, shape (n_parts, 2 n_modes, n)
         Static positions of the modes under unit constant loads.
-    growth : ndarray, shape (n_parts, 2 n_cells + 1, 2, n_modes)
+    exponentials : ndarray, shape (n_parts, 2 n_cells + 1, 2, n_modes)
         Real and imaginary parts of the free modes' factors at the ends and the middles of the cells.
-    steady : ndarray, shape (n_parts, 2 n_modes, 2 n_inputs)
-        Straight lines of the modes at the start of the interval, on its inputs.
-    bend : ndarray, shape (n_parts, n_modes)
+    particular_solution : ndarray, shape (n_parts, 2 n_modes, 2 n_inputs)
+        Particular solution of the modes, a straight line in time: its start on the interval's inputs.
+    chord_error_factor : ndarray, shape (n_parts, n_modes)
         Distance of a free mode of size one from its chord over a cell, at most.
     followed : ndarray, shape (n_parts, n_followed)
         Numbers of what is followed: deformations of the laws, then monitored outputs.
     index_of : ndarray, shape (n_parts, n_all_followed)
         Place in a part of each followed quantity, -1 where the part does not have it.
-    turn : ndarray, shape (n_parts, 2, n_modes)
+    exponent_per_cell : ndarray, shape (n_parts, 2, n_modes)
         Real and imaginary parts of the eigenvalues times the length of a cell.
-    share : ndarray, shape (n_parts, n_followed, n_modes)
+    amplitude : ndarray, shape (n_parts, n_followed, n_modes)
         Largest contribution of each mode of size one to each followed quantity.
     rows : ndarray, shape (n_parts, n_followed, n_x)
         Rows that give the followed quantities from x.
@@ -368,7 +371,7 @@ class Modal(NamedTuple):
         Modal coordinates, and their static position under the present constant loads.
     offset : ndarray, shape (n_followed,)
         Values of the followed quantities in that static position.
-    x, departure, term, values, apart : ndarray
+    x, mode_chord_error, term, values, chord_error : ndarray
         Scratch: x of every part at the ends and middles of the cells; distance of its free modes from
         chords; what they add to a term; the followed quantities at the ends of the cells, shape
         (n_cells + 1, n_all_followed), and their distance from chords.
@@ -376,20 +379,20 @@ class Modal(NamedTuple):
 
     length: Array
     is_present: Index
-    serves: Index
+    is_valid: Index
     stiffness: Array
     counts: Index
     unknowns: Index
     to_modes: Array
     from_modes: Array
     static_positions: Array
-    growth: Array
-    steady: Array
-    bend: Array
+    exponentials: Array
+    particular_solution: Array
+    chord_error_factor: Array
     followed: Index
     index_of: Index
-    turn: Array
-    share: Array
+    exponent_per_cell: Array
+    amplitude: Array
     rows: Array
     damping_work: Array
     input_work: Array
@@ -400,10 +403,10 @@ class Modal(NamedTuple):
     equilibrium: Array
     offset: Array
     x: Array
-    departure: Array
+    mode_chord_error: Array
     term: Array
     values: Array
-    apart: Array
+    chord_error: Array
 
 
 class EnvelopeBuffers(NamedTuple):
@@ -417,7 +420,7 @@ class EnvelopeBuffers(NamedTuple):
         Unknowns, by their places in the order of elimination, and laws.
     kept : ndarray, shape (2,)
         Steps and intervals that were kept.
-    coefs : ndarray, shape (n_steps, n_unknowns + n_laws, TERMS + 1)
+    coefs : ndarray, shape (n_steps, n_unknowns + n_laws, MAX_DEGREE + 1)
         Series of the unknowns and of the forces of the laws, all dashpots included, over the steps taken.
     degree : ndarray, shape (n_steps,)
         Their highest powers; all others are zero.
@@ -507,32 +510,34 @@ class Series(NamedTuple):
 
     Attributes
     ----------
-    motion : ndarray, shape (TERMS + 1, n)
-        Coefficients of the unknowns.
+    motion : ndarray, shape (MAX_DEGREE + 1, n)
+        Coefficients of the unknowns in powers of s = t / h, with the length h for which `begin_series` was
+        called last (1 in `settle_state`); those of deformations and inputs likewise.
     stiffness_product, damping_product, mass_product : ndarray, shape (n,)
         Scratch: products of coefficients with K (laws included), C and M.
-    deformation : ndarray, shape (n_laws, TERMS + 1)
-        Of the laws.
-    inputs : ndarray, shape (TERMS + 1, n_inputs)
+    deformation : ndarray, shape (n_laws, MAX_DEGREE + 1)
+        Coefficients of the deformations of the laws.  The tables of modes use them as scratch: they are
+        right from `expand_series` to the end of its step.
+    inputs : ndarray, shape (MAX_DEGREE + 1, n_inputs)
     polynomial : ndarray, shape `polynomial_roots.room`
         Work space of `polynomial_roots`.
     inverse : ndarray, shape (n,)
         Inverse of a diagonal mass.
-    gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
+    gauss : ndarray, shape (MAX_DEGREE // UNCHECKED_TERMS + 1, 2, most points)
         Weights and points on (0, 1), two more than half of the terms that carry energy.
     springs : AssembledSprings
     massless : Massless
     rigid : Rigid
-    curved : Curved
+    power_contacts : PowerContacts
     friction : Friction
     smooth : Smooth
-    viscous : Viscous
-    strings : Strings
+    power_dampers : PowerDampers
+    p_delta : PDeltaMembers
     damped : Damped
     modal : Modal
     envelope : EnvelopeBuffers
     single_pole : SinglePole
-    lengths : Lengths
+    control : StepControl
     """
 
     motion: Array
@@ -547,13 +552,13 @@ class Series(NamedTuple):
     springs: AssembledSprings
     massless: Massless
     rigid: Rigid
-    curved: Curved
+    power_contacts: PowerContacts
     friction: Friction
     smooth: Smooth
-    viscous: Viscous
-    strings: Strings
+    power_dampers: PowerDampers
+    p_delta: PDeltaMembers
     damped: Damped
     modal: Modal
     envelope: EnvelopeBuffers
     single_pole: SinglePole
-    lengths: Lengths
+    control: StepControl

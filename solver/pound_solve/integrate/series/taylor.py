@@ -4,11 +4,11 @@ Between events the reduced system is linear, so the motion has a power series th
 its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
 of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), of smooth
 hysteresis (`smooth`) and of friction (`friction`), whose forces are series of their own.  A step goes as
-far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes part.
-Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise and
-extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each
-on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others (see
-`massless`).
+far as `expansion.MAX_DEGREE` terms are right to rounding, some five radians of the fastest mode that takes
+part. Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise
+and extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule,
+each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others
+(see `massless`).
 
 Elastic time without contact is taken in modes, from goal to goal (`modal`).  Elsewhere a step costs what
 its products cost: where EXACT has to decompose many unknowns, or many combinations of stiffnesses, TAYLOR
@@ -65,23 +65,22 @@ from pound_solve.integrate.release import release
 from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.integrate.series import (
-    curved,
     envelope_buffers,
     expansion,
     friction,
     march,
     massless,
     modal_tables,
+    p_delta,
+    power_contacts,
+    power_dampers,
     rigid,
     single_pole,
     smooth,
     springs,
     state,
-    strings,
-    viscous,
 )
 from pound_solve.integrate.series.course import IntervalCourse, StepCourse
-from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import BranchKind
@@ -122,17 +121,17 @@ class Taylor(KernelEngine):
         solved = Scheme(0.0, 0.0) if tolerance is None else Scheme(1.0, 1.0)  # nothing, or C and K
         super().__init__(problem, solved, length, self.words)
         self.contacts, self.most = contacts, most
-        self.state.stale = 1
-        self.lengths: state.Lengths = record(state.Lengths)
-        self.lengths.next, self.lengths.shortest = length, np.inf
+        self.state.branches_changed = 1
+        self.control: state.StepControl = record(state.StepControl)
+        self.control.next_length, self.control.shortest_length = length, np.inf
         self.massless = self._without_mass()
         self.series = self._allocate(problem.monitored, tolerance)
-        for i in self.series.curved.laws.tolist():
+        for i in self.series.power_contacts.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
-            curved.enter_curved(self.laws, self.rules, self.series.curved, i)
-        viscous.linearise_dampers(self.laws, self.rules, self.series.viscous)
+            power_contacts.enter_power_contact(self.laws, self.rules, self.series.power_contacts, i)
+        power_dampers.linearise_dampers(self.laws, self.rules, self.series.power_dampers)
         smooth.linearise_smooth(self.laws, self.rules, self.series.smooth)
-        smooth.count_creep(self.laws.largest, self.series.smooth, length)
+        smooth.set_rate_floor(self.laws.largest, self.series.smooth, length)
         self._hold()
 
     def _without_mass(self) -> state.Massless:
@@ -159,7 +158,7 @@ class Taylor(KernelEngine):
         is_curved = np.array([s.law.curved for s in self.law_springs], bool)
         collides = np.array([s.role.collides for s in self.law_springs], bool)
         is_damper = is_curved & np.array([s.role is Role.DAMPER for s in self.law_springs], bool)
-        is_smooth = np.array([s.law.rule.smooth is not None for s in self.law_springs], bool)
+        is_smooth = np.array([s.law.rule.smooth_curve is not None for s in self.law_springs], bool)
         enveloped = self.inverse_order[np.flatnonzero(self.recorder.enveloped_unknowns)]
         modal = modal_tables.allocate(
             system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), enveloped
@@ -180,18 +179,18 @@ class Taylor(KernelEngine):
             ),
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, n_laws, n_coefs),
-            curved=curved.allocate(is_curved & collides, n_coefs),
+            power_contacts=power_contacts.allocate(is_curved & collides, n_coefs),
             friction=friction.allocate(
                 laws.friction.coupled, laws.friction.normal_law[laws.friction.coupled], n_laws, n_coefs
             ),
             smooth=smooth.allocate(is_smooth, n_coefs),
-            viscous=viscous.allocate(is_damper, self.massless.index_of_law >= 0, n_coefs),
-            strings=strings.allocate(len(self.members.parameters), n_coefs),
+            power_dampers=power_dampers.allocate(is_damper, self.massless.index_of_law >= 0, n_coefs),
+            p_delta=p_delta.allocate(len(self.members.parameters), n_coefs),
             damped=self._damped(n_coefs),
             modal=modal,
             envelope=envelope_buffers.allocate(enveloped, self.recorder.enveloped_laws, modal, kept),
             single_pole=single_pole.allocate(n, n_inputs, tolerance),
-            lengths=self.lengths,
+            control=self.control,
         )
 
     def _damped(self, n_coefs: int) -> state.Damped:
@@ -240,16 +239,16 @@ class Taylor(KernelEngine):
             raise self.trouble(why)
         if why == LOST_FORCE:
             present = Present(self, self.series)
-            release(present, int(self.state.fault))
+            release(present, int(self.state.changed_law))
             present.hand_back()
-            self.state.fault = -1  # the force is lost: what is left of a jump is rounding
+            self.state.changed_law = -1  # the force is lost: what is left of a jump is rounding
             return
         self._at_instant(self._strike)
         self.state.events += 1
 
     def _strike(self, instants: RigidInstants) -> bool:
-        """Let the rigid contact at fault strike, or part."""
-        present, law = instants.run, int(self.state.fault)
+        """Let the rigid contact of the event strike, or part."""
+        present, law = instants.run, int(self.state.changed_law)
         if present.branches[law].constrains:
             present.transition(
                 law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
@@ -278,7 +277,8 @@ class Taylor(KernelEngine):
         """Set which rigid contacts are closed, and the `rounding` of their forces."""
         x = self.series.rigid
         kinds = [self.law_springs[i].law.rule.branches[self.laws.state.branch[i]].kind for i in x.laws]
-        rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
+        closed = np.array([kind is BranchKind.HELD for kind in kinds], bool)
+        rigid.set_closed_contacts(x, self.contacts, closed)
         x.largest[:] = np.maximum(x.largest, rounding)
 
     def fetch_motions(self) -> None:
@@ -296,7 +296,7 @@ class Taylor(KernelEngine):
         done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
-            why = f"{self.asking} asks for {count} steps (now {self.lengths.next:.3g} long)"
+            why = f"{self.asking} asks for {count} steps (now {self.control.next_length:.3g} long)"
             raise self.stop("A502", why + self.remedy())
 
     def remedy(self) -> str:
@@ -313,17 +313,17 @@ class Taylor(KernelEngine):
         if why == UNRESTRAINED:
             return self.stop("A501", self._explain_massless())
         if why == RUNAWAY:
-            return self.stop("A504", RUNAWAY_TEXT.format(self.state.initial_energy))
+            return self.stop("A504", RUNAWAY_TEXT.format(self.state.runaway_energy))
         if why == CHATTER:
-            fault = int(self.state.fault)
-            s, at = self.law_springs[fault], self.laws.state.branch[fault]
+            law = int(self.state.changed_law)
+            s, at = self.law_springs[law], self.laws.state.branch[law]
             what = (int(self.state.changes_at_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
 
     def _explain_massless(self) -> str:
         """Which unknown without mass is not held, and why."""
-        fault = int(self.state.fault)
+        fault = int(self.state.failed_unknown)
         name, n = (
             self.system.name(int(self.order[fault])),
             int(np.flatnonzero(self.massless.unknown == fault)[0]),
@@ -333,7 +333,7 @@ class Taylor(KernelEngine):
             names = [self.system.name(i) for i in sorted(self.order[self.massless.unknown[whole]].tolist())]
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
-        if self.massless.pivots[STIFFNESS, n] < 0.0:
+        if self.massless.failed_pivot[0] < 0.0:
             return self.system.explain_massless(self._softest(), softens=True)
         return self.system.explain_massless(int(self.order[fault]))
 
@@ -341,7 +341,7 @@ class Taylor(KernelEngine):
         """Unknown without mass that moves most in the softest motion of those without mass and dashpot."""
         light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
         if len(light) > MAX_DENSE:
-            return int(self.order[int(self.state.fault)])
+            return int(self.order[int(self.state.failed_unknown)])
         rows = dense(self.system.law_rows[:, light])
         stiffness = dense(self.system.stiffness[np.ix_(light, light)])
         shapes = np.linalg.eigh(stiffness + (rows.T * self.laws.tangent.stiffness) @ rows)[1]
@@ -349,11 +349,11 @@ class Taylor(KernelEngine):
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
-        shortest = float(self.lengths.shortest)
+        shortest, in_modes = float(self.control.shortest_length), int(self.control.n_modal_intervals)
         return {
             "method": self.name,
-            "series": int(self.state.steps - self.lengths.in_modes),
-            **({"intervals in modes": in_modes} if (in_modes := int(self.lengths.in_modes)) else {}),
+            "series": int(self.state.steps) - in_modes,
+            **({"intervals in modes": in_modes} if in_modes else {}),
             **({"shortest series": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
             "events": int(self.state.events),
         }

@@ -10,27 +10,27 @@ from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Simulation, Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.integrate.series.curved import (
-    APART,
-    NO_OVERLAP,
-    PRESSED,
-    PULLS,
-    RELEASED,
-    K,
-    touch_overlap,
-)
 from pound_solve.integrate.series.force_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
+from pound_solve.integrate.series.power_contacts import (
+    APART,
+    FORCE_FREE,
+    NO_OVERLAP,
+    PRESSED,
+    PULLS,
+    K,
+    touch_overlap,
+)
+from pound_solve.integrate.series.power_dampers import turn_event
 from pound_solve.integrate.series.rigid import is_closed
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Extent, Series
-from pound_solve.integrate.series.viscous import turn_event
 from pound_solve.laws.automaton import GAP
 
 
 def parting_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
-    """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
+    """The instant at which closed rigid contact `i` would pull, before the place `end`, see `no_event`."""
     r, p = series.rigid.index_of[i], series.polynomial[POLYNOMIAL]
     still = EVENT_TOLERANCE * series.rigid.largest[r]
     copy_force(series, degree, i, -1.0, p)
@@ -41,10 +41,10 @@ def parting_event(series: Series, degree: int, end: float, i: int) -> LocatedEve
 
 
 def phase_event(laws: Laws, series: Series, degree: int, first: LocatedEvent, i: int) -> LocatedEvent:
-    """The instant at which curved contact `i` begins or ceases to have a force, or the `first` event."""
-    curved, r = series.curved, series.curved.index_of[i]
-    phase, d, p = curved.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
-    if curved.constants[r, K] == 0.0:
+    """The instant at which power contact `i` begins or ceases to have a force, or the `first` event."""
+    contacts, r = series.power_contacts, series.power_contacts.index_of[i]
+    phase, d, p = contacts.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
+    if contacts.constants[r, K] == 0.0:
         return first
     sign, overlap = 1.0, touch_overlap(laws, i)
     if phase == APART:  # where nothing has moved yet, the step tells how far
@@ -56,16 +56,16 @@ def phase_event(laws: Laws, series: Series, degree: int, first: LocatedEvent, i:
     p[0] -= sign * (laws.definition.parameters[i, GAP] + overlap)
     at = first_rise(series.polynomial, degree, first.time, 0.0)
     first = earlier(first, i, TOUCHES if phase == APART else PARTS, at)
-    if phase == RELEASED or (phase == PRESSED and curved.constants[r, PULLS] == 0.0):
-        sign = 1.0 if phase == RELEASED else -1.0
+    if phase == FORCE_FREE or (phase == PRESSED and contacts.constants[r, PULLS] == 0.0):
+        sign = 1.0 if phase == FORCE_FREE else -1.0
         copy_force(series, degree, i, sign, p)
-        at = first_rise(series.polynomial, degree, first.time, EVENT_TOLERANCE * curved.largest[r])
-        first = earlier(first, i, PRESSES_AGAIN if phase == RELEASED else RELEASES, at)
+        at = first_rise(series.polynomial, degree, first.time, EVENT_TOLERANCE * contacts.largest[r])
+        first = earlier(first, i, PRESSES_AGAIN if phase == FORCE_FREE else RELEASES, at)
     return first
 
 
 def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
-    """The first event of law `i` in a step, in lengths of the step, see `none`."""
+    """The first event of law `i` in a step, in lengths of the step, see `no_event`."""
     coefficients = laws.events.coefficients
     degree, h, end = extent.degree, extent.h, extent.end
     if series.friction.index_of[i] >= 0:
@@ -92,13 +92,13 @@ def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent
         first = earlier(first, i, e, at)
     if series.smooth.index_of[i] >= 0:
         return bend_event(series, degree, first, i)
-    if series.viscous.index_of[i] >= 0:
+    if series.power_dampers.index_of[i] >= 0:
         return turn_event(series, degree, h, first, i)
-    return phase_event(laws, series, degree, first, i) if series.curved.index_of[i] >= 0 else first
+    return phase_event(laws, series, degree, first, i) if series.power_contacts.index_of[i] >= 0 else first
 
 
 def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
-    """The first event of any law in a step, in lengths of the step, see `none`.
+    """The first event of any law in a step, in lengths of the step, see `no_event`.
 
     An event of a contact counts if it is there before that of another law: bodies that move alike meet only
     where a hinge of one has yielded, and that of the other has not yet.
@@ -114,7 +114,7 @@ def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
     return first
 
 
-def count_crest(laws: Laws, step: Step, series: Series, extent: Extent, i: int, law: int) -> None:
+def update_peak(laws: Laws, step: Step, series: Series, extent: Extent, i: int, law: int) -> None:
     """Update peak `i` with the polynomial in the work space; `law` is not negative for the force of a
     law.
     """
@@ -148,7 +148,7 @@ def track_outputs(sim: Simulation, series: Series, extent: Extent, n_powers: int
             for j in range(series.inputs.shape[1]):
                 p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]
         p[0] += linear.monitored_constants[i]
-        count_crest(sim.laws, sim.step, series, extent, i, -1)
+        update_peak(sim.laws, sim.step, series, extent, i, -1)
 
 
 def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int, i: int) -> None:
@@ -160,12 +160,12 @@ def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int
     if begin + far > extremes.high[first + i] or begin - far < extremes.low[first + i]:
         for k in range(degree + 1):
             p[k] = d[i, k]
-        count_crest(laws, step, series, extent, first + i, -1)
+        update_peak(laws, step, series, extent, first + i, -1)
     peak = first + len(definition.rule) + i
-    stiffness, damping = tangent.stiffness[i], tangent.damping[i] if definition.viscous[i] else 0.0
+    stiffness, damping = tangent.stiffness[i], tangent.damping[i] if definition.reports_damping[i] else 0.0
     if has_series(series, i):
         copy_force(series, degree, i, 1.0, p)
-        count_crest(laws, step, series, extent, peak, i)
+        update_peak(laws, step, series, extent, peak, i)
         return
     far *= abs(stiffness)
     high = extremes.high[peak]
@@ -179,7 +179,7 @@ def track_law(laws: Laws, step: Step, series: Series, extent: Extent, first: int
         if damping != 0.0:
             for k in range(degree):
                 p[k] += damping * (k + 1) / extent.h * d[i, k + 1]
-        count_crest(laws, step, series, extent, peak, i)
+        update_peak(laws, step, series, extent, peak, i)
 
 
 def track_laws(laws: Laws, step: Step, series: Series, extent: Extent, first: int) -> None:

@@ -2,42 +2,45 @@
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.laws import drag_force, linearise_law
+from pound_solve.integrate.kernels.laws import dissipative_force, linearise_law
 from pound_solve.integrate.kernels.products import evaluate_inputs, multiply
 from pound_solve.integrate.kernels.state import LinearSystem, Piece, Simulation
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
-from pound_solve.integrate.series.curved import APART
 from pound_solve.integrate.series.expansion import MAX_DEGREE, UNCHECKED_TERMS, dot, evaluate_motion, law_at
 from pound_solve.integrate.series.forces import update_branch_forces
 from pound_solve.integrate.series.friction import is_sliding
+from pound_solve.integrate.series.p_delta import p_delta_power
+from pound_solve.integrate.series.power_contacts import APART
 from pound_solve.integrate.series.state import Extent, Series
-from pound_solve.integrate.series.strings import string_power
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 
 
 def add_law_losses(
-    sim: Simulation, rules: Tables, series: Series, extent: Extent, s: float, weight: float
+    sim: Simulation, rules: RuleFunctions, series: Series, extent: Extent, s: float, weight: float
 ) -> None:
-    """Add up the losses in the laws' dashpots and the contacts' impulses at the Gauss point `s`."""
+    """Add up the losses in the laws' dashpots and the contacts' impulses at the Gauss point `s`.
+
+    Forces, tangents of smooth laws and dampers, and `laws.trial` are those of this point afterwards.
+    """
     laws, works, moved = sim.laws, sim.works, len(sim.linear.support_damping) > 0
     definition, tangent = laws.definition, laws.tangent
     update_branch_forces(laws, series, extent.degree, s, extent.h)
     for i in range(len(definition.rule)):
-        drag, curved = tangent.damping[i], series.curved.index_of[i]
-        overlaps = curved >= 0 and series.curved.phase[curved] != APART
+        drag, curved = tangent.damping[i], series.power_contacts.index_of[i]
+        overlaps = curved >= 0 and series.power_contacts.phase[curved] != APART
         pressed = definition.contact[i] and (tangent.stiffness[i] != 0.0 or tangent.offset[i] != 0.0)
-        curves = overlaps or series.viscous.index_of[i] >= 0
+        curves = overlaps or series.power_dampers.index_of[i] >= 0
         sliding = is_sliding(series.friction, i)
         if drag != 0.0 or moved or pressed or curves or sliding:
             d, v = law_at(series, extent.degree, s, extent.h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
-            if series.smooth.index_of[i] >= 0 or (moved and series.viscous.index_of[i] >= 0):
+            if series.smooth.index_of[i] >= 0 or (moved and series.power_dampers.index_of[i] >= 0):
                 linearise_law(laws, rules, i, d, v)
                 drag = tangent.damping[i]
             if sliding:
                 laws.state.entry_work[i] += weight * tangent.offset[i] * v
                 continue
-            lost = weight * v * (drag_force(laws, rules, i, d, v) if curves else drag * v)
+            lost = weight * v * (dissipative_force(laws, rules, i, d, v) if curves else drag * v)
             laws.state.dashpot_loss[i] += lost
             if definition.contact[i]:
                 works.contact += lost
@@ -63,7 +66,7 @@ def work_put_in(linear: LinearSystem, series: Series, extent: Extent, n_powers: 
     return put
 
 
-def add_works(sim: Simulation, rules: Tables, series: Series, piece: Piece, extent: Extent) -> None:
+def add_works(sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, extent: Extent) -> None:
     """Add up the works over a step, all but those of the loads by Gauss's rule."""
     linear, laws, works = sim.linear, sim.laws, sim.works
     begin, degree, h, end = extent.begin - piece.begin, extent.degree, extent.h, extent.end
@@ -72,7 +75,7 @@ def add_works(sim: Simulation, rules: Tables, series: Series, piece: Piece, exte
         for i in range(len(damped.unknown)):
             damped.motion[k, i] = series.motion[k, damped.unknown[i]]
     put = 0.0 if moved else work_put_in(linear, series, extent, len(piece.coefs))
-    rule = min(series.lengths.carried, MAX_DEGREE) // UNCHECKED_TERMS
+    rule = min(series.control.quadrature_degree, MAX_DEGREE) // UNCHECKED_TERMS
     for g in range(2 * (rule + 1)):
         weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
         evaluate_motion(damped.motion, degree, s, h, 1, damped.velocity)
@@ -81,7 +84,7 @@ def add_works(sim: Simulation, rules: Tables, series: Series, piece: Piece, exte
         if moved:
             evaluate_inputs(piece.coefs, begin + s * h, trial.inputs, trial.input_rates)
         add_law_losses(sim, rules, series, extent, s, weight)
-        put += weight * string_power(sim.members, series, degree, s, h)
+        put += weight * p_delta_power(sim.members, series, degree, s, h)
         if moved:
             evaluate_motion(series.motion, degree, s, h, 0, trial.displacement)
             evaluate_motion(series.motion, degree, s, h, 1, trial.velocity)

@@ -5,27 +5,34 @@ from __future__ import annotations
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.corotational import force_size
 from pound_solve.integrate.kernels.law_state import Laws
-from pound_solve.integrate.kernels.laws import add_slip_work, drag_force, hold_friction_limits, law_force
+from pound_solve.integrate.kernels.laws import (
+    add_slip_work,
+    dissipative_force,
+    law_force,
+    save_friction_limits,
+)
 from pound_solve.integrate.kernels.products import copy, multiply
 from pound_solve.integrate.kernels.state import Corotational, LinearSystem, Scheme, Simulation, Step
 from pound_solve.integrate.kernels.work import (
+    damping_power_sum,
     load_on_nodes,
-    mean_damping_power,
-    mean_load_power,
+    load_power_sum,
     support_power,
 )
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.structure.corotational import ACROSS, AXIAL, KIND, LENGTH, STRING
 
 
 def add_external_work(sim: Simulation, h: float) -> None:
-    """Add up the work of loads and moved supports over the step, and the loss in dashpots of the
-    structure.
+    """Add up the work of loads and moved supports over the step, and the loss in dashpots of the structure.
+
+    `work` is six times the mean power, `loss` three times (see `kernels.work`); where supports move, both
+    are means of the powers at the ends of the step.
     """
     linear, laws, members, works = sim.linear, sim.laws, sim.members, sim.works
     now, trial = sim.step.now, sim.step.trial
     before, work, loss = works.input, 0.0, 0.0
-    loss += mean_damping_power(now, trial)
+    loss += damping_power_sum(now, trial)
     if len(linear.support_damping) > 0:
         for i in range(len(now.velocity)):
             pushed0 = load_on_nodes(linear, now.inputs, i)
@@ -36,7 +43,7 @@ def add_external_work(sim: Simulation, h: float) -> None:
         work += 3.0 * (put0 + put1)
         loss += 1.5 * (lost0 + lost1)
     else:
-        work += mean_load_power(now, trial)
+        work += load_power_sum(now, trial)
     p = members.parameters
     for c in range(len(p)):
         if p[c, KIND] == STRING:  # work of the axial force on the shortening that a string leaves out
@@ -48,13 +55,13 @@ def add_external_work(sim: Simulation, h: float) -> None:
     works.gross_input += abs(works.input - before)
 
 
-def accept_laws(laws: Laws, rules: Tables, h: float, works: Works) -> None:
+def accept_laws(laws: Laws, rules: RuleFunctions, h: float, works: Works) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses; take over the end of the step."""
     definition, largest = laws.definition, laws.largest
     for i in range(len(definition.rule)):
         d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
         v0, v1 = laws.now.rate[i], laws.trial.rate[i]
-        drag0, drag1 = drag_force(laws, rules, i, d0, v0), drag_force(laws, rules, i, d1, v1)
+        drag0, drag1 = dissipative_force(laws, rules, i, d0, v0), dissipative_force(laws, rules, i, d1, v1)
         if drag0 != 0.0 or drag1 != 0.0:
             lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             laws.state.dashpot_loss[i] += lost
@@ -92,7 +99,7 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
         residual[i] = one * (inertia[i] - scheme.alpha_f * residual[i])
 
 
-def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, factor: int) -> None:
+def accept_trial(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int) -> None:
     """Make the end of the trial step the start of the next; count it, if it is longer than the time in
     which a softening branch gives way.
 
@@ -119,7 +126,7 @@ def accept_trial(sim: Simulation, rules: Tables, scheme: Scheme, h: float, facto
     accept_members(sim.members)
     if len(laws.friction.coupled) > 0:
         add_slip_work(laws, h)
-        hold_friction_limits(laws)
+        save_friction_limits(laws)
     accept_laws(laws, rules, h, sim.works)
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
         update_residual(linear, step, scheme)

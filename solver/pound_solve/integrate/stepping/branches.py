@@ -8,22 +8,24 @@ from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.consistency import loses_force, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import (
     couple_friction,
-    hold_friction_limits,
     leave_branch,
     linear_force,
     linearise_law,
+    save_friction_limits,
 )
 from pound_solve.integrate.kernels.recording import log_transition, store_motion, track_peaks
 from pound_solve.integrate.kernels.state import WHOLE, Scheme, Simulation
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
-from pound_solve.integrate.stepping.factor import MAX_UPDATES, update_factor
-from pound_solve.laws.functions import Tables
+from pound_solve.integrate.stepping.factor import invalidate_factor, is_valid_factor, update_factor
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.loading.excitation import CLOCK_ROUNDING
 
 FIRST_PART = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 
 
-def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: int, event: int) -> None:
+def change_branch(
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, i: int, event: int
+) -> None:
     """Change the branch of law `i`, and update the factor for the nominal step `h`."""
     linear, laws, run = sim.linear, sim.laws, sim.run
     definition, tangent, state, friction = laws.definition, laws.tangent, laws.state, laws.friction
@@ -40,8 +42,8 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
     change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (tangent.stiffness[i] - k)
     if not linear.explicit and change != 0.0:
         run.updates += 1
-        if run.updates > MAX_UPDATES or not update_factor(sim, i, change, WHOLE):
-            run.updates = MAX_UPDATES + 1
+        if not is_valid_factor(run) or not update_factor(sim, i, change, WHOLE):
+            invalidate_factor(run)
     force = linear_force(tangent, i, d, v)
     if definition.contact[i] and touches_massless(linear, definition.rows, i):
         # the dashpot's is only known when the velocities are consistent
@@ -55,8 +57,8 @@ def change_branch(sim: Simulation, rules: Tables, scheme: Scheme, h: float, i: i
         couple_friction(laws, rules, sim.step.now.acceleration, j)
         if before != state.branch[j]:
             log_transition(sim, j, before, run.time, friction.force[j])
-            run.updates = MAX_UPDATES + 1
-    hold_friction_limits(laws)
+            invalidate_factor(run)
+    save_friction_limits(laws)
 
 
 def leaves_independently(sim: Simulation, i: int) -> bool:
@@ -75,7 +77,9 @@ def leaves_independently(sim: Simulation, i: int) -> bool:
     return True
 
 
-def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent) -> None:
+def change_branches(
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, event: LocatedEvent
+) -> None:
     """Let a law leave its branch, and those that are marked, and make the state consistent, unless a force
     is lost: joints must move first.
     """
@@ -87,7 +91,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
     for j in range(len(step.marked)):
         step.marked[j] = False
     for k in range(-1, len(definition.rule)):
-        i = event.law if k < 0 else k
+        i = event.law if k < 0 else k  # the law of the event comes first
         room = len(sim.buffers.log) - run.n_transitions > len(laws.friction.coupled)
         if events.pending[i] < 0 or not room or (k >= 0 and not leaves_independently(sim, i)):
             continue
@@ -101,7 +105,7 @@ def change_branches(sim: Simulation, rules: Tables, scheme: Scheme, h: float, ev
         resume_after_jump(sim, rules)
 
 
-def resume_after_jump(sim: Simulation, rules: Tables) -> None:
+def resume_after_jump(sim: Simulation, rules: RuleFunctions) -> None:
     """Make the state consistent after a jump, and keep the motion for the envelopes.
 
     Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant

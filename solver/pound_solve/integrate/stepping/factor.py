@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
-from pound_solve.integrate.kernels.state import Scheme, Simulation
+from pound_solve.integrate.kernels.state import Run, Scheme, Simulation
 from pound_solve.numerics.ldl import update
 
 MAX_UPDATES = 200  #: updates of rank one before a factor is made anew
@@ -16,6 +16,16 @@ def factorise_step(sim: Simulation, scheme: Scheme, h: float, factor: int) -> in
     """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
     on_mass = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
     return factorise_effective_mass(sim, on_mass, scheme.gamma * h, scheme.beta * h * h, factor)
+
+
+def invalidate_factor(run: Run) -> None:
+    """Let the factor of the nominal step be made anew before its next use."""
+    run.updates = MAX_UPDATES + 1
+
+
+def is_valid_factor(run: Run) -> bool:
+    """Whether the factor of the nominal step is valid, and updated seldom enough."""
+    return run.updates <= MAX_UPDATES
 
 
 def update_factor(sim: Simulation, i: int, change: float, factor: int) -> bool:

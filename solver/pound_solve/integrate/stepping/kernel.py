@@ -43,10 +43,15 @@ from pound_solve.integrate.kernels.state import (
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import resume_after_jump
-from pound_solve.integrate.stepping.factor import MAX_UPDATES, factorise_step, update_factor
+from pound_solve.integrate.stepping.factor import (
+    factorise_step,
+    invalidate_factor,
+    is_valid_factor,
+    update_factor,
+)
 from pound_solve.integrate.stepping.parts import step_in_parts
 from pound_solve.integrate.stepping.step import try_step
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array, Index
 
 #: outcomes of a step through events; it must be solved again with new tangents, or be cut at its events;
@@ -56,7 +61,7 @@ MAX_BRANCHES = 100  #: branches that a law may pass in a step that is not cut
 MAX_SOLUTIONS = 50  #: of such a step, before it is cut
 
 
-def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
+def drive_law(sim: Simulation, rules: RuleFunctions, i: int) -> bool:
     """Drive law `i` along a straight path from its start in the step to its end, through the branches on
     the way; False where it loses a force on the way that holds a joint without mass.
     """
@@ -77,7 +82,7 @@ def drive_law(sim: Simulation, rules: Tables, i: int) -> bool:
     return True
 
 
-def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
+def drive_laws(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float) -> int:
     """Drive the laws that pass an event to the end of the step, and update the factor.
 
     Returns
@@ -99,7 +104,7 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
         else:
             save_state(laws, i)
             laws.saved.in_step[i] = True
-        run.stale = 1
+        run.massless_factor_stale = 1
         if not drive_law(sim, rules, i):
             return CUT
         changed = tangent.stiffness[i] != k or tangent.damping[i] != c
@@ -114,13 +119,13 @@ def drive_laws(sim: Simulation, rules: Tables, scheme: Scheme, h: float) -> int:
             if not update_factor(sim, i, change, WHOLE):
                 bad = factorise_step(sim, scheme, h, WHOLE)
                 if bad >= 0:
-                    run.fault = bad
+                    run.failed_unknown = bad
                     return FAILED
     return outcome
 
 
 def step_through(
-    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, length: float, tried: bool
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, piece: Piece, length: float, tried: bool
 ) -> int:
     """Advance by `length` without cutting the step at events: iterate until the step agrees with the laws
     at its end, each driven along a straight path from its start; `tried`: the first trial step is made
@@ -159,7 +164,8 @@ def step_through(
     for i in range(len(definition.rule)):
         if laws.saved.in_step[i]:
             restore_state(laws, rules, i)
-    run.updates, run.stale = MAX_UPDATES + 1, 1
+    run.massless_factor_stale = 1
+    invalidate_factor(run)
     return CUT
 
 
@@ -174,7 +180,9 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
     return False
 
 
-def plain_steps(sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, h: float, last: int) -> bool:
+def plain_steps(
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, piece: Piece, h: float, last: int
+) -> bool:
     """Take steps of length `h` up to step `last` while every law stays on its branch.
 
     Returns
@@ -183,7 +191,7 @@ def plain_steps(sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, h:
         Whether it stopped at a step that is tried, but not accepted, because a law leaves its branch.
     """
     run = sim.run
-    while run.step < last and run.updates <= MAX_UPDATES and run.longest_part >= h:
+    while run.step < last and is_valid_factor(run) and run.longest_part >= h:
         end = run.time + h - piece.begin
         if not try_step(sim, rules, scheme, piece.coefs, end, h, WHOLE):
             return False
@@ -221,22 +229,22 @@ def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
         track_peaks(sim, run.time, 0.0)
 
 
-def renew_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
+def refresh_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
     """Factorise A for steps of length `h`, if the present factor is for another, or was updated too
     often.
     """
     run = sim.run
-    if run.factor_length == h and run.updates <= MAX_UPDATES:
+    if run.factor_length == h and is_valid_factor(run):
         return DONE
     bad = factorise_step(sim, scheme, h, WHOLE)
     if bad >= 0:
-        run.fault = bad
+        run.failed_unknown = bad
         return SINGULAR
     run.factor_length, run.updates = h, 0
     return DONE
 
 
-def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
+def end_goal(sim: Simulation, rules: RuleFunctions, sampled: bool) -> int:
     """Take a sample at a goal; RUNAWAY where the kinetic energy is far above what was put in."""
     step, run = sim.step, sim.run
     kinetic, velocity, momentum = 0.0, step.now.velocity, step.scratch[0]
@@ -244,7 +252,7 @@ def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
     for i in range(len(velocity)):
         kinetic += 0.5 * velocity[i] * momentum[i]
     if runs_away(kinetic, run.initial_energy, sim.works.gross_input):
-        run.initial_energy = kinetic
+        run.runaway_energy = kinetic
         return RUNAWAY
     run.goal += 1
     run.step = 0
@@ -257,7 +265,7 @@ def end_goal(sim: Simulation, rules: Tables, sampled: bool) -> int:
 
 def take_steps(
     sim: Simulation,
-    rules: Tables,
+    rules: RuleFunctions,
     scheme: Scheme,
     piece: Piece,
     h: float,
@@ -278,7 +286,7 @@ def take_steps(
         first, fresh = run.step, run.updates == 0
         tried = plain_steps(sim, rules, scheme, piece, h, last)
         # iterations that fail from a new factor on would fail again: the step is taken in parts
-        used_up = run.updates > MAX_UPDATES and (run.step > first or not fresh)
+        used_up = not is_valid_factor(run) and (run.step > first or not fresh)
         if not tried and (run.step == last < count - 1 or used_up):
             return DONE
         length = h if run.step < count - 1 else goal - run.time
@@ -299,7 +307,7 @@ def take_steps(
 
 
 def advance(
-    sim: Simulation, rules: Tables, scheme: Scheme, goals: Goals, steps: Index, lengths: Array
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, goals: Goals, steps: Index, lengths: Array
 ) -> int:
     """Integrate to the last goal, or until control must return to Python.
 
@@ -315,6 +323,7 @@ def advance(
         DONE, BUFFERS_FULL, or what is wrong (see `kernels.state`).
     """
     buffers, run = sim.buffers, sim.run
+    # one step may log at most half the buffer (TOO_MANY_EVENTS beyond): as much is free before it
     room, pause = len(buffers.log) // 2, next_pause(sim.step, run)
     if run.started == 0:
         take_first_sample(sim, rules)
@@ -324,11 +333,11 @@ def advance(
         begin_goal(sim, scheme, piece, h)
         while run.step < steps[goal]:
             crowded = len(buffers.log) - run.n_transitions < room or run.n_ties > len(buffers.ties) // 2
-            # steps that have room
+            # steps whose motion has room, for one step may be cut into many parts
             more = len(buffers.motion_time) // 2 - run.n_motions
             if crowded or more <= 0 or run.steps >= pause:
                 return BUFFERS_FULL
-            why = renew_factor(sim, scheme, h)
+            why = refresh_factor(sim, scheme, h)
             if why != DONE:
                 return why
             most = min(pause - run.steps, more)

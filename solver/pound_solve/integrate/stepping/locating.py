@@ -21,18 +21,20 @@ from pound_solve.integrate.kernels.state import (
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.factor import factorise_step
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.cubic import next_trial
 
 SAME_INSTANT_OF_STEP = 1e-9  #: fraction of a step within which two events are at one instant
 GO_ON, MET, NONE = range(3)
+MAX_TRIALS = 100  #: trials of one search
 MAX_INTERPOLATIONS = 12  #: trials by interpolation; bisection follows
 
 
 class Bracket(NamedTuple):
     """Times of a step between which an event function rises through zero, and its values there.
 
-    NaN stands for what is not known; `third` was tried before.
+    Up to `low` there is no event, at `high` one is passed, and `third` was tried before.  A value is NaN
+    where the function belongs to another event, or no trial was made.
     """
 
     low: float
@@ -52,9 +54,9 @@ def narrowed_bracket(b: Bracket, tau: float, g: float, passed: bool) -> Bracket:
 
 def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
     """Time of the next trial: by interpolation from the end that is nearer to the event."""
-    if passed and b.g_low != b.g_low:
+    if passed and np.isnan(b.g_low):
         tau = guess
-        if b.g_third == b.g_third:
+        if not np.isnan(b.g_third):
             tau = next_trial(b.high, b.third, np.nan, b.g_high, b.g_third, np.nan)
     elif passed:
         tau = next_trial(b.high, b.low, b.third, b.g_high, b.g_low, b.g_third)
@@ -97,7 +99,7 @@ def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) ->
 
 def locate_event(
     sim: Simulation,
-    rules: Tables,
+    rules: RuleFunctions,
     scheme: Scheme,
     piece: Piece,
     length: float,
@@ -126,7 +128,7 @@ def locate_event(
     g = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])[0]
     b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
     bisects, tried = False, length
-    for trial in range(100):
+    for trial in range(MAX_TRIALS):
         if tau <= SAME_INSTANT_OF_STEP * h:
             met = LocatedEvent(law, index, 0.0)
             mark_others(sim, met, tried, h)
@@ -138,7 +140,7 @@ def locate_event(
             tau = 0.5 * (b.low + b.high)
         bad = factorise_step(sim, scheme, tau, PART)
         if bad >= 0:
-            sim.run.fault = bad
+            sim.run.failed_unknown = bad
             return SINGULAR, event
         if not try_step(sim, rules, scheme, piece.coefs, begin + tau, tau, PART):
             if last:
@@ -162,4 +164,5 @@ def locate_event(
             return DONE, met
         b = narrowed_bracket(b, tau, g, passed)
         tau = next_time(b, passed, first.time, h)
+    sim.run.failed_law = law
     return NOT_CONVERGED, event

@@ -10,10 +10,10 @@ import numpy as np
 
 from pound_solve.integrate.kernels.corotational import (
     anchor_member,
+    compute_tangents,
     correct_members,
     predicted_force,
     subtract_force,
-    take_tangents,
 )
 from pound_solve.integrate.kernels.laws import (
     curved_force,
@@ -23,8 +23,8 @@ from pound_solve.integrate.kernels.laws import (
 )
 from pound_solve.integrate.kernels.products import copy, row_product
 from pound_solve.integrate.kernels.state import WHOLE, Scheme, Simulation
-from pound_solve.integrate.stepping.factor import MAX_UPDATES, factorise_step, update_factor
-from pound_solve.laws.functions import Tables
+from pound_solve.integrate.stepping.factor import factorise_step, invalidate_factor, update_factor
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.ldl import solve as solve_factored
 
 CONVERGED = 1e-12  #: largest deviation of a curved law's force from its tangent, as a share of the force
@@ -50,7 +50,7 @@ def solve_acceleration(sim: Simulation, factor: int) -> None:
 
 
 def correct_curved(
-    sim: Simulation, rules: Tables, scheme: Scheme, h: float, factor: int
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int
 ) -> tuple[float, int]:
     """Linearise the curved laws at the acceleration that was tried, and let the factor follow.
 
@@ -95,22 +95,22 @@ def correct_curved(
 def update_member_tangents(sim: Simulation, scheme: Scheme, h: float, factor: int) -> bool:
     """Recompute the members' tangents, and factorise again; False where that fails."""
     members = sim.members
-    take_tangents(members, members.trial.quantities)
+    compute_tangents(members, members.trial.quantities)
     for c in range(len(members.parameters)):
         anchor_member(members, c)
     if factorise_step(sim, scheme, h, factor) >= 0:
         return False
     if factor != WHOLE:
-        sim.run.updates = MAX_UPDATES + 1
+        invalidate_factor(sim.run)
     return True
 
 
-def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, factor: int) -> bool:
+def iterate_newton(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int) -> bool:
     """Solve for the acceleration at the end of the step; False where Newton does not converge, and the law
-    furthest from it in `run.fault`.
+    furthest from it in `run.failed_law`.
     """
     last, worst, law = np.inf, 0.0, -1
-    sim.run.fault = -1
+    sim.run.failed_law = -1
     for _ in range(MAX_ITERATIONS):
         solve_acceleration(sim, factor)
         worst, law = correct_curved(sim, rules, scheme, h, factor)
@@ -127,5 +127,5 @@ def iterate_newton(sim: Simulation, rules: Tables, scheme: Scheme, h: float, fac
             return False
         last = error
     if worst > CONVERGED:
-        sim.run.fault = law
+        sim.run.failed_law = law
     return False

@@ -22,13 +22,13 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import change_branches
-from pound_solve.integrate.stepping.factor import MAX_UPDATES, factorise_step
+from pound_solve.integrate.stepping.factor import factorise_step, invalidate_factor
 from pound_solve.integrate.stepping.locating import SAME_INSTANT_OF_STEP, locate_event
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 
 MAX_HALVINGS = 25
-MAX_CHANGES, MAX_CHANGES_PER_LAW = 100, 8  #: of branch at one instant, and more for each law
+MAX_PARTS, MAX_PARTS_PER_LAW = 100, 8  #: parts of a step that end at one instant, and more for each law
 SHORTEST_PART = 3e-8  #: shortest part of a step, used where laws change to and fro
 
 
@@ -39,12 +39,18 @@ def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int
         return DONE
     if halvings > 0:
         return NOT_CONVERGED
-    sim.run.fault = bad
+    sim.run.failed_unknown = bad
     return SINGULAR
 
 
 def solve_part(
-    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, part: float, factor: int, tried: bool
+    sim: Simulation,
+    rules: RuleFunctions,
+    scheme: Scheme,
+    piece: Piece,
+    part: float,
+    factor: int,
+    tried: bool,
 ) -> tuple[int, float, int]:
     """Solve a part of a step at most as long as `part`, halved until Newton's iterations converge.
 
@@ -62,26 +68,32 @@ def solve_part(
         if factor == PART:
             # from here on, trials change the tangents of curved laws, but not the factor
             if laws.definition.curved.any():
-                run.updates = MAX_UPDATES + 1
+                invalidate_factor(run)
             why = factorise_part(sim, scheme, part, halvings)
             if why != DONE:
                 return why, part, factor
         if tried or try_step(sim, rules, scheme, piece.coefs, run.time + part - piece.begin, part, factor):
             return DONE, part, factor
-        run.updates = MAX_UPDATES + 1
+        invalidate_factor(run)
         restore_start_tangents(sim, rules)
         part, factor = 0.5 * part, PART
     return NOT_CONVERGED, part, factor
 
 
 def end_part_at_event(
-    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, part: float, h: float, event: LocatedEvent
+    sim: Simulation,
+    rules: RuleFunctions,
+    scheme: Scheme,
+    piece: Piece,
+    part: float,
+    h: float,
+    event: LocatedEvent,
 ) -> tuple[int, LocatedEvent]:
     """Shorten a part to the first event in it, see `locate_event`."""
     laws, run = sim.laws, sim.run
     curved = laws.definition.curved.any()
     if curved:  # shorter trials change the tangents, which the present factor does not know
-        run.updates = MAX_UPDATES + 1
+        invalidate_factor(run)
     why, event = locate_event(sim, rules, scheme, piece, part, h, event)
     if why == DONE and event.time > SAME_INSTANT_OF_STEP * h:
         run.changes_at_instant = 0
@@ -90,7 +102,7 @@ def end_part_at_event(
     return why, event
 
 
-def accept_part(sim: Simulation, rules: Tables, scheme: Scheme, part: float, factor: int) -> None:
+def accept_part(sim: Simulation, rules: RuleFunctions, scheme: Scheme, part: float, factor: int) -> None:
     """Take the motion at the end of a part over."""
     accept_trial(sim, rules, scheme, part, factor)
     sim.run.time += part
@@ -100,15 +112,15 @@ def accept_part(sim: Simulation, rules: Tables, scheme: Scheme, part: float, fac
 
 
 def answer_event(
-    sim: Simulation, rules: Tables, scheme: Scheme, h: float, event: LocatedEvent, left: float
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, event: LocatedEvent, left: float
 ) -> int:
     """Change branches at an event, after which `left` of the step is left; DONE, or why the step stops."""
     laws, run = sim.laws, sim.run
     change_branches(sim, rules, scheme, h, event)
-    run.fault = event.law
+    run.changed_law = event.law
     run.changes_at_instant += 1
     n_laws = len(laws.definition.rule)
-    if run.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * n_laws:
+    if run.changes_at_instant > MAX_PARTS + MAX_PARTS_PER_LAW * n_laws:
         return CHATTER
     if run.changes_at_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
         run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
@@ -119,7 +131,13 @@ def answer_event(
 
 
 def step_in_parts(
-    sim: Simulation, rules: Tables, scheme: Scheme, piece: Piece, length: float, h: float, tried: bool
+    sim: Simulation,
+    rules: RuleFunctions,
+    scheme: Scheme,
+    piece: Piece,
+    length: float,
+    h: float,
+    tried: bool,
 ) -> int:
     """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
     and `tried` says that the first trial is made.

@@ -17,18 +17,18 @@ linear, so a step is one solution; curved laws take Newton iterations that chang
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.consistency import correct_massless_rates
-from pound_solve.integrate.kernels.corotational import take_tangents
+from pound_solve.integrate.kernels.corotational import compute_tangents
 from pound_solve.integrate.kernels.laws import linearise_laws, update_friction_limits
 from pound_solve.integrate.kernels.products import row_magnitude, row_product
 from pound_solve.integrate.kernels.state import Scheme, Simulation
 from pound_solve.integrate.stepping.newton import iterate_newton
 from pound_solve.integrate.stepping.prediction import predict_step
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array
 
 
 def try_step(
-    sim: Simulation, rules: Tables, scheme: Scheme, coefs: Array, end: float, h: float, factor: int
+    sim: Simulation, rules: RuleFunctions, scheme: Scheme, coefs: Array, end: float, h: float, factor: int
 ) -> bool:
     """Try a step of length `h` that ends at the local time `end`, with a `factor`; False where Newton
     does not converge (see `iterate_newton`).
@@ -52,13 +52,13 @@ def try_step(
             laws.largest.deformation[i] = max(laws.largest.deformation[i], far)
     if len(laws.friction.coupled) > 0:
         update_friction_limits(laws, rules, trial.acceleration)
-    if linear.implicit and not linear.all_mass:
-        correct_massless_rates(sim, linear.massless_vary or sim.run.stale != 0, h)
-        sim.run.stale = 0
+    if linear.has_stiffness and not linear.all_mass:
+        correct_massless_rates(sim, linear.massless_vary or sim.run.massless_factor_stale != 0, h)
+        sim.run.massless_factor_stale = 0
     return True
 
 
-def restore_start_tangents(sim: Simulation, rules: Tables) -> None:
+def restore_start_tangents(sim: Simulation, rules: RuleFunctions) -> None:
     """Linearise the curved laws and the members at the start of the step."""
     linearise_laws(sim.laws, rules)
-    take_tangents(sim.members, sim.members.now.quantities)
+    compute_tangents(sim.members, sim.members.now.quantities)

@@ -36,7 +36,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.release import release
 from pound_solve.integrate.stepping import kernel
-from pound_solve.integrate.stepping.factor import MAX_UPDATES
+from pound_solve.integrate.stepping.factor import invalidate_factor
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
 
@@ -107,7 +107,8 @@ class Stepper(KernelEngine):
         present = KernelPresent(self)
         release(present, int(self.state.lost_force))
         present.hand_back()
-        self.state.lost_force, self.state.updates = -1, MAX_UPDATES + 1
+        self.state.lost_force = -1
+        invalidate_factor(self.state)
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
@@ -153,7 +154,7 @@ class Stepper(KernelEngine):
         rises = [
             max(abs(f.high), abs(f.low)) / (slope * self.dt)
             for s, f, slope in zip(self.law_springs, peaks.force, steepest)
-            if not s.role.viscous and slope > 0.0
+            if not s.role.reports_damping and slope > 0.0
         ]
         about = "steps in which a spring's force rises to its largest"
         count = min(rises, default=np.inf)

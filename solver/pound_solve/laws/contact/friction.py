@@ -38,7 +38,7 @@ from pound_solve.laws.mirror import side
 from pound_solve.laws.refusal import ItemError
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
-RELEASED = 2  #: index of the event that the contact opens
+CONTACT_CLOSES, CONTACT_OPENS = 0, 2  #: events by which the friction follows its contact
 ANCHOR = 2  #: internal variable: displacement at which the spring has no force
 
 
@@ -63,7 +63,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Return the state after a touch, the onset of slip or stick, or a release."""
     kt, mu, mud = p[:3]
-    if at != OPEN and event == RELEASED:
+    if at != OPEN and event == CONTACT_OPENS:
         return OPEN, (0.0, 0.0, 0.0)
     if at == STICKING:
         return (PLUS if event == 0 else MINUS), m
@@ -93,7 +93,7 @@ RULE = Rule(
     branch,
     transition,
     curve=curve,
-    power=rate_independent,
+    dissipated_power=rate_independent,
     parameters=3,
     variables=3,
 )

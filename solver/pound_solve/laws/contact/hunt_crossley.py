@@ -33,7 +33,7 @@ from pound_solve.laws.automaton import (
     K,
     Law,
     Numbers,
-    PowersNumbers,
+    PowerLawNumbers,
     Rule,
     above,
     below,
@@ -118,7 +118,7 @@ def curve(
     return force, n * spring / x + slope, c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, constant, slow = p[:5]
     if at == OPEN:
@@ -134,7 +134,7 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
-    powers=powers,
+    power_law=power_law,
     parameters=6,
     variables=1,
 )

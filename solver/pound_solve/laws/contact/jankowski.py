@@ -27,7 +27,7 @@ from pound_solve.laws.automaton import (
     K,
     Law,
     Numbers,
-    PowersNumbers,
+    PowerLawNumbers,
     Rule,
     above,
     below,
@@ -79,14 +79,14 @@ def curve(
     return spring + c * v, stiffness + drag_slope(k, n, mass, x, v, c), c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, c = p[:4]
     return (0.0 if at == OPEN else k), n, (c if at == APPROACH else 0.0), 0.5 * (n - 1.0), 0.0, 0.0
 
 
 RULE = Rule(
-    BRANCHES, start, branch, transition, recoverable, curve, powers=powers, parameters=5, variables=0
+    BRANCHES, start, branch, transition, recoverable, curve, power_law=power_law, parameters=5, variables=0
 )
 
 

@@ -25,7 +25,7 @@ from pound_solve.laws.automaton import (
     K,
     Law,
     Numbers,
-    PowersNumbers,
+    PowerLawNumbers,
     Rule,
     above,
     below,
@@ -84,7 +84,7 @@ def curve(
     return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, c, _, tension = p[:6]
     return (0.0, n, 0.0, n, 0.0, 0.0) if at == OPEN else (k, n, c, 0.5 * (n - 1.0), tension, 0.0)
@@ -97,7 +97,7 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
-    powers=powers,
+    power_law=power_law,
     parameters=6,
     variables=0,
 )

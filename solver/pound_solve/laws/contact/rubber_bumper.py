@@ -34,7 +34,7 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     Numbers,
-    PowersNumbers,
+    PowerLawNumbers,
     Rule,
     above,
     below,
@@ -126,7 +126,7 @@ def curve(
     return force + c * v, stiffness + slope * v, c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the force as powers of the overlap, see `Rule`."""
     k, n, _, limit, k_beyond, constant = p[:MASS]
     if at == OPEN:
@@ -148,7 +148,7 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
-    powers=powers,
+    power_law=power_law,
     parameters=7,
     variables=1,
 )

@@ -32,7 +32,7 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     Numbers,
-    PowersNumbers,
+    PowerLawNumbers,
     Rule,
     above,
     below,
@@ -111,12 +111,12 @@ def curve(
     return secant * v, 0.0, alpha * secant, 0.0
 
 
-def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+def dissipated_power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Return the force times the rate: all the work is dissipated."""
     return curve(p, at, m, d, d, v)[0] * v
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+def power_law(p: Numbers, at: int, m: Numbers) -> PowerLawNumbers:
     """Return the force as a power of the rate, see `Rule`."""
     moving = at != PLAY and at < LIMITED
     return (side(at) * p[C] if moving else 0.0), p[ALPHA], 0.0, 0.0, 0.0, 0.0
@@ -134,8 +134,8 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
-    power,
-    powers,
+    dissipated_power,
+    power_law,
     parameters=9,
     variables=1,
 )

@@ -252,7 +252,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (integral_0 - integral))
 
 
-def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+def smooth_curve(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Return the differential equation of z, see `Rule`."""
     k, r, n, beta = p[K], p[R], p[N], p[BETA]
     s = 1.0 if at == LOADING else -1.0
@@ -270,7 +270,7 @@ RULE = Rule(
     recoverable,
     curve,
     rate_independent,
-    smooth=smooth,
+    smooth_curve=smooth_curve,
     parameters=9,
     variables=3,
 )

@@ -205,7 +205,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return recovered * fy / k
 
 
-def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+def smooth_curve(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
     """Return the elastic part of the deformation from the origin of the curve, see `Rule`."""
     k, fy, n, alpha = p[K], p[FY], p[N], p[ALPHA]
     c, _, f1 = origin(m)
@@ -221,7 +221,7 @@ RULE = Rule(
     recoverable,
     curve,
     rate_independent,
-    smooth=smooth,
+    smooth_curve=smooth_curve,
     parameters=5,
     variables=16,
 )

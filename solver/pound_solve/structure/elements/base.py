@@ -44,7 +44,7 @@ class Role(Enum):
         return self is Role.CONTACT
 
     @property
-    def viscous(self) -> bool:
+    def reports_damping(self) -> bool:
         """Whether the reported force includes the law's resistance to the rate; it excludes dashpots that a
         damping model adds to a spring.
         """
@@ -117,7 +117,7 @@ class LawSpring:
     @property
     def damps(self) -> bool:
         """Whether its force may depend on the rate: contacts and dampers have dashpots on some branches."""
-        return self.role.viscous or bool(self.beta or self.secant) or self.law.curved
+        return self.role.reports_damping or bool(self.beta or self.secant) or self.law.curved
 
     def whole(self, deformation: float, force: float) -> float:
         """Deformation comparable with `yields`: the law's plus the elastic part in the adjoining beam."""
@@ -133,7 +133,7 @@ class LawSpring:
 
     def force(self, state: State, d: float, v: float) -> float:
         """Reported force at deformation `d` and rate `v`."""
-        return self.law.force(state, d, v if self.role.viscous else 0.0)[0]
+        return self.law.force(state, d, v if self.role.reports_damping else 0.0)[0]
 
 
 @dataclass(frozen=True)

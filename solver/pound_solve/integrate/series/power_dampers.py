@@ -1,8 +1,8 @@
 r"""Dampers whose force is a power of the rate, in a power series: kernels.
 
-The force of a damper (see `Rule.powers`), :math:`f = \pm c\,x^n` at the rate :math:`x = |\dot d|`, has a
-power series wherever it moves.  Euler's recurrence (see `curved`) splits into the tangent at the start of
-the step, a linear dashpot, and a remainder that is known from the terms before,
+The force of a damper (see `Rule.power_law`), :math:`f = \pm c\,x^n` at the rate :math:`x = |\dot d|`, has a
+power series wherever it moves.  Euler's recurrence (see `power_contacts`) splits into the tangent at the
+start of the step, a linear dashpot, and a remainder that is known from the terms before,
 
 .. math:: f_k = n c\,x_0^{n-1}\,\frac{k+1}{h}\,d_{k+1} \pm r_k, \qquad
           r_k = \frac{1}{k x_0} \sum_{j=1}^{k-1} (n j - k + j)\, x_j\, |f|_{k-j} .
@@ -25,11 +25,11 @@ from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.law_state import LawDefinition, Laws
 from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.series.curved import K, N, right_part
-from pound_solve.integrate.series.force_events import TURNS
+from pound_solve.integrate.series.force_events import CROSSES_LINEAR_RANGE
+from pound_solve.integrate.series.power_contacts import K, N, accurate_fraction
 from pound_solve.integrate.series.springs import deformation_term
-from pound_solve.integrate.series.state import Series, Viscous
-from pound_solve.laws.functions import Tables, powers_of
+from pound_solve.integrate.series.state import PowerDampers, Series
+from pound_solve.laws.functions import RuleFunctions, power_law_of
 from pound_solve.numerics.types import Array, Flags
 
 SLOW_RATE = 1e-10  #: fraction of the largest rate, or of the force there, below which it is linear
@@ -42,37 +42,37 @@ RATE_ROUNDING = 1e-15  #: fraction of the velocities whose difference a rate is
 LIMIT, RATE = 2, 3  #: columns of `Viscous.constants`, beside K and N
 
 
-def allocate(viscous: Flags, light: Flags, n_coefs: int) -> Viscous:
+def allocate(viscous: Flags, light: Flags, n_coefs: int) -> PowerDampers:
     """Lay out the `viscous` ones of the laws for series of `n_coefs` coefficients; the laws `light` hold
     unknowns without mass.
     """
     laws = np.flatnonzero(viscous)
     n = len(laws)
-    return Viscous(
+    return PowerDampers(
         laws=laws,
         index_of=inverse_index(laws, len(viscous)),
         constants=np.zeros((n, 4)),
-        light=np.flatnonzero(light[laws]),
-        fast=np.zeros(n, bool),
+        on_massless=np.flatnonzero(light[laws]),
+        is_series=np.zeros(n, bool),
         rate=np.zeros((n, n_coefs)),
         remainder=np.zeros((n, n_coefs)),
         force=np.zeros((n, n_coefs)),
     )
 
 
-def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
+def linearise_dampers(laws: Laws, rules: RuleFunctions, dampers: PowerDampers) -> None:
     """Replace the branches of the dampers by their present tangents."""
     tangent = laws.tangent
-    for r in range(len(viscous.laws)):
-        i, constants = viscous.laws[r], viscous.constants[r]
-        constants[K], constants[N], _, _, _, _ = powers_of(
+    for r in range(len(dampers.laws)):
+        i, constants = dampers.laws[r], dampers.constants[r]
+        constants[K], constants[N], _, _, _, _ = power_law_of(
             rules,
             laws.definition.rule[i],
             parameters(laws.definition.parameters, i),
             laws.state.branch[i],
             internal(laws.state.internal, i),
         )
-        viscous.fast[r], constants[RATE] = False, laws.now.rate[i]
+        dampers.is_series[r], constants[RATE] = False, laws.now.rate[i]
         if constants[K] == 0.0:  # the branch is linear
             continue
         c, n, x = (
@@ -84,8 +84,8 @@ def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
         constants[LIMIT] = (
             max(SLOW_RATE_OF_UNIT**share, SLOW_RATE**share * laws.largest.rate[i]) if n != 1.0 else np.inf
         )
-        viscous.fast[r] = x > constants[LIMIT]
-        if viscous.fast[r]:
+        dampers.is_series[r] = x > constants[LIMIT]
+        if dampers.is_series[r]:
             tangent.damping[i] = n * c * x ** (n - 1.0)
             tangent.offset[i] = (1.0 - n) * constants[K] * x**n
         else:
@@ -93,59 +93,61 @@ def linearise_dampers(laws: Laws, rules: Tables, viscous: Viscous) -> None:
             tangent.offset[i] = 0.0
 
 
-def is_fast(viscous: Viscous, i: int) -> bool:
+def is_fast(dampers: PowerDampers, i: int) -> bool:
     """Whether law `i` is a damper whose force is a series."""
-    return bool(viscous.index_of[i] >= 0 and viscous.fast[viscous.index_of[i]])
+    return bool(dampers.index_of[i] >= 0 and dampers.is_series[dampers.index_of[i]])
 
 
-def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: int) -> None:
+def compute_rate_term(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` of rate and force of damper `r` from the motion."""
-    viscous, i = series.viscous, series.viscous.laws[r]
-    constants, sign = viscous.constants[r], 1.0 if viscous.constants[r, K] > 0.0 else -1.0
+    dampers, i = series.power_dampers, series.power_dampers.laws[r]
+    constants, sign = dampers.constants[r], 1.0 if dampers.constants[r, K] > 0.0 else -1.0
     x = sign * (k + 1) / h * deformation_term(laws.definition, series, k + 1, n_powers, i)
     if k == 0:
         x = max(x, constants[LIMIT])
-        viscous.force[r, 0] = constants[K] * x ** constants[N]
+        dampers.force[r, 0] = constants[K] * x ** constants[N]
     else:
-        viscous.force[r, k] = sign * laws.tangent.damping[i] * x + viscous.remainder[r, k]
-    viscous.rate[r, k] = x
+        dampers.force[r, k] = sign * laws.tangent.damping[i] * x + dampers.remainder[r, k]
+    dampers.rate[r, k] = x
 
 
-def find_drags(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
+def find_damper_remainders(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` of the dampers' forces beyond their tangents from the motion."""
-    viscous = series.viscous
-    for r in range(len(viscous.laws)):
-        if not viscous.fast[r]:
+    dampers = series.power_dampers
+    for r in range(len(dampers.laws)):
+        if not dampers.is_series[r]:
             continue
         if k == 0:
-            viscous.remainder[r, 0] = 0.0
+            dampers.remainder[r, 0] = 0.0
             continue
-        take_rate(laws, series, r, k - 1, h, n_powers)
-        n, x, force, total = viscous.constants[r, N], viscous.rate[r], viscous.force[r], 0.0
+        compute_rate_term(laws, series, r, k - 1, h, n_powers)
+        n, x, force, total = dampers.constants[r, N], dampers.rate[r], dampers.force[r], 0.0
         for j in range(1, k):
             total += (n * j - (k - j)) * x[j] * force[k - j]
-        viscous.remainder[r, k] = total / (k * x[0])
+        dampers.remainder[r, k] = total / (k * x[0])
 
 
-def add_drags(definition: LawDefinition, viscous: Viscous, k: int, h: float, new: Array) -> None:
+def add_damper_remainders(
+    definition: LawDefinition, dampers: PowerDampers, k: int, h: float, new: Array
+) -> None:
     """Add the coefficients `k` of the dampers' forces beyond their tangents to the right side `new` of the
     coefficients `k` + 2.
     """
-    for r in range(len(viscous.laws)):
-        if viscous.fast[r]:
-            add_row(definition.rows, viscous.laws[r], -h * h * viscous.remainder[r, k], new)
+    for r in range(len(dampers.laws)):
+        if dampers.is_series[r]:
+            add_row(definition.rows, dampers.laws[r], -h * h * dampers.remainder[r, k], new)
 
 
-def drags_valid_up_to(viscous: Viscous, degree: int, end: float) -> float:
+def dampers_valid_up_to(dampers: PowerDampers, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the dampers' forces, and the rates of those that hold
     unknowns without mass, are accurate, at most `end`.
     """
-    for r in range(len(viscous.laws)):
-        if viscous.fast[r]:
-            end = right_part(viscous.force[r], degree, end)
-    for r in viscous.light:
-        if viscous.fast[r]:
-            end = right_part(viscous.rate[r], degree, end)
+    for r in range(len(dampers.laws)):
+        if dampers.is_series[r]:
+            end = accurate_fraction(dampers.force[r], degree, end)
+    for r in dampers.on_massless:
+        if dampers.is_series[r]:
+            end = accurate_fraction(dampers.rate[r], degree, end)
     return end
 
 
@@ -153,26 +155,26 @@ def turn_event(series: Series, degree: int, h: float, first: LocatedEvent, i: in
     """The instant at which the rate of damper `i` passes the limit of its power series, or the `first`
     event.
     """
-    viscous, d, p = series.viscous, series.deformation[i], series.polynomial[POLYNOMIAL]
-    r = viscous.index_of[i]
-    k, limit = viscous.constants[r, K], viscous.constants[r, LIMIT]
+    dampers, d, p = series.power_dampers, series.deformation[i], series.polynomial[POLYNOMIAL]
+    r = dampers.index_of[i]
+    k, limit = dampers.constants[r, K], dampers.constants[r, LIMIT]
     if k == 0.0 or limit == np.inf:
         return first
-    sign = -1.0 if viscous.fast[r] else 1.0
+    sign = -1.0 if dampers.is_series[r] else 1.0
     for q in range(degree):
         p[q] = (sign if k > 0.0 else -sign) * (q + 1) / h * d[q + 1]
     p[degree] = 0.0
     p[0] -= sign * (1.0 + sign * DEAD_BAND) * limit
-    return earlier(first, i, TURNS, first_rise(series.polynomial, degree, first.time, 0.0))
+    return earlier(first, i, CROSSES_LINEAR_RANGE, first_rise(series.polynomial, degree, first.time, 0.0))
 
 
-def tangents_settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
+def tangents_settled(laws: Laws, dampers: PowerDampers, velocity: Array) -> bool:
     """Whether the tangents of the dampers that hold unknowns without mass were taken at the present rates,
     within the tolerance of Newton's iteration and the rounding of the `velocity` of the unknowns.
     """
     rows = laws.definition.rows
-    for r in viscous.light:
-        i, constants = viscous.laws[r], viscous.constants[r]
+    for r in dampers.on_massless:
+        i, constants = dampers.laws[r], dampers.constants[r]
         if constants[K] != 0.0 and constants[N] != 1.0:
             v, size = laws.now.rate[i], 0.0
             for q in range(rows.pointers[i], rows.pointers[i + 1]):

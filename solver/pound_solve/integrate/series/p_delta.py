@@ -14,14 +14,14 @@ import numpy as np
 
 from pound_solve.integrate.kernels.state import Corotational
 from pound_solve.integrate.series.smooth import product_term
-from pound_solve.integrate.series.state import Series, Strings
+from pound_solve.integrate.series.state import PDeltaMembers, Series
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import ACROSS, AXIAL, LENGTH, N0
 
 
-def allocate(members: int, n_coefs: int) -> Strings:
+def allocate(members: int, n_coefs: int) -> PDeltaMembers:
     """Lay out so many `members` for series of `n_coefs` coefficients."""
-    return Strings(*np.zeros((3, members, n_coefs)))
+    return PDeltaMembers(*np.zeros((3, members, n_coefs)))
 
 
 def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int, n_powers: int) -> float:
@@ -35,32 +35,32 @@ def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int,
     return total
 
 
-def add_strings(members: Corotational, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
+def add_p_delta(members: Corotational, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
     """Add the coefficients `k` of the strings' forces to the right side `new` of those `k` + 2."""
-    strings = series.strings
+    p_delta = series.p_delta
     for c in range(len(members.parameters)):
-        strings.across[c, k] = quantity_term(members, series, c, ACROSS, k, n_powers)
-        strings.axial[c, k] = quantity_term(members, series, c, AXIAL, k, n_powers)
+        p_delta.across[c, k] = quantity_term(members, series, c, ACROSS, k, n_powers)
+        p_delta.axial[c, k] = quantity_term(members, series, c, AXIAL, k, n_powers)
         if k == 0:
-            strings.axial[c, 0] += members.parameters[c, N0]
-        force = product_term(strings.axial[c], strings.across[c], k) / members.parameters[c, LENGTH]
-        strings.force[c, k] = force
+            p_delta.axial[c, 0] += members.parameters[c, N0]
+        force = product_term(p_delta.axial[c], p_delta.across[c], k) / members.parameters[c, LENGTH]
+        p_delta.force[c, k] = force
         for y in range(members.pointers[c], members.pointers[c + 1]):
             new[members.unknown[y]] -= h * h * members.rows[y, ACROSS] * force
 
 
-def string_power(members: Corotational, series: Series, degree: int, s: float, h: float) -> float:
+def p_delta_power(members: Corotational, series: Series, degree: int, s: float, h: float) -> float:
     """Power that the strings put in at the place `s`; sets the members' transverse forces to those
     there.
     """
-    strings, power = series.strings, 0.0
+    p_delta, power = series.p_delta, 0.0
     for c in range(len(members.parameters)):
         y, rate, force = 0.0, 0.0, 0.0
         for k in range(degree - 2, -1, -1):
-            y = y * s + strings.across[c, k]
-            force = force * s + strings.force[c, k]
+            y = y * s + p_delta.across[c, k]
+            force = force * s + p_delta.force[c, k]
             if k > 0:
-                rate = rate * s + k * strings.axial[c, k]
+                rate = rate * s + k * p_delta.axial[c, k]
         members.trial.forces[c, ACROSS] = force
         power += 0.5 * y * y / members.parameters[c, LENGTH] * rate / h
     return power

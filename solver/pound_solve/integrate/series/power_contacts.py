@@ -1,6 +1,6 @@
 r"""Curved contacts in a power series: kernels.
 
-The force of a contact whose spring and dashpot grow with powers of the overlap (see `Rule.powers`),
+The force of a contact whose spring and dashpot grow with powers of the overlap (see `Rule.power_law`),
 
 .. math:: f = k x^n + c x^q \dot x,
 
@@ -29,13 +29,13 @@ from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import add_row
 from pound_solve.integrate.series.force_events import PARTS, RELEASES, TOUCHES
 from pound_solve.integrate.series.springs import deformation_term
-from pound_solve.integrate.series.state import Curved, Lengths, Series
+from pound_solve.integrate.series.state import PowerContacts, Series, StepControl
 from pound_solve.laws.automaton import GAP
-from pound_solve.laws.functions import Tables, powers_of
+from pound_solve.laws.functions import RuleFunctions, power_law_of
 from pound_solve.numerics.types import Array, Flags
 
 #: no overlap beyond rounding; a force acts; the force would be tensile, and is zero
-APART, PRESSED, RELEASED = range(3)
+APART, PRESSED, FORCE_FREE = range(3)
 NO_OVERLAP = 1e-12  #: overlap that counts as none, over the largest deformation
 FORCE_TRUNCATION = 1e-10  #: fraction of the force that the last of its terms may be
 FIRST_STEP = 0.4  #: length of the first step after a touch, as a share of the time since touch
@@ -43,15 +43,15 @@ SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.constants`
 
 
-def allocate(curved: Flags, n_coefs: int) -> Curved:
+def allocate(curved: Flags, n_coefs: int) -> PowerContacts:
     """Lay out the `curved` ones of the laws for series of `n_coefs` coefficients."""
     laws = np.flatnonzero(curved)
-    return Curved(
+    return PowerContacts(
         laws=laws,
         index_of=inverse_index(laws, len(curved)),
         constants=np.zeros((len(laws), 6)),
         phase=np.zeros(len(laws), np.int64),
-        power=np.zeros((len(laws), 2, n_coefs)),
+        overlap_powers=np.zeros((len(laws), 2, n_coefs)),
         force=np.zeros((len(laws), n_coefs)),
         largest=np.zeros(len(laws)),
     )
@@ -69,32 +69,32 @@ def touch_overlap(laws: Laws, i: int) -> float:
     return x
 
 
-def enter_curved(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
+def enter_power_contact(laws: Laws, rules: RuleFunctions, contacts: PowerContacts, i: int) -> None:
     """Copy the force law of curved law `i` on its branch, and find its phase: apart, pressed or
     released.
     """
-    r = curved.index_of[i]
-    powers = powers_of(
+    r = contacts.index_of[i]
+    powers = power_law_of(
         rules,
         laws.definition.rule[i],
         parameters(laws.definition.parameters, i),
         laws.state.branch[i],
         internal(laws.state.internal, i),
     )
-    constants = curved.constants[r]
+    constants = contacts.constants[r]
     constants[K], constants[N], constants[C], constants[Q], constants[PULLS], constants[SHIFT] = powers
     x, v = overlap(laws, i), laws.now.rate[i]
     y = max(x - constants[SHIFT], 0.0)
     if constants[K] == 0.0 or x <= touch_overlap(laws, i):
-        curved.phase[r] = APART
+        contacts.phase[r] = APART
     elif (
         constants[PULLS] > 0.0
         or constants[K] * y ** constants[N] + constants[C] * y ** constants[Q] * v >= 0.0
     ):
-        curved.phase[r] = PRESSED
+        contacts.phase[r] = PRESSED
     else:
-        curved.phase[r] = RELEASED
-    curved.force[r, :] = 0.0
+        contacts.phase[r] = FORCE_FREE
+    contacts.force[r, :] = 0.0
 
 
 def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
@@ -129,30 +129,30 @@ def force_term(constants: Array, power: Array, x: float, d: Array, k: int, h: fl
 
 def add_contacts(laws: Laws, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
     """Add the coefficients `k` of the contacts' forces to the right side `new` of those `k` + 2."""
-    curved = series.curved
-    for r in range(len(curved.laws)):
-        if curved.phase[r] == APART:
+    contacts = series.power_contacts
+    for r in range(len(contacts.laws)):
+        if contacts.phase[r] == APART:
             continue
-        i = curved.laws[r]
+        i = contacts.laws[r]
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
             d[m] = deformation_term(laws.definition, series, m, n_powers, i)
-        x = d[0] - laws.definition.parameters[i, GAP] - curved.constants[r, SHIFT]
-        force = force_term(curved.constants[r], curved.power[r], x, d, k, h)
-        curved.force[r, k] = force
-        if curved.phase[r] == PRESSED:
+        x = d[0] - laws.definition.parameters[i, GAP] - contacts.constants[r, SHIFT]
+        force = force_term(contacts.constants[r], contacts.overlap_powers[r], x, d, k, h)
+        contacts.force[r, k] = force
+        if contacts.phase[r] == PRESSED:
             add_row(laws.definition.rows, i, -h * h * force, new)
 
 
-def any_overlap(curved: Curved) -> bool:
+def any_overlap(contacts: PowerContacts) -> bool:
     """Whether any of the contacts has an overlap beyond rounding."""
     overlaps = False
-    for r in range(len(curved.laws)):
-        overlaps = overlaps or curved.phase[r] != APART
+    for r in range(len(contacts.laws)):
+        overlaps = overlaps or contacts.phase[r] != APART
     return overlaps
 
 
-def right_part(force: Array, degree: int, end: float) -> float:
+def accurate_fraction(force: Array, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the series of a force is accurate, at most `end`; NaN
     where its terms are not finite.
     """
@@ -165,29 +165,31 @@ def right_part(force: Array, degree: int, end: float) -> float:
     return min(end, (FORCE_TRUNCATION * most / tail) ** (1.0 / last)) if tail > 0.0 else end
 
 
-def contacts_valid_up_to(curved: Curved, degree: int, end: float) -> float:
+def contacts_valid_up_to(contacts: PowerContacts, degree: int, end: float) -> float:
     """Fraction or multiple of a step up to which the forces of all contacts are accurate, at most `end`."""
-    for r in range(len(curved.laws)):
-        if curved.phase[r] != APART:
-            end = right_part(curved.force[r], degree, end)
+    for r in range(len(contacts.laws)):
+        if contacts.phase[r] != APART:
+            end = accurate_fraction(contacts.force[r], degree, end)
     return end
 
 
-def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: int) -> None:
+def change_phase(laws: Laws, contacts: PowerContacts, control: StepControl, i: int, event: int) -> None:
     """Change the phase of contact `i` by an event: its force begins or ends."""
-    r = curved.index_of[i]
+    r = contacts.index_of[i]
     if event == TOUCHES:
-        curved.phase[r] = PRESSED
-        lengths.before = max(lengths.before, lengths.next)
-        lengths.next = min(lengths.next, FIRST_STEP * overlap(laws, i) / abs(laws.now.rate[i]))
+        contacts.phase[r] = PRESSED
+        control.length_before_contact = max(control.length_before_contact, control.next_length)
+        first = FIRST_STEP * overlap(laws, i) / abs(laws.now.rate[i])
+        control.next_length = min(control.next_length, first)
     elif event == PARTS:
-        curved.phase[r] = APART
-        lengths.next, lengths.before = max(lengths.next, lengths.before), 0.0
+        contacts.phase[r] = APART
+        control.next_length = max(control.next_length, control.length_before_contact)
+        control.length_before_contact = 0.0
     else:
-        curved.phase[r] = RELEASED if event == RELEASES else PRESSED
-    curved.force[r, :] = 0.0
+        contacts.phase[r] = FORCE_FREE if event == RELEASES else PRESSED
+    contacts.force[r, :] = 0.0
 
 
-def has_force(curved: Curved, i: int) -> bool:
-    """Whether law `i` is a curved contact that presses."""
-    return bool(curved.index_of[i] >= 0 and curved.phase[curved.index_of[i]] == PRESSED)
+def has_force(contacts: PowerContacts, i: int) -> bool:
+    """Whether law `i` is a power contact that presses."""
+    return bool(contacts.index_of[i] >= 0 and contacts.phase[contacts.index_of[i]] == PRESSED)
