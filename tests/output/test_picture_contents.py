@@ -366,6 +366,27 @@ def test_diagrams_show_the_true_extremes_and_the_values_at_an_instant(pair: Resu
     assert f"{t[at]:.6g}" in plot.picture(pair, "diagrams", Choice(("beam B",), time=0.52)).get_suptitle()
 
 
+def test_the_largest_collision_of_a_contact_is_enlarged(pair: Results) -> None:
+    table = pair.table("collisions")
+    row = table[int(np.argmax(table["peak_force"]))]
+    whole, enlarged = plot.picture(pair, "contact_force").axes
+    low, high = enlarged.get_xlim()
+    assert low < row["t_start"] < row["t_end"] < high and high - low < 2.0 * (row["t_end"] - row["t_start"])
+    assert whole.get_xlim()[1] > 1.0
+    assert len(plot.picture(pair, "contact_force", Choice(between=(0.3, 0.6))).axes) == 1
+    x, y = enlarged.get_lines()[0].get_data()
+    at_touch = y[x == row["t_start"]]
+    assert at_touch[0] == 0.0 and at_touch[-1] > 1.0  # the dashpot's force appears at once
+
+
+def test_loops_of_contacts_close_at_touch_and_parting(pair: Results) -> None:
+    lines = [x for x in plot.picture(pair, "contacts").axes[0].get_lines() if x.get_linestyle() == "-"]
+    assert len(lines) >= 1
+    for line in lines:
+        x, y = line.get_data()
+        assert y[0] == y[-1] == 0.0 and x[0] == x[1] and x[-1] == x[-2]
+
+
 @pytest.mark.parametrize("word", ["floor 1", "90", "largest"])
 def test_the_force_peak_of_a_contact_is_an_instant(pair: Results, word: str) -> None:
     """Samples lie 0.037 s apart, steps 0.001 s; the close-up has the peak itself."""

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from decks import results_of, structure_of
+from pound_solve.laws.automaton import CONTACT_OPENS
 from pound_solve.laws.contact import friction
 from pound_solve.structure.assembly import AssemblyError
 from tiers import at_night
@@ -337,10 +338,7 @@ def test_the_rule_walked_by_hand():
     assert event[1] * 0.3 + event[2] < 0.0 < event[1] * 0.1 + event[2]
     at, m = friction.RULE.transition(p, at, m, 0, 4.0, 0.1)
     assert at == friction.STICKING and 100.0 * (4.0 - m[friction.ANCHOR]) == pytest.approx(8.0)  # no jump
-    assert friction.RULE.transition(p, at, m, friction.RELEASED, 4.0, 0.1) == (
-        friction.OPEN,
-        (0.0, 0.0, 0.0),
-    )
+    assert friction.RULE.transition(p, at, m, CONTACT_OPENS, 4.0, 0.1) == (friction.OPEN, (0.0, 0.0, 0.0))
     # touched without force: what slides faster than the limit grows slips at once
     touch = (0.0, 50.0, 0.0)
     for v, wanted in ((0.26, friction.PLUS), (-0.26, friction.MINUS), (0.24, friction.STICKING)):

@@ -163,6 +163,8 @@ def test_the_version_and_the_help_need_no_numbers():
             "pound_solve.modules",
             "pound_solve.numerics",
             "pound_solve.numerics.threads",
+            "pound_solve.report",
+            "pound_solve.report.formats",
             "pound_solve.version",
         }
 

@@ -93,7 +93,7 @@ def test_bounds_hold_between_the_ends_of_cells(monkeypatch: pytest.MonkeyPatch) 
                 ends = own.values[cell, i], own.values[cell + 1, i]
                 out = max(y.max() - max(ends), min(ends) - y.min())
                 if out > 0.0:
-                    tightest = min(tightest, own.apart[i] / out)
+                    tightest = min(tightest, own.chord_error[i] / out)
                 terms = modal.expand_in_cell(own, cell, i, n_inputs, p)
                 assert terms > 0
                 powers = np.polynomial.polynomial.polyval(SHARES, p[: terms + 1])
@@ -122,8 +122,8 @@ def value(own: modal.Modal, i: int, cell: int, s: float, n_inputs: int) -> float
         if at < 0:
             continue
         assert at < own.counts[b, FOLLOWED]
-        x, row, turn = own.x[b, 0], own.rows[b, at], own.turn[b, :, :count]
-        grown = np.exp((turn[0] + 1j * turn[1]) * (cell + s))
+        x, row, exponent = own.x[b, 0], own.rows[b, at], own.exponent_per_cell[b, :, :count]
+        grown = np.exp((exponent[0] + 1j * exponent[1]) * (cell + s))
         free = (x[:count] + 1j * x[count : 2 * count]) * grown
         start, slope = x[2 * count :][:n_inputs], x[2 * count :][n_inputs : 2 * n_inputs]
         later = np.concatenate([start + slope * (cell + s) / cells, slope])

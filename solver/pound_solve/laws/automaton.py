@@ -26,6 +26,8 @@ RESTITUTION = 1  #: index of the restitution among the parameters of a rigid con
 PAST = 1e-12  #: the variable of a smooth rule counts as zero up to this fraction of its scale
 AT_END = 1e-9  #: fraction of the deformation by which a law must pass the end of a line to leave it
 NORMAL_FORCE, NORMAL_FORCE_RATE = 0, 1  #: internal variables of a law with normal-force coupling
+UNCOUPLED = 0  #: branch of such a law while its contact is open
+CONTACT_CLOSES, CONTACT_OPENS = 0, 2  #: events by which such a law follows its contact
 
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; internal variables

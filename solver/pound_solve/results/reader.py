@@ -382,8 +382,12 @@ class Results:
         return self._as_written("time", t, t[()]), low, high
 
     @_sound
-    def course(self, name: str) -> tuple[Array, Array]:
-        r"""A history merged with its close-ups: ascending times, shape (n,), and rows, shape (n, \*row)."""
+    def course(self, name: str, jumps: bool = False) -> tuple[Array, Array]:
+        r"""A history merged with its close-ups: ascending times, shape (n,), and rows, shape (n, \*row).
+
+        With `jumps`, an instant at which values jump, such as the touch of a contact with a dashpot, stands
+        twice: with the values before and after.
+        """
         t, rows = self.time, self.history(name)
         if name not in self.closeups:
             return t, rows
@@ -391,8 +395,11 @@ class Results:
         t, rows = np.concatenate([t, near]), np.concatenate([rows, near_rows])
         order = np.argsort(t, kind="stable")
         t, rows = t[order], rows[order]
-        new = np.append(True, np.diff(t) > 0.0)
-        return t[new], rows[new]
+        later = np.diff(t) > 0.0
+        kept = np.append(True, later)
+        if jumps:
+            kept |= np.append(later, True)
+        return t[kept], rows[kept]
 
     @_sound
     def labels(self, name: str) -> tuple[str, ...]:

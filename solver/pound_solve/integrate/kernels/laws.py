@@ -13,8 +13,13 @@ from pound_solve.integrate.kernels.law_state import (
 )
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
-from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
-from pound_solve.laws.contact.friction import CONTACT_CLOSES, CONTACT_OPENS, OPEN
+from pound_solve.laws.automaton import (
+    CONTACT_CLOSES,
+    CONTACT_OPENS,
+    NORMAL_FORCE,
+    NORMAL_FORCE_RATE,
+    UNCOUPLED,
+)
 from pound_solve.laws.functions import (
     PARAMETERS,
     VARIABLES,
@@ -231,7 +236,7 @@ def couple_friction(laws: Laws, rules: RuleFunctions, acceleration: Array, i: in
             c = curved_force(laws, rules, j, d + EVENT_TOLERANCE * laws.largest.deformation[j], v)
         store_normal_force(laws.state, i, force, c[1] * v + c[2] * a, v)
     pressed = (friction.pressed_branches[i] >> laws.state.branch[j]) & 1
-    if pressed != (laws.state.branch[i] != OPEN):
+    if pressed != (laws.state.branch[i] != UNCOUPLED):
         event = CONTACT_CLOSES if pressed else CONTACT_OPENS
         leave_branch(laws, rules, i, event, laws.now.deformation[i], laws.now.rate[i])
     enter_coupled(laws, rules, i)

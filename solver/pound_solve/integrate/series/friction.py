@@ -20,8 +20,8 @@ from pound_solve.integrate.series.force_events import LIFT
 from pound_solve.integrate.series.power_contacts import PRESSED
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Extent, Friction, Series
-from pound_solve.laws.automaton import NORMAL_FORCE, NORMAL_FORCE_RATE
-from pound_solve.laws.contact.friction import ANCHOR, CONTACT_CLOSES, CONTACT_OPENS, MINUS, OPEN, PLUS
+from pound_solve.laws.automaton import CONTACT_CLOSES, CONTACT_OPENS, NORMAL_FORCE, NORMAL_FORCE_RATE
+from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array, Index
 

@@ -25,8 +25,10 @@ dry friction.
 from __future__ import annotations
 
 from pound_solve.laws.automaton import (
+    CONTACT_OPENS,
     NORMAL_FORCE,
     NORMAL_FORCE_RATE,
+    UNCOUPLED,
     BranchKind,
     Law,
     Numbers,
@@ -37,8 +39,7 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.mirror import side
 from pound_solve.laws.refusal import ItemError
 
-OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
-CONTACT_CLOSES, CONTACT_OPENS = 0, 2  #: events by which the friction follows its contact
+OPEN, PLUS, MINUS, STICKING = UNCOUPLED, 1, 2, 3
 ANCHOR = 2  #: internal variable: displacement at which the spring has no force
 
 

@@ -102,7 +102,7 @@ def force_curve(
     axes: Any, results: Results, column: int, look: Mapping[str, Any], choice: Choice = ALL
 ) -> None:
     """Draw the force of one contact over time: a ring for each true peak, a bar for an instant impact."""
-    t, force = results.course("contact/force")
+    t, force = results.course("contact/force", jumps=True)
     rows = choice.span(results, t)
     name = results.labels("contact/force")[column]
     collisions = of_contact(results, name, choice)

@@ -11,6 +11,9 @@ from pound_solve.report.plot.members import chosen_contacts
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
+DENSE = 6  #: stored instants from which on a collision is enlarged
+MARGIN = 0.15  #: time before and after an enlarged collision, as a fraction of its duration
+
 
 def contact_force(results: Results, choice: Choice) -> Any:
     """Draw one panel for each contact that closed, or for the chosen ones."""
@@ -23,20 +26,54 @@ def contact_force(results: Results, choice: Choice) -> Any:
     shown = columns[: style.LINES]
     more = f": {len(shown)} of {len(columns)}" if len(shown) < len(columns) else ""
     title = f"Contact forces{more}; rings: peak of each collision"
-    figure = style.figure(9.0, 1.7 * len(shown) + 0.9, title)
+    hardest = [_hardest(results, names[k], choice) for k in shown]
+    enlarged = not choice.between and any(hardest)
+    figure = style.figure(11.0 if enlarged else 9.0, 1.7 * len(shown) + 0.9, title)
+    widths = (3.0, 1.0) if enlarged else (1.0,)
+    grid = figure.add_gridspec(len(shown), len(widths), width_ratios=widths)
     first = None
-    for n, k in enumerate(shown):
-        axes = figure.add_subplot(len(shown), 1, n + 1, sharex=first)
+    for n, (k, collision) in enumerate(zip(shown, hardest)):
+        axes = figure.add_subplot(grid[n, 0], sharex=first)
         first = first or axes
         last = n == len(shown) - 1
-        style.grid(axes, f"time [{results.units.time}]" if last else "", f"force [{results.units.force}]")
+        time = f"time [{results.units.time}]" if last else ""
+        style.grid(axes, time, f"force [{results.units.force}]")
         look = {"color": style.stroke(n)["color"], "linestyle": "-"}
         courses.force_curve(axes, results, k, look, choice)
         axes.set_title(_caption(results, names[k], choice))
         if choice.between:
             axes.set_xlim(*choice.between)
         axes.tick_params(labelbottom=last)
+        if enlarged and collision:
+            _enlarge(style.grid(figure.add_subplot(grid[n, 1]), time), results, k, look, collision)
     return figure
+
+
+def _hardest(results: Results, name: str, choice: Choice) -> tuple[float, float] | None:
+    """Start and end of the collision with the largest force of a contact; None without one that has ended,
+    or with too few stored instants.
+    """
+    t = results.course("contact/force")[0]
+    collisions = courses.of_contact(results, name, choice)
+    collisions = collisions[np.isfinite(collisions["peak_force"]) & np.isfinite(collisions["t_end"])]
+    if not len(collisions):
+        return None
+    row = collisions[np.argmax(collisions["peak_force"])]
+    start, end = float(row["t_start"]), float(row["t_end"])
+    return (start, end) if ((t >= start) & (t <= end)).sum() >= DENSE else None
+
+
+def _enlarge(
+    axes: Any, results: Results, k: int, look: dict[str, str], collision: tuple[float, float]
+) -> None:
+    """Draw one collision of a contact over its own time, with a margin on both sides."""
+    margin = MARGIN * (collision[1] - collision[0])
+    interval = collision[0] - margin, collision[1] + margin
+    courses.force_curve(axes, results, k, look, Choice(between=interval))
+    axes.set_xlim(*interval)
+    axes.locator_params(axis="x", nbins=3)
+    axes.ticklabel_format(axis="x", useOffset=False)
+    axes.set_title("the largest, enlarged")
 
 
 def _caption(results: Results, name: str, choice: Choice) -> str:

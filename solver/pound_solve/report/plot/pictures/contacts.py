@@ -32,9 +32,9 @@ def contacts(results: Results, choice: Choice) -> Any:
 
 def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     """Draw the force of a contact over its overlap, at the stored instants; a line is its true peak."""
-    t, force = results.course("contact/force")
+    t, force = results.course("contact/force", jumps=True)
     rows = choice.span(results, t)
-    t, force, gap = t[rows], force[rows, k], results.course("contact/gap")[1][rows, k]
+    t, force, gap = t[rows], force[rows, k], results.course("contact/gap", jumps=True)[1][rows, k]
     name = results.labels("contact/force")[k]
     style.grid(axes, f"overlap [{results.units.length}]", f"force [{results.units.force}]")
     near = gap <= max(0.0, 0.2 * float(-gap.min()))
@@ -43,7 +43,9 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     for collision in courses.of_contact(results, name, choice):
         closed = (t >= collision["t_start"]) & ~(t > collision["t_end"])
         if closed.sum() >= DENSE:
-            axes.plot(x[closed], y[closed], color=style.RED, linestyle="-", linewidth=0.8)
+            # a dashpot's force appears at touch, and a pull ends at parting: the line closes at both
+            along, up = -gap[closed], np.concatenate([[0.0], force[closed], [0.0]])
+            axes.plot(np.pad(along, 1, "edge"), up, color=style.RED, linestyle="-", linewidth=0.8)
     peak, overlap, closures = _peaks(results, name)
     if closures and np.isfinite(peak) and not choice.between:
         axes.axhline(peak, color="0.3", linestyle="--", linewidth=0.8)
