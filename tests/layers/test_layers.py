@@ -408,6 +408,24 @@ def test_no_two_classes_have_one_name():
     assert not twice
 
 
+def names_below(node):
+    """Names, attributes and functions within a node."""
+    for x in ast.walk(node):
+        if isinstance(x, ast.Name | ast.Attribute):
+            yield x.id if isinstance(x, ast.Name) else x.attr
+        elif isinstance(x, ast.FunctionDef):
+            yield x.name
+
+
+def test_attributes_that_docstrings_and_comments_name_are_there():
+    texts = {path: path.read_text("utf-8") for path in modules()}
+    nodes = (x for text in texts.values() for x in ast.walk(ast.parse(text)))
+    classes = {x.name: set(names_below(x)) for x in nodes if isinstance(x, ast.ClassDef)}
+    for path, text in texts.items():
+        for name, attribute in re.findall(r"(?<![`:])`([A-Z][a-z]\w+)\.(\w+)`", text):
+            assert attribute in classes.get(name, ()), f"{place(path)}: {name}.{attribute} is not there"
+
+
 def test_numerics_open_no_file_and_print_nothing():
     for path in SOLVER.rglob("*.py"):
         if place(path).startswith(NUMERICS) and path.name != "jit.py":

@@ -1,4 +1,4 @@
-r"""Curved contacts in a power series: kernels.
+r"""Power contacts, whose force follows powers of the overlap, in a power series: kernels.
 
 The force of a contact whose spring and dashpot grow with powers of the overlap (see `Rule.power_law`),
 
@@ -39,8 +39,8 @@ APART, PRESSED, FORCE_FREE = range(3)
 NO_OVERLAP = 1e-12  #: overlap that counts as none, over the largest deformation
 FORCE_TRUNCATION = 1e-10  #: fraction of the force that the last of its terms may be
 FIRST_STEP = 0.4  #: length of the first step after a touch, as a share of the time since touch
-SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
-K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.constants`
+SPRING, DASHPOT = range(2)  #: rows of `PowerContacts.overlap_powers`
+K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `PowerContacts.constants`
 
 
 def allocate(curved: Flags, n_coefs: int) -> PowerContacts:
@@ -71,7 +71,7 @@ def touch_overlap(laws: Laws, i: int) -> float:
 
 def enter_power_contact(laws: Laws, rules: RuleFunctions, contacts: PowerContacts, i: int) -> None:
     """Copy the force law of curved law `i` on its branch, and find its phase: apart, pressed or
-    released.
+    without force.
     """
     r = contacts.index_of[i]
     powers = power_law_of(

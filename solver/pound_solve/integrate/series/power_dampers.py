@@ -39,7 +39,7 @@ RATE_CONVERGED = (
     1e-6  #: fraction of a rate that Newton's iteration changes last: it leaves the square of that
 )
 RATE_ROUNDING = 1e-15  #: fraction of the velocities whose difference a rate is
-LIMIT, RATE = 2, 3  #: columns of `Viscous.constants`, beside K and N
+LIMIT, RATE = 2, 3  #: columns of `PowerDampers.constants`, beside K and N
 
 
 def allocate(viscous: Flags, light: Flags, n_coefs: int) -> PowerDampers:
