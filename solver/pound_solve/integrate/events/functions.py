@@ -15,8 +15,8 @@ from pound_solve.numerics.types import Array, Flags
 
 
 class RowSet(NamedTuple):
-    """Linear functionals of the unknowns that a run monitors, ``rows u + inputs s + constants``; the first
-    are the laws' deformations.
+    """Linear functionals of the unknowns that a run monitors, ``rows u + inputs s + constants``.  The laws'
+    deformations come first.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Sampled(Protocol):
     second: Array
 
     def at(self, row: int, segment: int, cell: int, tau: float) -> tuple[float, float, float]:
-        """Value, rate and second rate of a row at a time in the cell after a point of a segment."""
+        """Return value, rate and second rate of a row at the time `tau` in a cell of a segment."""
 
 
 class RowFunctions:
@@ -59,7 +59,7 @@ class RowFunctions:
     Attributes
     ----------
     by_rate : bool
-        Whether any depends on a rate.
+        Whether any function depends on a rate.
     """
 
     def __init__(self, row: Sequence[int], factors: Sequence[Sequence[float]]) -> None:
@@ -77,8 +77,8 @@ class RowFunctions:
         return value, slope
 
     def curvature_bounds(self, bounds: Array) -> Array:
-        """Bounds of their second derivatives, shape (n, n_segments), from those of the rows' values and
-        rates, shape (2, n_rows, n_segments), which may be infinite.
+        """Return bounds of the second derivatives of the functions, shape (n, n_segments).  `bounds` are
+        those of the rows' values and rates, shape (2, n_rows, n_segments); they may be infinite.
         """
         a, b, _ = np.abs(self.factors)[:, :, None]
         curvatures = np.asarray(a * np.where(a != 0.0, bounds[0, self.row], 0.0))
@@ -87,8 +87,8 @@ class RowFunctions:
         return curvatures
 
     def scale(self, largest: Array) -> Array:
-        """Largest magnitude of the terms of each function, shape (n,), from that of rows and rates (2,
-        n_rows).
+        """Return the largest magnitude of the terms of each function, shape (n,), from that of rows and
+        rates (2, n_rows).
         """
         a, b, c = np.abs(self.factors)
         return np.asarray(a * largest[0, self.row] + b * largest[1, self.row] + c)
@@ -106,7 +106,7 @@ class RowFunctions:
 
 
 class GridEvent(NamedTuple):
-    """An event located on a grid, and the cell that it lies in."""
+    """An event located on a grid, and the cell that contains it."""
 
     event: LocatedEvent
     segment: int
@@ -116,7 +116,7 @@ class GridEvent(NamedTuple):
 class EventFunctions(RowFunctions):
     """Event functions of all laws on their present branches.
 
-    The event function of a closed rigid contact depends on its force, which is a row of its own.
+    The event function of a closed rigid contact depends on its force, which has a separate row.
 
     Parameters
     ----------
@@ -137,15 +137,15 @@ class EventFunctions(RowFunctions):
     def violated(
         self, samples: Sampled, largest: Array, tolerance: float, laws: Flags
     ) -> LocatedEvent | None:
-        """Return the first event, by number, that a jump of a law's rate has made overdue, or None: at the
-        first sample a function that depends on the rate is above zero.
+        """Return the first event, by number, that a jump of a law's rate has made overdue, or None.  It is
+        overdue if its function depends on the rate and is above zero at the first sample.
 
         Parameters
         ----------
         samples, largest, tolerance
-            As of `first_event`.
+            As in `first_event`.
         laws : ndarray of bool, shape (n_laws,)
-            Those whose rates may jump.
+            Laws whose rates may jump.
         """
         if not self.by_rate or not laws.any() or not samples.t.size:
             return None
@@ -159,10 +159,11 @@ class EventFunctions(RowFunctions):
     def first_event(
         self, samples: Sampled, largest: Array, tolerance: float, late: Collection[int] = ()
     ) -> GridEvent | None:
-        """Return the earliest event of some samples, or None.
+        """Return the earliest event within the samples, or None.
 
-        An event of the laws `late`, which are contacts, counts if it is there before that of another law:
-        bodies that move alike meet only where a hinge of one has yielded, and that of the other not yet.
+        An event of the laws `late`, which are contacts, counts only if it clearly precedes that of any
+        other law.  Otherwise bodies that move alike would seem to meet while a hinge of one has yielded and
+        that of the other has not.
 
         Parameters
         ----------
@@ -170,7 +171,7 @@ class EventFunctions(RowFunctions):
         largest : ndarray, shape (2, n_rows)
             Largest magnitudes of rows and rates so far.
         tolerance : float
-            Share of the magnitude of its terms up to which a function counts as not above zero.
+            Fraction of the magnitude of its terms up to which a function counts as not above zero.
         late : collection of int
         """
         if not self.keys or not samples.t.size:
@@ -197,8 +198,8 @@ class EventFunctions(RowFunctions):
 def monitored_functions(
     tracker: ResponseTracker, branches: Sequence[Branch], reaction_row: Mapping[int, int]
 ) -> tuple[RowFunctions, list[Peak]]:
-    """Return deformations, drifts, and the forces of springs and of closed contacts, and their peaks:
-    forces of contacts belong to the present collision.
+    """Return functions for deformations, drifts, and the forces of springs and of closed contacts, and
+    their peaks.  Forces of contacts belong to the present collision.
     """
     rows = list(range(len(branches) + tracker.n_monitored))
     factors = [(1.0, 0.0, 0.0)] * len(rows)
@@ -208,7 +209,7 @@ def monitored_functions(
         if spring.role.collides and i not in tracker.open:
             continue
         rows.append(reaction_row[i] if b.constrains else i)
-        # a spring's force is without damping
+        # a spring's force excludes damping
         damping = b.damping * spring.role.reports_damping
         factors.append((1.0 if b.constrains else b.stiffness, damping, b.force0))
         kept.append(tracker.collision_force(i) if i in tracker.open else tracker.force(i))

@@ -1,6 +1,6 @@
-"""Location of events and peaks on a grid: bracketed by values and slopes at its points, then polished.
+"""Location of events and peaks on a grid: bracketed by values and slopes at its points, then refined.
 
-The functions here see numbers only: sampled values and slopes on segments of time, shape
+The functions here use numbers only: sampled values and slopes on segments of time, shape
 (n, n_segments, n_points), and a function that evaluates exactly between the points.  A *cell* is the time
 from one point of a segment to the next.
 """
@@ -22,11 +22,11 @@ SHALLOW = 1e-9  #: fraction of its steepest slope below which a function that st
 #: value and slope of function n in some segment and cell at time t
 Evaluate = Callable[[int, int, int, float], tuple[float, float]]
 ValueAndSlope = Callable[[float], tuple[float, float]]  #: of one function in one cell
-Ends = tuple[float, float, float]  #: a time, and value and slope there
+Ends = tuple[float, float, float]  #: a time, and the value and slope there
 
 
 class Rise(NamedTuple):
-    """The instant at which one of some functions rises through zero, and the cell it lies in."""
+    """The instant at which one of several functions rises through zero, and the cell that contains it."""
 
     time: float
     function: int
@@ -35,11 +35,11 @@ class Rise(NamedTuple):
 
 
 def may_rise(g: Array, slope: Array, curvature: Array, width: Array) -> Flags:
-    """Return in which cells functions may rise through zero: where they are above it at the end, or
-    where they may have a maximum that the bound of their curvature does not keep below it.
+    """Return in which cells functions may rise through zero: either they are above it at the end, or
+    they may have a maximum that the curvature bound does not keep below it.
 
-    A function keeps within ``curvature width^2 / 8`` of its chord, and it is monotone where its mean slope
-    at both ends is above ``curvature width / 2``.
+    A function stays within ``curvature width^2 / 8`` of its chord.  It is monotone if the mean of its
+    slopes at both ends is above ``curvature width / 2``.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def may_rise(g: Array, slope: Array, curvature: Array, width: Array) -> Flags:
     curvature : ndarray, shape (n, n_segments)
         Bounds of the second derivatives.
     width : ndarray, shape (n_segments, n_points - 1)
-        Of the cells.
+        Widths of the cells.
     """
     curvature = curvature[:, :, None]
     may_have_extremum = np.abs(slope[..., :-1] + slope[..., 1:]) <= curvature * width
@@ -56,7 +56,7 @@ def may_rise(g: Array, slope: Array, curvature: Array, width: Array) -> Flags:
 
 
 def may_peak(value: Array, slope: Array, curvature: Array, width: Array, peaks: Sequence[Peak]) -> Flags:
-    """Return in which cells functions may exceed their peaks and all points up to there; parameters as of
+    """Return in which cells functions may exceed their peaks and all points up to there; parameters as in
     `may_rise`.
     """
     curvature, shape = curvature[:, :, None], value.shape
@@ -73,10 +73,10 @@ def may_peak(value: Array, slope: Array, curvature: Array, width: Array, peaks: 
 
 
 def two_extremes(t: Array, value: Array, slope: Array) -> tuple[Flags, Array]:
-    """Return in which cells functions may have two extremes although their slopes have one sign at both
-    ends: where the cubics through both ends do; and the time between the two.
+    """Return in which cells functions may have two extremes although their slopes have the same sign at
+    both ends, and a time between the two extremes.  The cubics through both ends decide.
 
-    Cells whose rise agrees with their slopes to rounding are left out: in a cell of next to no width any
+    Cells whose rise agrees with their slopes to rounding are left out, because in a very narrow cell any
     rounding would count.
     """
     width, rise = np.diff(t), np.diff(value)
@@ -92,15 +92,15 @@ def two_extremes(t: Array, value: Array, slope: Array) -> tuple[Flags, Array]:
 
 
 def first_rise(t: Array, g: Array, slope: Array, tol: Array, evaluate: Evaluate) -> Rise | None:
-    """Return the first instant at which one of some functions rises through zero, or None.
+    """Return the first instant at which one of several functions rises through zero, or None.
 
     Parameters
     ----------
     t : ndarray, shape (n_segments, n_points)
-        Rising times on segments one after the other, the first point being the start of a branch or where
-        the last search ended.
+        Ascending times on consecutive segments; the first point is the start of a branch or the end of the
+        last search.
     g, slope : ndarray, shape (n, n_segments, n_points)
-        Sampled values and slopes; `g` is changed at the start, where a value above zero is rounding.
+        Sampled values and slopes; `g` is changed at the first point, where a value above zero is rounding.
     tol : ndarray, shape (n, 1, 1)
         Values up to which a function counts as not above zero.
     evaluate : callable
@@ -122,7 +122,7 @@ def first_rise(t: Array, g: Array, slope: Array, tol: Array, evaluate: Evaluate)
                     continue
                 high = top
             elif g[n, k, j] == 0.0:
-                # at the very start its slope may be rounding: it may fall first
+                # at the first point its slope may be rounding: the function may fall first
                 if k == j == 0 and not slope[n, 0, 0] > SHALLOW * np.abs(slope[n]).max():
                     low = _dip(function, low, high)
                 if low == t[k, j]:
@@ -136,8 +136,8 @@ def first_rise(t: Array, g: Array, slope: Array, tol: Array, evaluate: Evaluate)
 
 
 def _humps(t: Array, g: Array, slope: Array, tol: Array) -> tuple[Flags, Flags, Array]:
-    """Return the cells in which functions that are below zero at both ends may rise above it, and
-    `two_extremes` among them.
+    """Return the cells in which functions that are below zero at both ends may rise above it, and the
+    result of `two_extremes` for them.
     """
     g0, g1, s0, s1 = g[..., :-1], g[..., 1:], slope[..., :-1], slope[..., 1:]
     below = (g1 <= tol) & (g0 <= tol)
@@ -157,7 +157,7 @@ def _summit_above(
     split: float | None,
     tol: float,
 ) -> float | None:
-    """Return the time of a maximum above `tol` between two times with these slopes, or None.
+    """Return the time of a maximum above `tol` between two times with known slopes, or None.
 
     With two extremes, `split` is a time between them.
     """
@@ -175,8 +175,8 @@ def _summit_above(
 
 
 def _dip(function: ValueAndSlope, start: float, high: float) -> float:
-    """Return a time after `start` where a function is below zero that starts there at zero and falls first;
-    `start` if it does not fall.
+    """Return a time after `start` at which a function that is zero at `start` and falls first is below
+    zero; `start` if it does not fall.
     """
     width = high - start
     for _ in range(60):
@@ -187,7 +187,7 @@ def _dip(function: ValueAndSlope, start: float, high: float) -> float:
 
 
 def _root(function: ValueAndSlope, low: float, high: float) -> float:
-    """Root of a function that rises through zero in (low, high): Newton, kept inside its bracket."""
+    """Return the root of a function that rises through zero in (low, high), by Newton with a bracket."""
     x, last = 0.5 * (low + high), np.inf
     for _ in range(200):
         g, slope = function(x)
@@ -209,9 +209,10 @@ def _root(function: ValueAndSlope, low: float, high: float) -> float:
 def stationary_point(
     slope: Callable[[float], float], low: float, high: float, s_low: float, s_high: float
 ) -> float:
-    """Zero of a slope that falls through zero in (low, high): the Illinois form of regula falsi.
+    """Return the zero of a slope that falls through zero in (low, high), by the Illinois form of regula
+    falsi.
 
-    At a peak a slope of 1e-8 of the ends' costs 1e-16 of the peak's height, so that much is enough.
+    A residual slope of 1e-8 of those at the ends changes the peak by 1e-16 of its height: this is enough.
     """
     side, x, steep = 0, low, s_low - s_high
     for _ in range(60):
@@ -231,7 +232,7 @@ def stationary_point(
 
 
 def update_by_samples(peaks: Sequence[Peak], t: Array, value: Array) -> None:
-    """Count sampled functions, shape (n, n_t), into their peaks."""
+    """Update the peaks with sampled functions, shape (n, n_t)."""
     hi, lo = value.argmax(axis=1), value.argmin(axis=1)
     every = np.arange(len(peaks))
     for peak, x, j, y, k in zip(peaks, value[every, hi].tolist(), hi, value[every, lo].tolist(), lo):
@@ -244,7 +245,7 @@ def update_by_samples(peaks: Sequence[Peak], t: Array, value: Array) -> None:
 def update_by_extremes(
     peaks: Sequence[Peak], t0: float, t: Array, value: Array, slope: Array, evaluate: Evaluate
 ) -> None:
-    """Count sampled functions into their peaks, and polished extremes that exceed them between the samples.
+    """Update the peaks with sampled functions, and with refined extremes between the samples.
 
     Parameters
     ----------
@@ -267,7 +268,7 @@ def update_by_extremes(
         return
     known = np.array([[peak.high, peak.low] for peak in peaks])[:, :, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        # the point where the tangents at both ends meet bounds the extreme of a smooth function
+        # the intersection of the tangents at both ends bounds the extreme of a smooth function
         meet = f0 + s0 * (value[..., 1:] - f0 - s1 * np.diff(t)) / (s0 - s1)
     beyond = turn & (((s0 > 0) & (meet > known[:, 0])) | ((s0 < 0) & (meet < known[:, 1])))
     for i, k, j in np.argwhere(beyond | twice).tolist():
@@ -284,11 +285,11 @@ def update_by_extremes(
 
 
 def _count_extreme(peak: Peak, t0: float, function: ValueAndSlope, low: Ends, high: Ends) -> None:
-    """Count in the extreme between two times, whose slopes differ in sign, if it may exceed the peak."""
+    """Update a peak with the extreme between two times, whose slopes differ in sign, if it may be larger."""
     sign = 1.0 if low[2] > 0 else -1.0
     best = peak.high if sign > 0 else -peak.low
     f_low, f_high, s_low, s_high = (sign * float(x) for x in (low[1], high[1], low[2], high[2]))
-    # only an extreme whose cubic comes near the peak is polished
+    # only an extreme whose cubic comes near the peak is refined
     top = cubic_peak(f_low, f_high, s_low, s_high, high[0] - low[0])[1]
     if top + 0.02 * (top - max(f_low, f_high)) <= best:
         return

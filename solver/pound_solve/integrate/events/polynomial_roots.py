@@ -5,8 +5,8 @@ On a cell of width w a polynomial of degree n is written in Bernstein's form,
 .. math:: p(x + w\sigma) = \sum_j b_j \binom{n}{j} \sigma^j (1-\sigma)^{n-j}, \qquad 0 \le \sigma \le 1 .
 
 It lies between the least and the largest :math:`b_j`, and its derivative has no more zeros there than the
-differences of the :math:`b_j` have changes of sign.  A cell therefore either cannot contain a root or
-summit, or contains exactly one, which Newton's method finds within its bracket, or is halved.  No root is
+differences of the :math:`b_j` have changes of sign.  Therefore a cell either cannot contain a root or
+maximum, or contains exactly one, which Newton's method finds within its bracket, or is halved.  No root is
 missed between samples, because there are no samples.
 
 References
@@ -24,19 +24,19 @@ from pound_solve.numerics.types import Array
 
 MAX_HALVINGS = 44  #: halvings of a cell, at most
 COEFFICIENT_ROUNDING = 1e-15  #: fraction of the sum of the coefficients that is rounding
-#: what the kernels work on has the polynomial in row 0, cells in the others, of which the last is looked
-#: at; the columns after their coefficients are their place and their width
+#: the work array has the polynomial in row 0 and a stack of cells in the other rows, the last of which is
+#: examined; the columns after a cell's coefficients are its start and its width
 POLYNOMIAL, CELLS = range(2)
 
 
 def room(degree: int) -> tuple[int, int]:
-    """Shape of the work array of the kernels for polynomials of highest power `degree`."""
+    """Return the shape of the kernels' work array for polynomials of the given `degree`."""
     return MAX_HALVINGS + 2, degree + 3
 
 
 @reorder_sums
 def size(p: Array, row: int, degree: int) -> float:
-    """Bound of the change of the polynomial in a row from its value at 0, over [0, 1]."""
+    """Return a bound of the change of the polynomial in a row from its value at 0, over [0, 1]."""
     total = 0.0
     for k in range(1, degree + 1):
         total += abs(p[row, k])
@@ -45,7 +45,7 @@ def size(p: Array, row: int, degree: int) -> float:
 
 @reorder_sums
 def rate_size(p: Array, row: int, degree: int) -> float:
-    """Bound of the change of the polynomial's derivative in a row from its value at 0, over [0, 1]."""
+    """Return a bound of the change of its derivative from the value at 0, over [0, 1]."""
     total = 0.0
     for k in range(2, degree + 1):
         total += k * abs(p[row, k])
@@ -53,7 +53,7 @@ def rate_size(p: Array, row: int, degree: int) -> float:
 
 
 def value(p: Array, degree: int, s: float) -> float:
-    """Value of the polynomial."""
+    """Return the value of the polynomial at `s`."""
     total: float = p[POLYNOMIAL, degree]
     for k in range(degree - 1, -1, -1):
         total = total * s + p[POLYNOMIAL, k]
@@ -61,7 +61,7 @@ def value(p: Array, degree: int, s: float) -> float:
 
 
 def slopes(p: Array, degree: int, s: float) -> tuple[float, float]:
-    """First two derivatives of the polynomial."""
+    """Return the first two derivatives of the polynomial at `s`."""
     first, second = 0.0, 0.0
     for k in range(degree, 0, -1):
         second = second * s + first
@@ -76,7 +76,7 @@ def write_in_bernstein_form(p: Array, degree: int, end: float) -> None:
     for k in range(degree + 1):
         p[CELLS, k] = p[POLYNOMIAL, k] * scale
         scale *= end * (k + 1) / (degree - k) if k < degree else 1.0
-    for i in range(1, degree + 1):  # to and fro between two rows, several at once
+    for i in range(1, degree + 1):  # alternates between two rows, several entries at once
         for j in range(i, degree + 1):
             p[CELLS + 1, j] = p[CELLS, j] + p[CELLS, j - 1]
         for j in range(i, degree + 1):
@@ -85,7 +85,7 @@ def write_in_bernstein_form(p: Array, degree: int, end: float) -> None:
 
 
 def halve_cell(p: Array, degree: int, row: int) -> None:
-    """Leave the right half of a cell in its row, and put the left one into the next (de Casteljau)."""
+    """Keep the right half of a cell in its row, and put the left half into the next row (de Casteljau)."""
     place, width = p.shape[1] - 2, p.shape[1] - 1
     p[row + 1, 0] = p[row, 0]
     for i in range(1, degree + 1):
@@ -98,7 +98,7 @@ def halve_cell(p: Array, degree: int, row: int) -> None:
 
 
 def sign_changes(p: Array, degree: int, row: int, noise: float) -> tuple[float, int]:
-    """Sign of the first difference of a cell's coefficients, and how often the sign of these changes."""
+    """Return the sign of the first difference of a cell's coefficients, and the number of sign changes."""
     first, last, count = 0.0, 0.0, 0
     for j in range(degree):
         step = p[row, j + 1] - p[row, j]
@@ -113,7 +113,7 @@ def sign_changes(p: Array, degree: int, row: int, noise: float) -> tuple[float, 
 
 
 def highest_of(p: Array, degree: int, row: int) -> float:
-    """Largest coefficient of a cell."""
+    """Return the largest coefficient of a cell."""
     most: float = p[row, 0]
     for j in range(1, degree + 1):
         most = max(most, p[row, j])
@@ -121,8 +121,8 @@ def highest_of(p: Array, degree: int, row: int) -> float:
 
 
 def find_zero(p: Array, degree: int, low: float, high: float) -> float:
-    """Where the polynomial, not above zero at `low`, rises through it before `high`: Newton's method, kept
-    in its bracket.
+    """Return where the polynomial, not above zero at `low`, rises through zero before `high`, by Newton's
+    method with a bracket.
     """
     at, last = 0.5 * (low + high), np.inf
     for _ in range(200):
@@ -144,7 +144,7 @@ def find_zero(p: Array, degree: int, low: float, high: float) -> float:
 
 
 def find_summit(p: Array, degree: int, low: float, high: float) -> float:
-    """Where the slope of the polynomial falls through zero between `low` and `high`."""
+    """Return where the slope of the polynomial falls through zero between `low` and `high`."""
     at, last = 0.5 * (low + high), np.inf
     for _ in range(100):
         rate, bend = slopes(p, degree, at)
@@ -156,18 +156,18 @@ def find_summit(p: Array, degree: int, low: float, high: float) -> float:
         if not low < new < high or abs(new - at) > 0.5 * last:
             new = 0.5 * (low + high)
         last = abs(new - at)
-        if last <= 1e-10 * high:  # half as many digits as its value
+        if last <= 1e-10 * high:  # a maximum needs half as many digits as its value
             return new
         at = new
     return at
 
 
 def first_rise(p: Array, degree: int, end: float, tol: float) -> float:
-    """First place before `end`, which is 1 at most, where the polynomial in row 0 rises through zero, to
+    """Return the first point before `end` (at most 1) where the polynomial in row 0 rises through zero to
     above `tol`; -1 if there is none.
 
-    A value above zero at 0 counts as rounding there, and is set to zero in row 0: if it rises from it, then
-    at once.
+    A value above zero at 0 counts as rounding and is set to zero in row 0.  If the polynomial rises from
+    there, the root is 0.
     """
     far = size(p, POLYNOMIAL, degree)
     if p[POLYNOMIAL, 0] + far <= tol:
@@ -192,8 +192,8 @@ def first_rise(p: Array, degree: int, end: float, tol: float) -> float:
 
 
 def highest(p: Array, degree: int, end: float, known: float) -> tuple[float, float]:
-    """Largest value in [0, end], end being 1 at most, of the polynomial in row 0, and its place, if it is
-    above one that is `known`; else that and -1.
+    """Return the largest value of the polynomial in row 0 over [0, end], with `end` at most 1, and where it
+    occurs.  If that value is not above `known`, return `known` and -1.
     """
     best, where = known, -1.0
     far = size(p, POLYNOMIAL, degree)

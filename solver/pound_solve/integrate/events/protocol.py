@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-#: points before another law's event at which the event function of a contact is evaluated
+#: points before the event of another law at which a contact's event function is evaluated
 CONTACT_SAMPLES = 9
 
 
@@ -21,9 +21,9 @@ class LocatedEvent(NamedTuple):
     ----------
     law : int
     event_index : int
-        Which event function of the law's present branch.
+        Index of the event function on the law's present branch.
     time : float
-        Since the start of the window or step that was searched [T]; of a series in lengths of its step.
+        Time since the start of the searched window or step [T]; for a series, in lengths of its step.
     """
 
     law: int
@@ -32,11 +32,11 @@ class LocatedEvent(NamedTuple):
 
 
 def earlier(first: LocatedEvent, law: int, event_index: int, at: float) -> LocatedEvent:
-    """The `first` event, or one of `law` at the time `at`, not negative, if that is before."""
+    """Return `first`, or the event of `law` at the time `at` if `at` is not negative and earlier."""
     sooner = at >= 0.0 and (first.law < 0 or at < first.time)
     return LocatedEvent(law, event_index, at) if sooner else first
 
 
 def no_event(end: float) -> LocatedEvent:
-    """No event up to the time `end`: law -1, for compiled code, which needs one type."""
+    """Return an event with law -1: none up to the time `end`.  Compiled code needs one type."""
     return LocatedEvent(-1, -1, end)

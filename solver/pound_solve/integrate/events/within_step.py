@@ -1,4 +1,4 @@
-"""Kernels that locate an event within a step, by the values and slopes of its function at both ends."""
+"""Kernels that locate an event within a step from the values and slopes of its function at both ends."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from pound_solve.integrate.kernels.state import Step
 from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 
-#: `EVENT_TOLERANCE` times this: share of their displacements within which bodies that move alike stay
-#: together in steps; each of their events is met to `EVENT_TOLERANCE`
+#: `EVENT_TOLERANCE` times this is the fraction of their displacements within which bodies that move alike
+#: stay together in steps; each of their events is met to `EVENT_TOLERANCE`
 MOVING_ALIKE = 1e3
 SLOPE_ROUNDING = 1e-9  #: fraction of its terms below which a slope is rounding
-#: fraction of its largest rate that a law must move back with before that counts as a reversal
+#: fraction of its largest rate that a law must reach in the other direction to count as reversed
 REVERSE_RATE = 1e-6
 
 
 def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, float]:
-    """Event function `e` of law `i` at deformation `d` and rate `v`, and the magnitude of its terms."""
+    """Return event function `e` of law `i` at deformation `d` and rate `v`, and its terms' magnitude."""
     coefficients, largest = laws.events.coefficients, laws.largest
     on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
-    if on_d == 0.0 and constant == 0.0:  # what hardly moves would reverse again and again
+    if on_d == 0.0 and constant == 0.0:  # a law that hardly moves would reverse repeatedly
         back = max(REVERSE_RATE * largest.rate[i], EVENT_TOLERANCE * largest.terms[i])
         constant = -abs(on_v) * back
     size = abs(on_d) * largest.deformation[i] + abs(on_v) * largest.rate[i] + abs(constant)
@@ -31,7 +31,7 @@ def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, 
 
 
 def start_value(laws: Laws, i: int, e: int) -> float:
-    """Event function `e` of law `i` at the start of the step."""
+    """Return event function `e` of law `i` at the start of the step."""
     g = event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
     if laws.friction.normal_law[i] < 0:
         return g
@@ -40,17 +40,17 @@ def start_value(laws: Laws, i: int, e: int) -> float:
 
 
 def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
-    """Event function at the start of the step, for an interpolation; NaN where its slope there is negative.
+    """Return the event function at the start of the step for interpolation, NaN if its slope is negative.
 
-    Just after an event the event function of a law that moves on is still close to zero: an interpolation
-    would mistake a return to that event, late in the step, for an event at its start.
+    Just after an event, the event function of a law that moves away from it is still close to zero.  An
+    interpolation would mistake a return to that event late in the step for an event at its start.
     """
     return np.nan if all_slopes(laws, step, i, e)[0] < 0.0 else start_value(laws, i, e)
 
 
 def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
-    """Slopes of event function `e` of law `i` at both ends of the trial step, without the terms from
-    accelerations and, for events of the rate alone, without the change of their limit.
+    """Return the slopes of event function `e` of law `i` at both ends of the trial step, without the terms
+    of accelerations and, for events of the rate alone, without the change of their limit.
     """
     friction = laws.friction
     on_d = laws.events.coefficients[i, e, 0]
@@ -64,7 +64,7 @@ def slopes(laws: Laws, i: int, e: int) -> tuple[float, float]:
 
 
 def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
-    """Slopes of event function `e` of law `i` at both ends of the trial step, with all their terms."""
+    """Return the slopes of event function `e` of law `i` at both ends of the trial step, with all terms."""
     rows = laws.definition.rows
     s0, s1 = slopes(laws, i, e)
     on_v = laws.events.coefficients[i, e, 1]
@@ -75,12 +75,12 @@ def all_slopes(laws: Laws, step: Step, i: int, e: int) -> tuple[float, float]:
 
 
 def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
-    """First event in a trial step of length `h`; law -1 where there is none (see `no_event`).
+    """Return the first event in a trial step of length `h`, with law -1 if there is none (see `no_event`).
 
-    Its time is found from the cubic through values and slopes at both ends, for an event of the rate from
-    the straight line.  An event of a contact counts beside one of another law only if its event function is
-    clearly above zero before that: bodies that move alike only seem to meet in a trial step in which a
-    hinge of one has yielded, and that of the other has not yet.
+    The time follows from the cubic through values and slopes at both ends; for an event of the rate, from
+    the straight line.  If another law has an event, an event of a contact counts only if its event function
+    is clearly above zero before that.  Otherwise bodies that move alike would seem to meet in a trial step
+    in which a hinge of one has yielded and that of the other has not.
     """
     definition = laws.definition
     first = no_event(np.inf)
@@ -99,8 +99,8 @@ def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
 
 
 def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool:
-    """Whether the cubic of event function `e` of law `i` in the step of length `h` exceeds rounding at a
-    point before the time `t`.
+    """Return whether the cubic of event function `e` of law `i` in the step of length `h` exceeds rounding
+    at a point before the time `t`.
     """
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
     s0, s1 = all_slopes(laws, step, i, e)
@@ -115,7 +115,7 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
 
 
 def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
-    """Time of event `e` of law `i` in the trial step; infinite where there is none."""
+    """Return the time of event `e` of law `i` in the trial step, infinite if there is none."""
     on_d, on_v = laws.events.coefficients[i, e, 0], laws.events.coefficients[i, e, 1]
     if on_d == 0.0 and on_v == 0.0:
         return np.inf
@@ -125,7 +125,7 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
         return np.inf
     s0, s1 = all_slopes(laws, step, i, e)
-    g0 = min(start_value(laws, i, e), 0.0)  # a branch holds when it is entered
+    g0 = min(start_value(laws, i, e), 0.0)  # a branch is valid when it is entered
     # accelerations of massless unknowns would mislead
     if g1 > tol and g0 < 0.0 and on_d == 0.0:
         return h * g0 / (g0 - g1)

@@ -1,1 +1,1 @@
-"""The exact motion of a linear subsystem: its first-order form, and what propagates it."""
+"""The exact motion of a linear subsystem: its first-order form and its propagators."""

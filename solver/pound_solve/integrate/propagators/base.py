@@ -3,9 +3,9 @@ r"""Propagators: the exact motion of a linear subsystem under piecewise-polynomi
 .. math:: \dot q = A q + \sum_k g_k t^k, \qquad u = \mathrm{Re}(U q) + u_p p, \qquad
    v = \mathrm{Re}(V q) + v_p p + u_p \dot p
 
-`Propagator` states what every propagator offers.  A `ModalPropagator` has A diagonal; where the complex
-modes do not span the space (critical damping, repeated defective eigenvalues) a `SeriesPropagator` sums the
-exponential series of the state matrix instead, exact to rounding as well, only slower.
+`Propagator` is the common interface.  A `ModalPropagator` has a diagonal A.  If the complex modes do not
+span the space (critical damping, repeated defective eigenvalues), a `SeriesPropagator` sums the exponential
+series of the state matrix instead; it is also exact to rounding, but slower.
 
 References
 ----------
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics.types import Array
 
-TAYLOR_TERMS = 22  #: of a Taylor series over 1 / (spectral radius): 1/22! is 1e-21
+TAYLOR_TERMS = 22  #: terms of a Taylor series over 1 / (spectral radius): 1/22! is 1e-21
 
 #: k! m! / (k + m + 1)!: contribution of a force t^k to the Taylor coefficient of order k + m + 1, as a
 #: factor of the m-th of `Propagator._taylor_rows`
@@ -73,21 +73,21 @@ class Propagator(ABC):
 
     @abstractmethod
     def forcing(self, input_coefs: Array, constant: Array) -> NDArray[Any]:
-        """Return the forcing g of q, shape (..., degree + 1, n_q), by input polynomials
+        """Return the forcing g of q, shape (..., degree + 1, n_q), for input polynomials
         (..., degree + 1, n_inputs) and a constant load (n,).
         """
 
     @abstractmethod
     def load_forcing(self, p: Array) -> NDArray[Any]:
-        """Return the forcing g of q by load polynomials, shape (..., degree + 1, n)."""
+        """Return the forcing g of q for load polynomials, shape (..., degree + 1, n)."""
 
     @abstractmethod
     def integral(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
         """Return the integral of q over (0, t)."""
 
     def march(self, q: NDArray[Any], gs: NDArray[Any], lengths: Array) -> NDArray[Any]:
-        """Return q at the ends of successive intervals of some `lengths`,
-        shape (n_q, n + 1), the start included.
+        """Return q at the ends of successive intervals with the given `lengths`, shape (n_q, n + 1), the
+        start included.
 
         `gs`, shape (n, degree + 1, n_q), holds the forcing of each interval about its own start.
         """
@@ -98,8 +98,8 @@ class Propagator(ABC):
 
     @abstractmethod
     def derivative_bounds(self, qs: NDArray[Any], gs: NDArray[Any], lengths: Array) -> Array:
-        """Return bounds of the second and third derivatives of q over intervals of some `lengths` with
-        starts `qs` (n_q, n), shape (2, n_q, n); infinite where none is known.
+        """Return bounds of the second and third derivatives of q over intervals with the given `lengths`
+        and starts `qs` (n_q, n), shape (2, n_q, n); infinite where none is known.
         """
 
     @abstractmethod
@@ -114,20 +114,20 @@ class Propagator(ABC):
 
     @abstractmethod
     def rate_rows(self, rows: NDArray[Any]) -> NDArray[Any]:
-        """Return ``rows A``, shape of `rows`: with the rows themselves on the forcing g they give the rate
-        of ``rows q``.
+        """Return ``rows A``, of the shape of `rows`: the rate of ``rows q`` is ``rows A q`` plus `rows`
+        times the forcing g.
         """
 
     def taylor(self, row: NDArray[Any], q: NDArray[Any], g: NDArray[Any], h: float) -> Array:
         """Return the coefficients of ``Re(row q(h x))`` in powers of x, shape (TERMS,), for x up to 1.
 
-        `q` and `g` are those of the start, and `h` is at most 1 / `spectral_radius`;
-        by :math:`q^{(m+1)} = A q^{(m)} + g^{(m)}`.
+        `q` and `g` are those of the start, and `h` is at most 1 / `spectral_radius`.  The recurrence is
+        :math:`q^{(m+1)} = A q^{(m)} + g^{(m)}`.
         """
         rows = self._taylor_rows(row, h)
         coefs: Array = (rows @ q).real
         for k, force in enumerate(g):
-            # t^k enters at the power k + 1, and each derivative of q carries it one further
+            # t^k enters at the power k + 1, and each derivative of q raises it by one
             coefs[k + 1 :] += h ** (k + 1) * _FORCE_FACTORS[k] * (rows[: TAYLOR_TERMS - k - 1] @ force).real
         return coefs
 
@@ -137,7 +137,7 @@ class Propagator(ABC):
 
     @abstractmethod
     def trajectories(self, qs: NDArray[Any], gs: NDArray[Any], times: Array) -> NDArray[Any]:
-        """Return q at rising `times` of several intervals with starts `qs` (n_q, n) and forcing `gs`
+        """Return q at ascending `times` of several intervals with starts `qs` (n_q, n) and forcing `gs`
         (n, degree + 1, n_q), shape (n_q, n, n_times).
         """
 
@@ -148,15 +148,15 @@ class Propagator(ABC):
 
 
 def real_parts(x: NDArray[Any], axis: int = 0) -> Array:
-    """Return states, or anything that multiplies them, as real numbers: along an axis the real parts, then
-    the imaginary ones.
+    """Return states, or factors of states, as real numbers: the real parts along an axis, followed by the
+    imaginary parts.
     """
     return np.concatenate([x.real, x.imag], axis) if np.iscomplexobj(x) else x
 
 
 def real_rows(rows: NDArray[Any]) -> Array:
-    """Return rows that act on `real_parts` of a state as ``Re(rows q)``: half the work of a complex
-    product.
+    """Return real rows whose product with `real_parts` of a state q is ``Re(rows q)``, at half the work of
+    a complex product.
     """
     return np.concatenate([rows.real, -rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
@@ -171,7 +171,7 @@ _X, _W = 0.5 * (_X + 1.0), 0.5 * _W
 
 
 def gauss(t: float, spectral_radius: float) -> tuple[Array, Array]:
-    """Weights and points on (0, t) for modes up to `spectral_radius` and their products."""
+    """Return Gauss weights and points on (0, t) for modes up to `spectral_radius` and their products."""
     cells = max(1, int(np.ceil(t * spectral_radius / 4.0)))
     width = t / cells
     return np.tile(_W * width, cells), (np.arange(cells)[:, None] * width + _X * width).ravel()

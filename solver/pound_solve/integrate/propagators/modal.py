@@ -5,8 +5,8 @@ The complex modes :math:`q` of the state matrix are uncoupled,
 
 .. math:: q_i(t) = e^{\lambda_i t} q_i(0) + \sum_k g_{ik}\, t^{k+1} K_k(\lambda_i t)
 
-(:mod:`~pound_solve.numerics.phi`).  Undamped rigid-body modes are polynomials and are kept apart, so that
-the double eigenvalue zero of a plastic storey needs no special care.
+(:mod:`~pound_solve.numerics.phi`).  Undamped rigid-body modes are polynomials and are kept separate, so
+that the double zero eigenvalue of a plastic storey needs no special treatment.
 
 References
 ----------
@@ -27,19 +27,19 @@ from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex, Index
 
-MAX_TABLES = 64  #: lengths of intervals whose responses are kept
+MAX_TABLES = 64  #: interval lengths whose responses are kept
 MIN_SAMPLES = 16  #: samples of a table of responses, at least
 
 
 class ModalPropagator(Propagator):
-    """Motion in complex modes; of each conjugate pair one is kept, with double weight.
+    """Motion in complex modes; one mode of each conjugate pair is kept, with double weight.
 
     Attributes
     ----------
     eigenvalues : ndarray of complex, shape (n_q,)
-        Of the modes, then zeros: displacements of the rigid-body modes and their velocities.
+        Those of the modes, then zeros for displacements and velocities of the rigid-body modes.
     rigid_u, rigid_v : ndarray of int, shape (n_rigid,)
-        Places of those displacements and velocities in q.
+        Indices of those displacements and velocities in q.
     rigid_scale : ndarray, shape (n_rigid,)
         Rate of the displacement for a unit of velocity.
     """
@@ -79,7 +79,7 @@ class ModalPropagator(Propagator):
         self._clear_tables()
 
     def _solve(self, a: Array) -> tuple[Complex, Complex, Complex]:
-        """Eigenvalues with positive imaginary part or none, their weighted modes, and the rows that give q;
+        """Return the eigenvalues with imaginary part >= 0, their weighted modes, and the rows that give q;
         set `condition` and `residual`.
         """
         if len(a):
@@ -91,8 +91,8 @@ class ModalPropagator(Propagator):
         keep = eigenvalues.imag >= 0.0
         eigenvalues, modes = eigenvalues[keep], modes[:, keep]
         paired = eigenvalues.imag > 0.0
-        # inverted as real and imaginary parts: a complex inverse keeps pairs conjugate only to rounding,
-        # which near critical damping costs the condition twice over
+        # real and imaginary parts are inverted: a complex inverse keeps pairs conjugate only to rounding,
+        # which near critical damping multiplies the error by the condition number twice
         parts = np.hstack([modes.real, modes.imag[:, paired]])
         inverse = np.linalg.inv(parts)
         rows = inverse[: len(eigenvalues)].astype(complex)
@@ -153,15 +153,15 @@ class ModalPropagator(Propagator):
         return total
 
     def _responses(self, t: NDArray[Any], degree: int) -> tuple[Complex, Complex]:
-        """Responses at times `t` to a unit of q, shape (n_q, n_t), and to a unit of each g, shape
-        (degree + 1, n_q, n_t): exponentials and ``t^(k+1) K_k(lambda t)``.
+        """Return the responses at times `t` to a unit of q, shape (n_q, n_t), and to a unit of each g,
+        shape (degree + 1, n_q, n_t): exponentials and ``t^(k+1) K_k(lambda t)``.
         """
         z = self.eigenvalues[:, None] * t
         e = np.exp(z)
         return e, phi.duhamel(z, degree, e) * powers(t, degree + 1)[1:, None, :]
 
     def _table(self, h: float, count: int, degree: int) -> Complex:
-        """`_responses` at 0, h, ..., (count - 1) h, kept, shape (n_q, degree + 2, count)."""
+        """Return `_responses` at 0, h, ..., (count - 1) h, cached, shape (n_q, degree + 2, count)."""
         table = self._tables.get((h, degree))
         if table is None or table.shape[2] < count:
             e, tables = self._responses(h * np.arange(max(count, MIN_SAMPLES)), degree)
@@ -170,7 +170,7 @@ class ModalPropagator(Propagator):
         return table[:, :, :count]
 
     def _single_response(self, t: float, degree: int) -> tuple[Complex, Complex]:
-        """`_responses` at one time, kept if there is room: lengths of intervals recur."""
+        """Return `_responses` at one time, cached if there is room: interval lengths recur."""
         response = self._single.get((t, degree))
         if response is None:
             e, tables = self._responses(np.array([t]), degree)
@@ -205,8 +205,8 @@ class ModalPropagator(Propagator):
         return states
 
     def derivative_bounds(self, qs: Complex, gs: Complex, lengths: Array) -> Array:  # noqa: D102
-        # dq/dt = lambda q + g, and its derivatives likewise: |exp(lambda t)| times their start, and the
-        # most that the derivatives of g can add
+        # dq/dt = lambda q + g, and its derivatives likewise: |exp(lambda t)| times their start, plus the
+        # largest contribution of the derivatives of g
         u, v, g = self.rigid_u, self.rigid_v, gs.transpose(1, 2, 0)
         start = qs
         growth = np.exp(np.maximum(self.eigenvalues.real[:, None], 0.0) * lengths)
@@ -262,7 +262,7 @@ class ModalPropagator(Propagator):
 
 
 def block_diagonal(blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Return matrices along the diagonal of one, zero elsewhere."""
+    """Return a block-diagonal matrix of the given blocks."""
     matrix = np.zeros(np.sum([b.shape for b in blocks], axis=0), np.result_type(*blocks))
     i = j = 0
     for b in blocks:

@@ -1,4 +1,4 @@
-"""Propagator by the exponential series of the state matrix, where the complex modes are defective."""
+"""Propagator by the exponential series of the state matrix, for defective complex modes."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class SeriesPropagator(Propagator):
         return np.array(rows)
 
     def trajectories(self, qs: Array, gs: Array, times: Array) -> Array:  # noqa: D102
-        # from time to time, each as the start of the next
+        # from each time to the next
         states = np.empty((*qs.shape, len(times)))
         for n, (q, g) in enumerate(zip(qs.T, gs)):
             last = 0.0
@@ -71,10 +71,10 @@ class SeriesPropagator(Propagator):
         return q
 
     def _substep(self, q: Array, g: Array, h: float) -> Array:
-        """State after a substep with ``|a| h <= 1``: Taylor series of the solution, term by term."""
+        """Return the state after a substep with ``|a| h <= 1``, by the Taylor series of the solution."""
         term, total, j = q.copy(), q.copy(), 0
         while True:
-            # q^(j+1) / (j+1)! h^(j+1) from q^(j) / j! h^j; the force adds its own Taylor coefficient
+            # q^(j+1) / (j+1)! h^(j+1) from q^(j) / j! h^j; the force adds its Taylor coefficient
             term = h / (j + 1) * (self.space.a @ term)
             if j < len(g):
                 term = term + g[j] * h ** (j + 1) / (j + 1)
@@ -94,7 +94,7 @@ class SeriesPropagator(Propagator):
         return states
 
     def _step_map(self, h: float, degree: int) -> Array:
-        """Matrix of a step for (q, g_0, ..., g_degree), kept, shape (n_q, (degree + 2) n_q)."""
+        """Return the matrix of a step for (q, g_0, ..., g_degree), cached, (n_q, (degree + 2) n_q)."""
         key = (h, degree)
         if key not in self._maps:
             size = len(self.space.a)

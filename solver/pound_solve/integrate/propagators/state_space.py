@@ -4,7 +4,7 @@ r"""First-order form of a linear subsystem, massless DOFs eliminated.
 
 The DOFs with mass are written in the undamped modes, :math:`u = \Phi\eta`, with the state
 :math:`z = (\omega\eta, \dot\eta)`, which balances displacement against velocity and leaves a nearly normal
-matrix.  Massless DOFs are eliminated: those that a dashpot moves keep a first-order state, the others
+matrix.  Massless DOFs are eliminated: DOFs on which a dashpot acts keep a first-order state; the others
 follow statically.
 
 References
@@ -21,13 +21,15 @@ import numpy as np
 from pound_solve.numerics.modes import generalised
 from pound_solve.numerics.types import Array, Flags
 
-SLOW_MODES = 1e-3  #: modes with omega^2 below this share of the largest are solved again among themselves
-RIGID_MODE = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
-DEPENDENT = 1e-12  #: singular values of constraints below this share of the largest count as zero
+SLOW_MODES = (
+    1e-3  #: modes with omega^2 below this fraction of the largest are solved again in their subspace
+)
+RIGID_MODE = 1e-14  #: omega^2 below this fraction of the rounding scale (times the size): rigid-body mode
+DEPENDENT = 1e-12  #: singular values of constraints below this fraction of the largest count as zero
 
 
 class Mechanism(Exception):
-    """Massless DOFs without stiffness or dashpot, or whose stiffness is negative (`softens`); `shape` is
+    """Massless DOFs have neither stiffness nor dashpot, or a negative stiffness (`softens`); `shape` is
     their motion over the subsystem's DOFs.
     """
 
@@ -47,7 +49,7 @@ class StateSpace:
     b : ndarray, shape (n_z, n)
     u_z, v_z : ndarray, shape (n, n_z)
     z_u, z_v : ndarray, shape (n_z, n)
-        The state from displacement and velocity, ``z = z_u u + z_v v``.
+        Give the state from displacement and velocity, ``z = z_u u + z_v v``.
     u_p, v_p : ndarray, shape (n, n), or None
         None without massless DOFs.
     rigid : tuple of (int, int)
@@ -89,7 +91,7 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
 
 
 def _without_static_dofs(c: Array, k: Array, with_mass: Flags) -> tuple[Array, Array, Array]:
-    """Eliminate the massless DOFs that no dashpot moves: ``u = keep x + u_p p``, ``x = back u``.
+    """Eliminate the massless DOFs without dashpots: ``u = keep x + u_p p``, ``x = back u``.
 
     x holds the DOFs with mass, then the coordinates of massless DOFs in the range of C.
     """
@@ -121,10 +123,10 @@ def _without_static_dofs(c: Array, k: Array, with_mass: Flags) -> tuple[Array, A
 def _with_relaxing_dofs(
     n_mass: int, m: Array, c: Array, k: Array, keep: Array, u_p: Array, back: Array
 ) -> StateSpace:
-    """First-order form of ``n_mass`` DOFs with mass, then DOFs d that dashpots move without mass.
+    """Return the first-order form for ``n_mass`` DOFs with mass, then massless DOFs d with dashpots.
 
-    ``d' = rate (p_d - C_dh v - K_dh u - K_dd d)`` with ``rate = C_dd^-1`` is put into the equations of the
-    DOFs with mass.  `keep`, `u_p` and `back` relate these DOFs to all of the subsystem (see
+    ``d' = rate (p_d - C_dh v - K_dh u - K_dd d)`` with ``rate = C_dd^-1`` is substituted into the equations
+    of the DOFs with mass.  `keep`, `u_p` and `back` relate these DOFs to all DOFs of the subsystem (see
     `_without_static_dofs`).
     """
     n, n_x, n_damped = len(u_p), len(m), len(m) - n_mass
@@ -138,7 +140,7 @@ def _with_relaxing_dofs(
     omega2, phi = _undamped_modes(m[h, h], k[h, h])
     top = np.abs(omega2).max(initial=0.0)
     scale = np.sqrt(np.where(np.abs(omega2) > 1e-12 * top, np.abs(omega2), min(1.0, top) if top else 1.0))
-    # like the others, displacements of damped massless DOFs are scaled to the root of their energy
+    # displacements of damped massless DOFs are scaled to the root of their energy, like the others
     scale_d = np.sqrt(np.abs(np.diag(k)[d]))
     scale_d[scale_d == 0.0] = 1.0
     rate_z = scale_d[:, None] * rate
@@ -171,7 +173,7 @@ def _with_relaxing_dofs(
 def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
     r"""Return the first-order form of a subsystem with prescribed deformations, ``rows u = x(t)``.
 
-    With :math:`u = T y + W x`, T a basis of what the rows leave free and W their pseudo-inverse,
+    With :math:`u = T y + W x`, where T is a basis of the null space of the rows and W their pseudo-inverse,
 
     .. math:: T^T M T\ddot y + T^T C T\dot y + T^T K T y = T^T (p - K W x - C W\dot x - M W\ddot x)
 
@@ -181,7 +183,7 @@ def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
     ----------
     m, c, k : ndarray, shape (n, n)
     rows : ndarray, shape (n_held, n)
-        They involve DOFs with mass only.
+        Only DOFs with mass occur in them.
 
     Raises
     ------
@@ -220,7 +222,7 @@ def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
 
 
 def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
-    """First-order form of a subsystem all of whose DOFs have mass."""
+    """Return the first-order form of a subsystem all of whose DOFs have mass."""
     n = len(m)
     omega2, phi = _undamped_modes(m, k)
     top = np.abs(omega2).max(initial=0.0)
@@ -229,8 +231,8 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     # separate the undamped modes from the damped ones among the rigid-body modes
     rigid_phi = phi[:, zero_stiffness]
     phi[:, zero_stiffness] = rigid_phi @ np.linalg.eigh(rigid_phi.T @ c @ rigid_phi)[1]
-    # the scale of a rigid mode's displacement is free; that of a diverging one (negative stiffness) is
-    # its rate
+    # the scale of a rigid mode's displacement is arbitrary; that of a diverging mode (negative stiffness)
+    # is its rate
     scale = np.sqrt(np.abs(omega2))
     scale[scale == 0.0] = min(1.0, np.sqrt(top)) if top else 1.0
     damping = phi.T @ c @ phi
@@ -254,15 +256,15 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
 
 
 def _undamped_modes(m: Array, k: Array) -> tuple[Array, Array]:
-    """Squared frequencies and mass-normalised modes of K and a positive definite M.
+    """Return the squared frequencies and mass-normalised modes of K and a positive definite M.
 
-    All squared frequencies carry the rounding of the largest.  The slow modes, orthogonalised against the
-    fast ones, are therefore solved again among themselves: otherwise a node with little mass beside nodes
-    with much would cost the slow modes half their digits.
+    All squared frequencies have the absolute rounding of the largest.  Therefore the slow modes are
+    orthogonalised against the fast ones and solved again in their subspace.  Otherwise a node with little
+    mass beside nodes with much mass would cost the slow modes half their digits.
     """
     omega2, phi = generalised(k, m)
     slow = np.arange(len(omega2))
-    # down to where the stiffness, as assembled, is rounding
+    # down to the rounding of the assembled stiffness
     while len(slow) and np.abs(omega2[slow]).max() > SLOW_MODES * _rounding_scale(phi[:, slow], k).max():
         chosen = np.abs(omega2[slow]) < SLOW_MODES * np.abs(omega2[slow]).max()
         fast, slow = slow[~chosen], slow[chosen]
@@ -276,8 +278,8 @@ def _undamped_modes(m: Array, k: Array) -> tuple[Array, Array]:
 def _are_rigid(omega2: Array, scale: Array) -> Flags:
     """Return which squared frequencies are rounding, given their rounding scale (see `_rounding_scale`).
 
-    The shapes of several rigid-body modes are only known as combinations of each other.  A shape without
-    any stiffness has next to no rounding scale of its own: its rounding is that of the others in the
+    The shapes of several rigid-body modes are known only as linear combinations of each other.  A shape
+    without any stiffness has almost no rounding scale; its rounding is that of the other shapes in the
     combination.
     """
     share, size = RIGID_MODE * len(omega2), np.abs(omega2)
@@ -287,5 +289,5 @@ def _are_rigid(omega2: Array, scale: Array) -> Flags:
 
 
 def _rounding_scale(shapes: Array, k: Array) -> Array:
-    """Sum of the magnitudes of the terms of each shape's quadratic form: its rounding is 1e-16 of it."""
+    """Return the sum of magnitudes of the terms of each shape's quadratic form; 1e-16 of it is rounding."""
     return np.asarray(np.einsum("ri,rs,si->i", np.abs(shapes), np.abs(k), np.abs(shapes), optimize=True))

@@ -1,17 +1,18 @@
 r"""Rigid contacts: impulses of impacts and forces of closed contacts.
 
-With the rows B of the contacts that touch, their rates :math:`w = B v` and the Delassus matrix
-:math:`G = B M^{-1} B^T`, the impulses of an impact without rebound satisfy
+Let B be the rows of the touching contacts, :math:`w = B v` their rates and :math:`G = B M^{-1} B^T` the
+Delassus matrix.  The impulses of an impact without rebound satisfy
 
 .. math:: J \ge 0, \qquad w - G J \le 0, \qquad J^T (w - G J) = 0
 
-a linear complementarity problem with a unique :math:`M^{-1} B^T J`: the velocities nearest to v, in the
-sense of the kinetic energy, in which nothing approaches.  With restitution e the impulses are
+a linear complementarity problem with a unique :math:`M^{-1} B^T J`.  The velocities after it are those
+nearest to v, in the norm of the kinetic energy, at which nothing approaches.  With restitution e the
+impulses are
 :math:`(1+e)J` (Moreau).  Momentum is conserved, and the energy :math:`\tfrac12(1-e^2) J^T w` is lost.
 
-The contact that approaches fastest strikes first, together with all that approach and have its E, which
-preserves symmetry; contacts that approach after that strike next, at the same instant, so that a row of
-equal masses transmits an impact.  Forces of closed contacts follow from the same problem with
+The contact that approaches fastest strikes first, together with all approaching contacts of the same E;
+this preserves symmetry.  Contacts that approach after that strike next, at the same instant, so that a row
+of equal masses transmits an impact.  Forces of closed contacts follow from the same problem with
 accelerations in place of rates.
 
 References
@@ -35,7 +36,7 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 ACCELERATION_ROUNDING = 1e-12  #: fraction of its terms below which an acceleration is rounding
-DISPLACEMENT_SHARE = 0.1  #: fraction of the largest displacement that counts as a term of all
+DISPLACEMENT_SHARE = 0.1  #: fraction of the largest displacement that counts as a term of every unknown
 MAX_IMPACTS = 100_000  #: at one instant
 MAX_PIVOTS = 10_000
 
@@ -44,8 +45,8 @@ LawForces = Callable[[Array, Array], Array]
 
 
 def linear_forces(branches: Sequence[Branch]) -> LawForces:
-    """Forces of laws on linear branches, from their deformations and rates, shape (n_laws,) each, or
-    (n_laws, n_times).
+    """Return a function for the forces of laws on linear branches from their deformations and rates, shape
+    (n_laws,) each, or (n_laws, n_times).
     """
     k, c, f0 = np.array([(b.stiffness, b.damping, b.force0) for b in branches]).reshape(-1, 3).T
     return lambda d, v: np.asarray((d.T * k + v.T * c + f0).T)
@@ -63,7 +64,7 @@ class RigidContacts:
     laws : list of int
     rows : ndarray, shape (n_rigid, n)
     inputs : ndarray, shape (n_rigid, n_inputs)
-        Deformations from the unknowns and the inputs.
+        Deformations as linear functions of the unknowns and the inputs.
     velocity_change : ndarray, shape (n, n_rigid)
         M^-1 B^T: change of the velocities for unit impulses.
     delassus : ndarray, shape (n_rigid, n_rigid)
@@ -102,7 +103,7 @@ class RigidContacts:
         Raises
         ------
         ArithmeticError
-            The pivots do not end.
+            The pivoting does not terminate.
         """
         at = np.flatnonzero(chosen)
         impulse, pressed = np.zeros(len(rates)), np.zeros(len(rates), bool)
@@ -110,7 +111,7 @@ class RigidContacts:
         tolerance[at] = ACCELERATION_ROUNDING * np.abs(rates[at]).max(initial=0.0)
         for _ in range(MAX_PIVOTS):
             # one contact at a time becomes pressed or free, the first that violates its condition: this
-            # scheme ends
+            # scheme terminates
             violated = np.where(
                 pressed,
                 impulse < -tolerance / np.diag(self.delassus),
@@ -134,19 +135,19 @@ class RigidContacts:
         Parameters
         ----------
         rates : ndarray, shape (n_rigid,)
-            Approaching is positive.
+            Positive for approach.
         touching : ndarray of bool, shape (n_rigid,)
         slow : ndarray, shape (n_rigid,)
-            Approaches up to these rates are without rebound.
+            Approach rates up to which there is no rebound.
 
         Raises
         ------
         ArithmeticError
-            The impacts do not end, or `plastic_impulses` finds none.
+            The impacts do not end, or `plastic_impulses` fails.
         """
         impulse, lost = np.zeros(len(rates)), np.zeros(len(rates))
-        # bodies in a row pass on a share of what is left, for ever: where none has moved before, what is
-        # left is compared with the impact itself
+        # bodies in a row pass on a fraction of the remaining rate for ever: if none has moved before, the
+        # remainder is compared with the impact itself
         slow = np.maximum(slow, ACCELERATION_ROUNDING * rates[touching].max(initial=0.0))
         for _ in range(MAX_IMPACTS):
             hit = touching & (rates > slow)
@@ -167,13 +168,12 @@ class RigidContacts:
         self, law_forces: LawForces, u: Array, v: Array, inputs: Array
     ) -> tuple[Array, Array]:
         """Return the second rates of the deformations without contact forces, and the magnitude of their
-        terms, (n_rigid,) each: a share of the magnitude is rounding.  Further axes are instants.
+        terms, (n_rigid,) each.  The rounding is a fraction of the magnitude.  Further axes are instants.
 
         Parameters
         ----------
         law_forces : callable
-            The forces of all laws at their deformations and rates, (n_laws,) each; those of rigid contacts
-            are zero.
+            Forces of all laws at their deformations and rates, (n_laws,) each; zero for rigid contacts.
         u, v : ndarray, shape (n,)
         inputs : ndarray, shape (3, n_inputs)
             Inputs and their first two derivatives.
@@ -192,8 +192,8 @@ class RigidContacts:
                 -system.law_rows.T @ force,
             ]
         )
-        # bodies that move as one cancel in K u, their rounding does not; that of a static state is of the
-        # size of the largest displacement
+        # displacements of bodies that move as one cancel in K u, but their rounding does not; in a static
+        # state it is in proportion to the largest displacement
         u = np.abs(u) + DISPLACEMENT_SHARE * np.abs(u).max(initial=0.0)
         sums = np.abs(terms[:2]).sum(axis=0) + abs(system.law_rows).T @ np.abs(force)
         sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ u
@@ -201,8 +201,8 @@ class RigidContacts:
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 
     def forces(self, closed: Flags, law_forces: LawForces, u: Array, v: Array, inputs: Array) -> Array:
-        """Forces of the contacts that are `closed`, shape (n_rigid,), or (n_rigid, n_times);
-        parameters as of `free_accelerations`.
+        """Return the forces of the `closed` contacts, shape (n_rigid,), or (n_rigid, n_times); other
+        parameters as in `free_accelerations`.
         """
         forces, at = np.zeros((len(closed), *u.shape[1:])), np.flatnonzero(closed)
         free = self.free_accelerations(law_forces, u, v, inputs)[0]
@@ -210,5 +210,5 @@ class RigidContacts:
         return forces
 
     def inverse(self, at: Index) -> Array:
-        """Inverse of G over the contacts `at`; those with dependent rows share evenly."""
+        """Return the inverse of G over the contacts `at`; contacts with dependent rows share evenly."""
         return np.asarray(np.linalg.pinv(self.delassus[np.ix_(at, at)], rcond=ACCELERATION_ROUNDING), float)

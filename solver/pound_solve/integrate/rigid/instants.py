@@ -1,4 +1,4 @@
-"""Rigid contacts of a run at an instant: impacts, closed contacts that open, overlaps at the start."""
+"""Rigid contacts of a run at an instant: impacts, opening of closed contacts, overlaps at the start."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
 
 NO_REBOUND = 1e-6  #: fraction of a contact's fastest rate below which an approach has no rebound
-REBOUND_ROUNDING = 4.0  #: rise of a rebound that is lost in rounding, over that rounding
+REBOUND_ROUNDING = 4.0  #: height of a rebound that is lost in rounding, over that rounding
 START_OVERLAP = 1e-10  #: fraction of its terms beyond which a deformation overlaps at the start
 
 
@@ -43,15 +43,15 @@ class RigidRun(Protocol):
         """Present branches of all laws."""
 
     def law_forces(self, d: Array, v: Array) -> Array:
-        """Forces of all laws on their present branches at deformations `d` and rates `v`, (n_laws,) each;
-        zero for rigid contacts.
+        """Return the forces of all laws on their present branches at deformations `d` and rates `v`,
+        (n_laws,) each; zero for rigid contacts.
         """
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
 
     def add_impact_work(self, put_in: float, lost: Array) -> None:
-        """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
+        """Add the work that moving supports put in at an impact, and the loss of each law, (n_laws,)."""
 
     def stop(self, code: str, why: str) -> Stop:
         """Return the exception that ends the run here."""
@@ -86,10 +86,10 @@ class RigidInstants:
         return np.array([self.run.branches[i].constrains for i in self.contacts.laws], bool)
 
     def begin(self) -> bool:
-        """Stop where rigid bodies overlap at the start; let contacts that are closed then strike, stay
-        closed or open, as their velocities and forces require, and return whether there are rigid contacts.
+        """Start the rigid contacts, and return whether there are any.  Stop if rigid bodies overlap.
+        Contacts that are closed strike, stay closed or open, as their velocities and forces require.
 
-        Their deformations have the rounding of the static displacements.
+        The deformations have the rounding of the static displacements.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class RigidInstants:
         return bool(laws)
 
     def _check_overlap(self) -> None:
-        """Stop where rigid bodies overlap."""
+        """Stop if rigid bodies overlap."""
         x, run = self.contacts, self.run
         d = x.rows @ run.u + x.inputs @ self._inputs()[0]
         size = START_OVERLAP * (np.abs(x.rows) @ np.abs(run.u) + x.gap) + EVENT_TOLERANCE * np.abs(
@@ -118,7 +118,7 @@ class RigidInstants:
             raise run.stop("A505", why)
 
     def impact(self) -> None:
-        """Let the rigid contacts that touch strike, and close or part.
+        """Apply the impacts of the touching rigid contacts, which then close or part.
 
         Raises
         ------
@@ -147,11 +147,11 @@ class RigidInstants:
                 run.transition(law, 0, float(d[i]), float(after[i]))
 
     def _slow(self, inputs: Array) -> Array:
-        """Approach rates up to which there is no rebound, shape (n_rigid,).
+        """Return the approach rates up to which there is no rebound, shape (n_rigid,).
 
-        The last rebounds of a body that comes to rest are lost in the rounding of its deformation: after
-        an approach at v, with the restitution e, it rises by (e v)^2 / 2a, a being the
-        acceleration that brings the body back.
+        The last rebounds of a body that comes to rest are lost in the rounding of its deformation.  After
+        an approach at v with restitution e, the body rises by (e v)^2 / 2a, where a is the acceleration
+        that brings it back.
         """
         x, run = self.contacts, self.run
         pressing = np.maximum(x.free_accelerations(run.law_forces, run.u, run.v, inputs)[0], 0.0)
@@ -167,8 +167,8 @@ class RigidInstants:
         Parameters
         ----------
         spectral_radius : float
-            Where the displacements come from modes that carry the velocities as well: the largest magnitude
-            of their eigenvalues [1/T].
+            Largest magnitude of the eigenvalues [1/T], if displacements and velocities come from the same
+            modes.
 
         Raises
         ------
@@ -178,7 +178,7 @@ class RigidInstants:
         x, run = self.contacts, self.run
         if not x.laws:
             return
-        # a deformation that contact keeps at next to nothing has the rounding of its terms
+        # a deformation that contact keeps near zero has the rounding of its terms
         terms = np.abs(x.rows) @ np.abs(run.u)
         run.largest[0, x.laws] = np.maximum(run.largest[0, x.laws], terms)
         closed = self._closed()

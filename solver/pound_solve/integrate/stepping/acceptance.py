@@ -1,4 +1,4 @@
-"""Acceptance of a tried step: its works are added up, and its end becomes the start of the next step."""
+"""Acceptance of a trial step: its works are added up, and its end becomes the start of the next step."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from pound_solve.structure.corotational import ACROSS, AXIAL, KIND, LENGTH, STRI
 
 
 def add_external_work(sim: Simulation, h: float) -> None:
-    """Add up the work of loads and moved supports over the step, and the loss in dashpots of the structure.
+    """Add the work of loads and moved supports over the step, and the loss in the structure's dashpots.
 
-    `work` is six times the mean power, `loss` three times (see `kernels.work`); where supports move, both
+    `work` is six times the mean power, `loss` three times (see `kernels.work`).  If supports move, both
     are means of the powers at the ends of the step.
     """
     linear, laws, members, works = sim.linear, sim.laws, sim.members, sim.works
@@ -56,7 +56,7 @@ def add_external_work(sim: Simulation, h: float) -> None:
 
 
 def accept_laws(laws: Laws, rules: RuleFunctions, h: float, works: Works) -> None:
-    """Add up the losses in the laws' dashpots and the contacts' impulses; take over the end of the step."""
+    """Add the losses in the laws' dashpots and the contacts' impulses; accept the laws' trial motion."""
     definition, largest = laws.definition, laws.largest
     for i in range(len(definition.rule)):
         d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
@@ -88,7 +88,7 @@ def accept_members(members: Corotational) -> None:
 
 
 def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
-    """Residual of the alpha methods at the end of the step."""
+    """Compute the residual of the alpha methods at the end of the step."""
     one = 1.0 / (1.0 - scheme.alpha_f)
     before, after, residual = step.now.acceleration, step.trial.acceleration, step.residual
     mean, inertia = step.scratch[0], step.scratch[1]
@@ -100,11 +100,11 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
 
 
 def accept_trial(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int) -> None:
-    """Make the end of the trial step the start of the next; count it, if it is longer than the time in
-    which a softening branch gives way.
+    """Make the end of the trial step the start of the next.  Count the step if it is longer than the time
+    in which a softening branch gives way.
 
-    A then has a negative eigenvalue, as the pivots of its `factor` show (Sylvester's law of inertia): along
-    that mode the method moves against the force, the true motion with it.
+    A then has a negative eigenvalue, which shows as a negative pivot of its `factor` (Sylvester's law of
+    inertia).  Along that mode the method moves against the force, but the true motion follows it.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     now, trial = step.now, step.trial

@@ -20,7 +20,7 @@ from pound_solve.integrate.stepping.factor import invalidate_factor, is_valid_fa
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.loading.excitation import CLOCK_ROUNDING
 
-FIRST_PART = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
+FIRST_PART = 1.0 / 32.0  #: fraction of a step taken after a curved contact has touched; it then doubles
 
 
 def change_branch(
@@ -46,7 +46,7 @@ def change_branch(
             invalidate_factor(run)
     force = linear_force(tangent, i, d, v)
     if definition.contact[i] and touches_massless(linear, definition.rows, i):
-        # the dashpot's is only known when the velocities are consistent
+        # the dashpot force is known only after the velocities are made consistent
         force -= tangent.damping[i] * v
     if before != state.branch[i]:
         log_transition(sim, i, before, run.time, force)
@@ -62,10 +62,10 @@ def change_branch(
 
 
 def leaves_independently(sim: Simulation, i: int) -> bool:
-    """Whether a marked law leaves its branch regardless of the laws that have left at this instant.
+    """Return whether a marked law leaves its branch regardless of the laws that have left at this instant.
 
-    A law reverses according to its acceleration, which another law on the same mass changes; `step.marked`
-    holds the unknowns of the laws that have left.
+    A law reverses according to its acceleration, which another law on the same mass changes.
+    `step.marked` flags the unknowns of the laws that have left.
     """
     laws = sim.laws
     rows = laws.definition.rows
@@ -80,8 +80,8 @@ def leaves_independently(sim: Simulation, i: int) -> bool:
 def change_branches(
     sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, event: LocatedEvent
 ) -> None:
-    """Let a law leave its branch, and those that are marked, and make the state consistent, unless a force
-    is lost: joints must move first.
+    """Change the branch of the law of an event and of the marked laws, then make the state consistent.  If
+    a force is lost, the state is left as it is, because joints must move first.
     """
     laws, step, run = sim.laws, sim.step, sim.run
     definition, rows, events = laws.definition, laws.definition.rows, laws.events
@@ -108,8 +108,8 @@ def change_branches(
 def resume_after_jump(sim: Simulation, rules: RuleFunctions) -> None:
     """Make the state consistent after a jump, and keep the motion for the envelopes.
 
-    Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant
-    itself counts as one before.
+    If a load has jumped at that instant, the motion is stored with a time just after it, because a motion
+    at the instant itself counts as one before the jump.
     """
     run = sim.run
     make_consistent(sim)

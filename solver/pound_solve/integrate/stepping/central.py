@@ -1,7 +1,7 @@
 r"""CENTRAL: explicit central differences, events located within the step.
 
-Newmark's :math:`\beta = 0`, :math:`\gamma = \tfrac12` is the central difference method
-with a start of its own.  It is stable for :math:`h < 2/\omega_{max}`; the limit is computed
+Newmark's method with :math:`\beta = 0`, :math:`\gamma = \tfrac12` is the central difference method
+with a different start.  It is stable for :math:`h < 2/\omega_{max}`.  The limit is computed
 with every contact pressed and every other law on its steepest branch; a longer step is refused.
 
 References
@@ -29,9 +29,9 @@ from pound_solve.structure.reduction import ReducedSystem
 
 
 def limit(system: ReducedSystem, u: Array) -> float:
-    """Largest stable step [T]: 2 over the highest frequency with all contacts pressed and all other laws on
-    their steepest branches, members as they are at displacements `u`.  The stiffness of a curved contact is
-    not known before it is pressed: it is left out.
+    """Return the largest stable step [T]: 2 over the highest frequency with all contacts pressed, all other
+    laws on their steepest branches, and the members' tangents at displacements `u`.  Curved contacts are
+    left out, because their stiffness is not known before they are pressed.
     """
     laws = system.structure.laws
     stiffest = [0.0 if s.role.collides and s.law.curved else s.steepest for s in laws]

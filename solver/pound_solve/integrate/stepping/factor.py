@@ -1,4 +1,4 @@
-"""The factor of A, the effective mass of a step, made anew or updated as a law changes its tangent.
+"""Factorisation of A, the effective mass of a step, and its update when a law changes its tangent.
 
 `factor` is a row of `Step.factors`: `WHOLE` or `PART`.
 """
@@ -9,7 +9,7 @@ from pound_solve.integrate.kernels.effective_mass import factorise_effective_mas
 from pound_solve.integrate.kernels.state import Run, Scheme, Simulation
 from pound_solve.numerics.ldl import update
 
-MAX_UPDATES = 200  #: updates of rank one before a factor is made anew
+MAX_UPDATES = 200  #: rank-one updates before A is factorised again
 
 
 def factorise_step(sim: Simulation, scheme: Scheme, h: float, factor: int) -> int:
@@ -19,17 +19,17 @@ def factorise_step(sim: Simulation, scheme: Scheme, h: float, factor: int) -> in
 
 
 def invalidate_factor(run: Run) -> None:
-    """Let the factor of the nominal step be made anew before its next use."""
+    """Mark the factor of the nominal step as invalid, so that A is factorised again before its next use."""
     run.updates = MAX_UPDATES + 1
 
 
 def is_valid_factor(run: Run) -> bool:
-    """Whether the factor of the nominal step is valid, and updated seldom enough."""
+    """Return whether the factor of the nominal step is valid and has had few enough updates."""
     return run.updates <= MAX_UPDATES
 
 
 def update_factor(sim: Simulation, i: int, change: float, factor: int) -> bool:
-    """Add ``change b b^T`` of law `i` to a factor; False where it must be made anew."""
+    """Add ``change b b^T`` of law `i` to a factor; return False if A must be factorised again."""
     step = sim.step
     rows = sim.laws.definition.rows
     if change == 0.0 or rows.pointers[i] == rows.pointers[i + 1]:

@@ -1,4 +1,4 @@
-r"""HHT: a method of Newmark's family that damps high frequencies and keeps second order.
+r"""HHT: a method of Newmark's family that damps high frequencies and keeps second-order accuracy.
 
 With :math:`-\tfrac13 \le \alpha \le 0`: :math:`\beta = (1-\alpha)^2/4`, :math:`\gamma = \tfrac12 - \alpha`,
 and all forces but inertia taken at :math:`(1+\alpha)` of the step.

@@ -1,7 +1,7 @@
-"""The loop of the step-by-step methods: from goal to goal in equal steps, which end at events or pass them.
+"""The loop of the step-by-step methods: equal steps from goal to goal, cut at events or not.
 
-Everything here works on named arrays in the order of elimination (see `kernels.state`, `numerics.ldl`), and
-`jit` compiles it.
+All functions work on named arrays in the order of elimination (see `kernels.state`, `numerics.ldl`), and
+`jit` compiles them.
 """
 
 from __future__ import annotations
@@ -54,16 +54,16 @@ from pound_solve.integrate.stepping.step import try_step
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array, Index
 
-#: outcomes of a step through events; it must be solved again with new tangents, or be cut at its events;
-#: FAILED: its matrix is singular
+#: outcomes of a step through events: solved; to be solved again with new tangents; to be cut at its events;
+#: failed, because its matrix is singular
 SOLVED, SOLVE_AGAIN, CUT, FAILED = range(4)
 MAX_BRANCHES = 100  #: branches that a law may pass in a step that is not cut
 MAX_SOLUTIONS = 50  #: of such a step, before it is cut
 
 
 def drive_law(sim: Simulation, rules: RuleFunctions, i: int) -> bool:
-    """Drive law `i` along a straight path from its start in the step to its end, through the branches on
-    the way; False where it loses a force on the way that holds a joint without mass.
+    """Drive law `i` along a straight path from the start of the step to its end, through all branches on
+    the way.  Return False if it loses a force on the way that holds a joint without mass.
     """
     laws = sim.laws
     d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
@@ -83,13 +83,13 @@ def drive_law(sim: Simulation, rules: RuleFunctions, i: int) -> bool:
 
 
 def drive_laws(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float) -> int:
-    """Drive the laws that pass an event to the end of the step, and update the factor.
+    """Drive all laws that pass an event to the end of the step, and update the factor.
 
     Returns
     -------
     int
-        SOLVED where no law has changed, SOLVE_AGAIN where one has, CUT where a law loses a force on the
-        way that holds a joint without mass, or FAILED.
+        SOLVED if no law has changed branch, SOLVE_AGAIN if one has, CUT if a law loses a force on the way
+        that holds a joint without mass, or FAILED.
     """
     laws, run = sim.laws, sim.run
     tangent = laws.tangent
@@ -127,14 +127,15 @@ def drive_laws(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float) 
 def step_through(
     sim: Simulation, rules: RuleFunctions, scheme: Scheme, piece: Piece, length: float, tried: bool
 ) -> int:
-    """Advance by `length` without cutting the step at events: iterate until the step agrees with the laws
-    at its end, each driven along a straight path from its start; `tried`: the first trial step is made
-    already.
+    """Advance by `length` without cutting the step at events.
+
+    The step is solved repeatedly until it agrees with the laws at its end, each driven along a straight
+    path from its start.  `tried` means that the first trial step has been made.
 
     Returns
     -------
     int
-        SOLVED, CUT where the step must be cut at its events, or FAILED.
+        SOLVED, CUT if the step must be cut at its events, or FAILED.
     """
     laws, run = sim.laws, sim.run
     definition = laws.definition
@@ -170,7 +171,7 @@ def step_through(
 
 
 def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
-    """Whether a law passes an event in the step that was tried."""
+    """Return whether a law passes an event in the trial step."""
     if scheme.locate:
         return first_event(laws, step, h).law >= 0
     for i in range(len(laws.definition.rule)):
@@ -188,7 +189,7 @@ def plain_steps(
     Returns
     -------
     bool
-        Whether it stopped at a step that is tried, but not accepted, because a law leaves its branch.
+        Whether the last step was tried but not accepted, because a law leaves its branch.
     """
     run = sim.run
     while run.step < last and is_valid_factor(run) and run.longest_part >= h:
@@ -207,8 +208,8 @@ def plain_steps(
 
 
 def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
-    """Copy the present excitation before the first step towards a goal; make the state
-    consistent where a load jumps, and with it the acceleration.
+    """Copy the present excitation before the first step towards a goal.  If a load jumps, make the state
+    and its acceleration consistent.
     """
     run = sim.run
     if run.step > 0:
@@ -216,7 +217,7 @@ def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
     now, load = sim.step.now, sim.step.scratch[0]
     evaluate_inputs(piece.coefs, run.time - piece.begin, now.inputs, now.input_rates)
     form_load(sim.linear, now.inputs, load)
-    # the acceleration of an alpha method lags behind: after much shorter steps, as through a spike of the
+    # the acceleration of an alpha method lags behind: after much shorter steps, as during a spike of the
     # load, the lag would act for too long
     jumps = scheme.alpha_f + scheme.alpha_m != 0.0 and h > 2.0 * run.factor_length > 0.0
     for i in range(len(load)):
@@ -230,9 +231,7 @@ def begin_goal(sim: Simulation, scheme: Scheme, piece: Piece, h: float) -> None:
 
 
 def refresh_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
-    """Factorise A for steps of length `h`, if the present factor is for another, or was updated too
-    often.
-    """
+    """Factorise A for steps of length `h`, unless the present factor is valid for them."""
     run = sim.run
     if run.factor_length == h and is_valid_factor(run):
         return DONE
@@ -245,7 +244,7 @@ def refresh_factor(sim: Simulation, scheme: Scheme, h: float) -> int:
 
 
 def end_goal(sim: Simulation, rules: RuleFunctions, sampled: bool) -> int:
-    """Take a sample at a goal; RUNAWAY where the kinetic energy is far above what was put in."""
+    """Take a sample at a goal; return RUNAWAY if the kinetic energy is far above the energy put in."""
     step, run = sim.step, sim.run
     kinetic, velocity, momentum = 0.0, step.now.velocity, step.scratch[0]
     multiply(sim.linear.mass, velocity, momentum)
@@ -273,8 +272,8 @@ def take_steps(
     count: int,
     most: int,
 ) -> int:
-    """Take `most` plain steps of the `count` up to the time `goal`, or fewer and one that needs more than a
-    plain step: the rest of a step after joints have moved, or one that events cut.
+    """Take up to `most` of the `count` steps to the time `goal`.  They are plain steps, except the last,
+    which may be the rest of a step after joints have moved, or a step that events cut.
     """
     run = sim.run
     outcome, tried = CUT, False
@@ -285,7 +284,7 @@ def take_steps(
         last = min(count - 1, run.step + most)
         first, fresh = run.step, run.updates == 0
         tried = plain_steps(sim, rules, scheme, piece, h, last)
-        # iterations that fail from a new factor on would fail again: the step is taken in parts
+        # iterations that fail with a new factor would fail again: the step is taken in parts
         used_up = not is_valid_factor(run) and (run.step > first or not fresh)
         if not tried and (run.step == last < count - 1 or used_up):
             return DONE
@@ -297,7 +296,7 @@ def take_steps(
     if outcome == FAILED:
         return SINGULAR
     why = DONE
-    if outcome == CUT:  # cut at its events a step always has a solution
+    if outcome == CUT:  # a step that is cut at its events always has a solution
         why = step_in_parts(sim, rules, scheme, piece, length, h, tried)
     if why == DONE:
         run.step += 1
@@ -315,15 +314,15 @@ def advance(
     ----------
     goals : Goals
     steps, lengths : ndarray, shape (n_goals,)
-        Number of the steps up to each goal, and their length.
+        Number of steps up to each goal, and their length [T].
 
     Returns
     -------
     int
-        DONE, BUFFERS_FULL, or what is wrong (see `kernels.state`).
+        DONE, BUFFERS_FULL, or the reason for a stop (see `kernels.state`).
     """
     buffers, run = sim.buffers, sim.run
-    # one step may log at most half the buffer (TOO_MANY_EVENTS beyond): as much is free before it
+    # one step may log at most half the buffer (TOO_MANY_EVENTS beyond), so half is free before each step
     room, pause = len(buffers.log) // 2, next_pause(sim.step, run)
     if run.started == 0:
         take_first_sample(sim, rules)
@@ -333,7 +332,7 @@ def advance(
         begin_goal(sim, scheme, piece, h)
         while run.step < steps[goal]:
             crowded = len(buffers.log) - run.n_transitions < room or run.n_ties > len(buffers.ties) // 2
-            # steps whose motion has room, for one step may be cut into many parts
+            # steps whose motion has room: one step may be cut into many parts
             more = len(buffers.motion_time) // 2 - run.n_motions
             if crowded or more <= 0 or run.steps >= pause:
                 return BUFFERS_FULL

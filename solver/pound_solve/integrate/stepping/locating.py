@@ -33,8 +33,8 @@ MAX_INTERPOLATIONS = 12  #: trials by interpolation; bisection follows
 class Bracket(NamedTuple):
     """Times of a step between which an event function rises through zero, and its values there.
 
-    Up to `low` there is no event, at `high` one is passed, and `third` was tried before.  A value is NaN
-    where the function belongs to another event, or no trial was made.
+    No event occurs up to `low`; one is passed at `high`; `third` is an earlier trial.  A value is NaN
+    if the function belongs to another event, or no trial was made.
     """
 
     low: float
@@ -46,14 +46,16 @@ class Bracket(NamedTuple):
 
 
 def narrowed_bracket(b: Bracket, tau: float, g: float, passed: bool) -> Bracket:
-    """The bracket after a trial at `tau`, where the event function is `g`, and the event passed or not."""
+    """Return the bracket after a trial at `tau`, where the event function is `g`; `passed` tells whether
+    the event is passed there.
+    """
     if passed:
         return Bracket(b.low, tau, b.high, b.g_low, g, b.g_high)
     return Bracket(tau, b.high, b.low, g, b.g_high, b.g_low)
 
 
 def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
-    """Time of the next trial: by interpolation from the end that is nearer to the event."""
+    """Return the time of the next trial, interpolated from the end that is nearer to the event."""
     if passed and np.isnan(b.g_low):
         tau = guess
         if not np.isnan(b.g_third):
@@ -70,21 +72,22 @@ def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
 def search_verdict(
     b: Bracket, g: float, size: float, tau: float, guess: float, passed: bool, last: bool, h: float
 ) -> int:
-    """Result of a search at `tau`: MET at an event, NONE where there is none, or GO_ON; `size` is the
-    magnitude of the event function's terms.
+    """Return the result of a search at `tau`: MET at an event, NONE if there is none, or GO_ON.  `size` is
+    the magnitude of the event function's terms.
     """
     if abs(g) <= EVENT_TOLERANCE * size or last or 0.0 <= tau - guess <= SAME_INSTANT_OF_STEP * h:
         # no event after all: rates of massless unknowns may mislead
         return NONE if not passed and abs(g) > NEARLY_MET * size else MET
-    # up to here there is no event; the rest of the step may have one
+    # there is no event up to here; the rest of the step may have one
     return NONE if not passed and b.g_high <= 0.0 else GO_ON
 
 
 def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) -> None:
-    """Mark the laws that pass an event at the instant of the one located, in `laws.events.pending`.
+    """Mark in `laws.events.pending` the other laws that pass an event at the instant of the located one.
 
-    The part in which they do was tried with length `tried`, NaN where that failed, and is not accepted yet.
-    Rates of unknowns without mass and the forces of friction jump there: then one law leaves at a time.
+    The part of the step that ends there was tried with length `tried` (NaN if the trial failed) and is not
+    accepted yet.  If rates of unknowns without mass or forces of friction jump there, one law leaves at a
+    time.
     """
     laws = sim.laws
     events = laws.events
@@ -106,22 +109,22 @@ def locate_event(
     h: float,
     event: LocatedEvent,
 ) -> tuple[int, LocatedEvent]:
-    """Shorten a step in which events are passed to the first of them.
+    """Shorten a step that passes events so that it ends at the first.
 
     Parameters
     ----------
     length, h : float
-        Its length as it was tried, and the nominal one.
+        Length of the trial step, and of the nominal step [T].
     event : LocatedEvent
         Result of `first_event`.
 
     Returns
     -------
     why : int
-        DONE or what failed.
+        DONE or the reason for failure.
     event : LocatedEvent
-        Law -1 where none is met after all; its time is the length that was tried last, or 0 where it is met
-        at once.  Others at this instant are marked, see `mark_others`.
+        Law -1 if no event is met after all.  Its time is the length that was tried last, or 0 if the event
+        is met at once.  Other events at this instant are marked, see `mark_others`.
     """
     laws, step, begin = sim.laws, sim.step, sim.run.time - piece.begin
     law, index, tau = event.law, event.event_index, event.time
@@ -145,7 +148,7 @@ def locate_event(
         if not try_step(sim, rules, scheme, piece.coefs, begin + tau, tau, PART):
             if last:
                 return NOT_CONVERGED, event
-            # at `high` there was a solution: look for the event nearer to it
+            # a solution exists at `high`: the next trial is nearer to it
             restore_start_tangents(sim, rules)
             b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
             continue

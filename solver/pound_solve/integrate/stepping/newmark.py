@@ -17,7 +17,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     Raises
     ------
     Stop
-        Parameters that are not stable, too many changes in a step, or numbers beyond all bounds.
+        The parameters are not stable, a step has too many changes, or numbers overflow.
     """
     beta, gamma = options.get("BETA", 0.25), options.get("GAMMA", 0.5)
     if not 2 * beta >= gamma >= 0.5:

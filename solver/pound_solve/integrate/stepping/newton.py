@@ -1,6 +1,6 @@
 """Newton's iterations for the acceleration at the end of a step.
 
-Curved laws and corotational members are linearised anew until their forces agree with their tangents.
+Curved laws and corotational members are linearised again until their forces agree with their tangents.
 Without them the equations are linear, and one solution is enough.
 """
 
@@ -27,13 +27,13 @@ from pound_solve.integrate.stepping.factor import factorise_step, invalidate_fac
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.ldl import solve as solve_factored
 
-CONVERGED = 1e-12  #: largest deviation of a curved law's force from its tangent, as a share of the force
-POOR_CONVERGENCE = 0.05  #: part of an error that an iteration may leave before the factor is made anew
+CONVERGED = 1e-12  #: largest deviation of a curved law's force from its tangent, as a fraction of the force
+POOR_CONVERGENCE = 0.05  #: fraction of the error that may remain after an iteration without refactorisation
 MAX_ITERATIONS = 50
 
 
 def solve_acceleration(sim: Simulation, factor: int) -> None:
-    """Acceleration at the end of the step, with the laws and the members on their present tangents."""
+    """Solve for the acceleration at the end of the step with the present tangents of laws and members."""
     laws, members, step = sim.laws, sim.members, sim.step
     rows = laws.definition.rows
     acceleration = step.trial.acceleration
@@ -52,13 +52,13 @@ def solve_acceleration(sim: Simulation, factor: int) -> None:
 def correct_curved(
     sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int
 ) -> tuple[float, int]:
-    """Linearise the curved laws at the acceleration that was tried, and let the factor follow.
+    """Linearise the curved laws at the trial acceleration, and update the factor.
 
     Returns
     -------
     worst, law : float, int
-        Largest distance of a law from its last tangent, over its force, and which law it is; -1.0 where the
-        factor fails.
+        Largest distance of a law from its last tangent, over its force, and the index of that law; the
+        distance is -1.0 if the factorisation fails.
     """
     laws = sim.laws
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
@@ -93,7 +93,7 @@ def correct_curved(
 
 
 def update_member_tangents(sim: Simulation, scheme: Scheme, h: float, factor: int) -> bool:
-    """Recompute the members' tangents, and factorise again; False where that fails."""
+    """Recompute the members' tangents and factorise A again; return False if that fails."""
     members = sim.members
     compute_tangents(members, members.trial.quantities)
     for c in range(len(members.parameters)):
@@ -106,8 +106,8 @@ def update_member_tangents(sim: Simulation, scheme: Scheme, h: float, factor: in
 
 
 def iterate_newton(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int) -> bool:
-    """Solve for the acceleration at the end of the step; False where Newton does not converge, and the law
-    furthest from it in `run.failed_law`.
+    """Solve for the acceleration at the end of the step.  Return False if Newton's method does not
+    converge; `run.failed_law` is then the law with the largest error.
     """
     last, worst, law = np.inf, 0.0, -1
     sim.run.failed_law = -1

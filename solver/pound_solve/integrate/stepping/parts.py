@@ -1,5 +1,5 @@
-"""Steps in parts that end at events: a part that passes an event is shortened until it ends there; then the
-law changes its branch, the state is made consistent, and the rest of the step follows.
+"""Steps in parts that end at events.  A part that passes an event is shortened until it ends there.  Then
+the law changes its branch, the state is made consistent, and the rest of the step follows.
 """
 
 from __future__ import annotations
@@ -28,12 +28,17 @@ from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
 from pound_solve.laws.functions import RuleFunctions
 
 MAX_HALVINGS = 25
-MAX_PARTS, MAX_PARTS_PER_LAW = 100, 8  #: parts of a step that end at one instant, and more for each law
-SHORTEST_PART = 3e-8  #: shortest part of a step, used where laws change to and fro
+MAX_PARTS, MAX_PARTS_PER_LAW = (
+    100,
+    8,
+)  #: parts of a step that may end at one instant: in all, and more per law
+SHORTEST_PART = (
+    3e-8  #: shortest part, as a fraction of the step, used while laws alternate between branches
+)
 
 
 def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int) -> int:
-    """Factorise A for a part of a step, which Newton's iterations may have halved."""
+    """Factorise A for a part of a step, halved `halvings` times so far; return DONE or why it fails."""
     bad = factorise_step(sim, scheme, length, PART)
     if bad < 0:
         return DONE
@@ -52,21 +57,21 @@ def solve_part(
     factor: int,
     tried: bool,
 ) -> tuple[int, float, int]:
-    """Solve a part of a step at most as long as `part`, halved until Newton's iterations converge.
+    """Solve a part of a step of length `part`, halved until Newton's iterations converge.
 
     Returns
     -------
     why : int
-        DONE or what failed.
+        DONE or the reason for failure.
     part : float
-        Length of the part that is solved.
+        Length of the part that was solved [T].
     factor : int
-        Row of the factor that it was solved with.
+        Row of the factor that was used.
     """
     laws, run = sim.laws, sim.run
     for halvings in range(MAX_HALVINGS + 1):
         if factor == PART:
-            # from here on, trials change the tangents of curved laws, but not the factor
+            # from here on, trials change the tangents of curved laws, but not the nominal factor
             if laws.definition.curved.any():
                 invalidate_factor(run)
             why = factorise_part(sim, scheme, part, halvings)
@@ -89,21 +94,21 @@ def end_part_at_event(
     h: float,
     event: LocatedEvent,
 ) -> tuple[int, LocatedEvent]:
-    """Shorten a part to the first event in it, see `locate_event`."""
+    """Shorten a part so that it ends at its first event, see `locate_event`."""
     laws, run = sim.laws, sim.run
     curved = laws.definition.curved.any()
-    if curved:  # shorter trials change the tangents, which the present factor does not know
+    if curved:  # shorter trials change the tangents, but not the present factor
         invalidate_factor(run)
     why, event = locate_event(sim, rules, scheme, piece, part, h, event)
     if why == DONE and event.time > SAME_INSTANT_OF_STEP * h:
         run.changes_at_instant = 0
     elif why == DONE and event.time == 0.0 and curved:
-        restore_start_tangents(sim, rules)  # else what follows takes forces and tangents of the last trial
+        restore_start_tangents(sim, rules)  # else forces and tangents of the last trial would be used
     return why, event
 
 
 def accept_part(sim: Simulation, rules: RuleFunctions, scheme: Scheme, part: float, factor: int) -> None:
-    """Take the motion at the end of a part over."""
+    """Make the motion at the end of a part the present one, and record it."""
     accept_trial(sim, rules, scheme, part, factor)
     sim.run.time += part
     track_peaks(sim, sim.run.time, part)
@@ -114,7 +119,7 @@ def accept_part(sim: Simulation, rules: RuleFunctions, scheme: Scheme, part: flo
 def answer_event(
     sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, event: LocatedEvent, left: float
 ) -> int:
-    """Change branches at an event, after which `left` of the step is left; DONE, or why the step stops."""
+    """Change branches at an event that leaves the time `left` of the step; return DONE or why it stops."""
     laws, run = sim.laws, sim.run
     change_branches(sim, rules, scheme, h, event)
     run.changed_law = event.law
@@ -122,7 +127,7 @@ def answer_event(
     n_laws = len(laws.definition.rule)
     if run.changes_at_instant > MAX_PARTS + MAX_PARTS_PER_LAW * n_laws:
         return CHATTER
-    if run.changes_at_instant > n_laws:  # a law may turn to and fro: what follows is tried nearer by
+    if run.changes_at_instant > n_laws:  # a law may alternate: the next part is shorter
         run.longest_part = max(0.5 * min(run.longest_part, left), SHORTEST_PART * h)
     if run.lost_force >= 0:
         run.remaining_step = left
@@ -139,12 +144,13 @@ def step_in_parts(
     h: float,
     tried: bool,
 ) -> int:
-    """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
-    and `tried` says that the first trial is made.
+    """Advance by `length`, in parts that end at events.  The present factor is for the step `h`; `tried`
+    means that the first trial step has been made.
 
-    A part is halved until Newton converges.  After the touch of a curved contact the parts grow from a
-    short one: forces like the fourth root of time begin there.  Where a law that holds a joint without
-    mass loses its force, the step stops, for Python to move the joint (see `integrate.release`).
+    A part is halved until Newton's method converges.  After the touch of a curved contact the first part
+    is short and the next ones grow, because forces begin there like the fourth root of time.  If a law that
+    holds a joint without mass loses its force, the step stops, and Python moves the joint (see
+    `integrate.release`).
     """
     laws, run = sim.laws, sim.run
     left = length

@@ -1,4 +1,4 @@
-"""Prediction of a step: the motion and the forces at its end but for the acceleration there."""
+"""Prediction of a step: motion and forces at its end without the terms of the acceleration there."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pound_solve.numerics.types import Array
 
 
 def predict_step(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: float) -> None:
-    """Motion and forces at the end of a step of length `h`, at the local time `end`, but for the
-    acceleration there.
+    """Predict the motion and the forces at the end of a step of length `h`, at the local time `end`,
+    without the terms of the acceleration there.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition, rows = laws.definition, laws.definition.rows

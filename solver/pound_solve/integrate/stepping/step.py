@@ -1,7 +1,7 @@
 r"""One step of the generalised-alpha family (Chung & Hulbert 1993): factorise A (`factor`), predict
 (`prediction`), solve for the acceleration (`newton`), correct (here), accept (`acceptance`).
 
-With the length h of the step,
+For a step of length h,
 
 .. math::
     u_1 = \tilde u + \beta h^2 a_1, \qquad \tilde u = u_0 + h v_0 + h^2(\tfrac12-\beta) a_0 \\
@@ -11,7 +11,8 @@ With the length h of the step,
       + \frac{\alpha_f r_0 - \alpha_m M a_0}{1-\alpha_f}
 
 with the residual :math:`r = p - C v - K u - f` at the start of the step.  Between events the laws are
-linear, so a step is one solution; curved laws take Newton iterations that change the factor by rank one.
+linear, so a step needs one solution.  Curved laws need Newton iterations with rank-one updates of the
+factor.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ from pound_solve.numerics.types import Array
 def try_step(
     sim: Simulation, rules: RuleFunctions, scheme: Scheme, coefs: Array, end: float, h: float, factor: int
 ) -> bool:
-    """Try a step of length `h` that ends at the local time `end`, with a `factor`; False where Newton
-    does not converge (see `iterate_newton`).
+    """Try a step of length `h` that ends at the local time `end`, with a `factor`; return False if Newton's
+    method does not converge (see `iterate_newton`).
     """
     linear, laws = sim.linear, sim.laws
     definition, rows = laws.definition, laws.definition.rows
@@ -47,7 +48,7 @@ def try_step(
         a = row_product(rows, i, trial.acceleration)
         laws.trial.deformation[i] += beta_h2 * a
         laws.trial.rate[i] += gamma_h * a
-        if definition.contact[i]:  # of bodies that move alike the deformation is rounding
+        if definition.contact[i]:  # the deformation between bodies that move alike is rounding
             far = row_magnitude(rows, i, trial.displacement)
             laws.largest.deformation[i] = max(laws.largest.deformation[i], far)
     if len(laws.friction.coupled) > 0:

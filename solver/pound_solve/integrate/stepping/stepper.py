@@ -1,11 +1,11 @@
-r"""Step-by-step integration with events located within the step: what NEWMARK, HHT, GENERALISED_ALPHA
-and CENTRAL share.
+r"""Step-by-step integration with events located within the step: the common part of NEWMARK, HHT,
+GENERALISED_ALPHA and CENTRAL.
 
-Lays the reduced system out for the kernels (see `kernel`), lets them run, and takes in what they kept:
-samples, changes of branches, peaks.
+It lays out the reduced system for the kernels (see `kernel`), runs them, and fetches their samples,
+changes of branches and peaks.
 
-Energies are integrated from velocities taken as straight lines over a step,
-not by the trapezoid rule of the method itself, which would balance for any step, right or wrong.
+Energies are integrated with velocities that are linear over a step.  The trapezoid rule of the method
+itself would balance for any step, right or wrong.
 
 References
 ----------
@@ -51,9 +51,9 @@ COMMON = (
     ),
 )  #: fields of every implicit method
 
-#: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
+#: fewest steps in a period or a collision; the error of peaks is then a few per cent
 STEPS_OF_PERIOD = 10
-STEP_ROUNDING = 1e-9  #: fraction of a step by which lengths differ by rounding
+STEP_ROUNDING = 1e-9  #: fraction of a step by which lengths may differ by rounding
 MOTION_ROUNDING = 1e-9  #: fraction of the energy below which a motion is rounding
 
 
@@ -63,14 +63,14 @@ def _resolved(about: str, count: float) -> Check:
 
 
 class Stepper(KernelEngine):
-    """One run of a method; see the module's head.
+    """One run of a method; see the module docstring.
 
     Parameters
     ----------
     problem : Problem
     options : mapping
-        DT, the longest step [T]: every interval between output times and record points is divided evenly;
-        EVENTS.
+        DT, the longest step [T] (every interval between output times and record points is divided evenly),
+        and EVENTS.
     scheme : Scheme
     name : str
         For the report.
@@ -93,7 +93,7 @@ class Stepper(KernelEngine):
         ends, is_output = goals(self.system, self.times)
         lengths = np.diff(ends, prepend=float(self.times[0]))
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - STEP_ROUNDING))).astype(np.int64)
-        # twelve digits: steps of equal length share their factor, whatever the rounding of the times
+        # twelve digits: steps of equal length share a factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
         ex = self.system.excitation
         pieces = ex.pieces_after(ends - lengths)
@@ -101,7 +101,7 @@ class Stepper(KernelEngine):
         self.advance(kernel.advance, self.scheme, ahead, steps, h)
 
     def resume(self, why: int) -> None:
-        """Let joints without mass move where a force that held them is lost; for any other reason, stop."""
+        """Move the joints without mass that a lost force had held; stop for any other reason."""
         if why != LOST_FORCE:
             raise self.trouble(why)
         present = KernelPresent(self)
@@ -111,7 +111,7 @@ class Stepper(KernelEngine):
         invalidate_factor(self.state)
 
     def figures(self) -> dict[str, Any]:
-        """Figures of the run for the report."""
+        """Return the figures of the run for the report."""
         return {
             "method": self.name,
             "time step": f"{self.dt:.6g}",
@@ -120,9 +120,9 @@ class Stepper(KernelEngine):
         }
 
     def checks(self, peaks: Peaks) -> list[Check]:
-        """Whether the steps resolve the motion, and the hardest collision of every contact.
+        """Check whether the steps resolve the motion and the hardest collision of every contact.
 
-        Newmark's energy balances in free vibration however long the step; so the period is taken from the
+        Newmark's energy balances in free vibration for any length of step, so the period is taken from the
         ratio of velocities to accelerations.
         """
         squared_velocity, squared_acceleration = self.motion_norms.tolist()
@@ -148,7 +148,7 @@ class Stepper(KernelEngine):
         return checks
 
     def _springs(self, peaks: Peaks) -> list[Check]:
-        """Whether the steps follow the springs' forces."""
+        """Check whether the steps resolve the springs' forces."""
         tracker = self.tracker
         steepest = tracker.extremes.steepest[tracker.n_monitored + len(self.law_springs) :].tolist()
         rises = [
