@@ -1,10 +1,11 @@
-r"""AUTO: EXACT or TAYLOR where they cost less, else runs of LAGUERRE or NEWMARK that meet a tolerance.
+r"""AUTO: EXACT or TAYLOR if they cost less, else runs of LAGUERRE or NEWMARK that meet a tolerance.
 
 EXACT takes no time steps, but needs piecewise linear laws and computes a modal decomposition for every new
 combination of stiffnesses.  TAYLOR has no truncation error either; its steps resolve the fastest mode.
-LAGUERRE (for piecewise linear laws) and NEWMARK (for all others, and where LAGUERRE stops) have errors:
-AUTO repeats the whole run with a smaller tolerance or a shorter step until the peaks no longer change, or
-until repeating brings no improvement (a force that rings at a node without mass): see :mod:`.convergence`.
+LAGUERRE (for piecewise linear laws) and NEWMARK (for all others, and if LAGUERRE stops) have truncation
+errors.  AUTO repeats the whole run with a smaller tolerance or a shorter step until the peaks no longer
+change, or until repeating brings no improvement (a force that rings at a node without mass); see
+:mod:`.convergence`.
 
 The cost of TAYLOR is known in advance; that of EXACT depends on the events.  AUTO uses TAYLOR if it costs
 little, or no more than the runs already made plus the next one.  Otherwise it tries EXACT, at the start and
@@ -51,10 +52,10 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
-#: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
+#: limit of steps of TAYLOR, if dampers that hardly move may need more than foreseen
 MAX_TAYLOR_STEPS = 500_000
-#: costs up to which TAYLOR is taken before runs whose errors have to be estimated: those of NEWMARK, and
-#: of LAGUERRE where it seems to cost less
+#: costs up to which TAYLOR is preferred to runs whose errors have to be estimated: those of NEWMARK, and
+#: of LAGUERRE if it seems to cost less
 SERIES_FIRST, SERIES_ALWAYS = 1.0, 0.25
 
 #: why no steps are taken
@@ -74,7 +75,7 @@ def has_series(system: ReducedSystem) -> bool:
 
 
 def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
-    """Return how many of the intervals between some `times` TAYLOR takes in modes while all springs are
+    """Return how many of the intervals between the `times` TAYLOR advances in modes while all springs are
     elastic and all contacts open; `rate` is that of the fastest mode [1/T].
     """
     length = most_common_length(times)
@@ -87,7 +88,7 @@ def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
 
 
 def cost_of_series(problem: Problem[Recorder]) -> float:
-    """Return the cost of TAYLOR; infinite where it is not applicable."""
+    """Return the cost of TAYLOR, infinite if it is not applicable."""
     system, times = problem.system, problem.start.times
     if not has_series(system):
         return np.inf
@@ -96,7 +97,7 @@ def cost_of_series(problem: Problem[Recorder]) -> float:
     in_modes = intervals_in_modes(system, times, rate)
     by_series = float(times[-1] - times[0]) * rate * (1.0 - in_modes / count) / costs.TAYLOR_RADIANS
     reversals = costs.REVERSALS * count * costs.smooth_laws(system)
-    # the end of an interval is the end of a step
+    # the end of an interval is also the end of a step
     steps = by_series + (count - in_modes) + costs.MODES_STEPS * in_modes + reversals
     return costs.of_series_step(system) * steps
 
@@ -108,7 +109,7 @@ def stepped(system: ReducedSystem, reason: str) -> Decision:
 
 def by_series(problem: Problem[Recorder], **options: Any) -> Outcome:
     """Run TAYLOR, and state why."""
-    from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
+    from pound_solve.integrate.series import taylor  # loaded only if needed
 
     reason = SERIES if rigid_contact(problem.system) is None else RIGID
     problem.system.decisions.append(Decision("method", "TAYLOR", reason))
@@ -116,7 +117,7 @@ def by_series(problem: Problem[Recorder], **options: Any) -> Outcome:
 
 
 def by_few_series(problem: Problem[EnvelopeRecorder]) -> Outcome | None:
-    """Run TAYLOR; None where dampers that hardly move would require too many steps."""
+    """Run TAYLOR; return None if dampers that hardly move would require too many steps."""
     system = problem.system
     if not any(s.role is Role.DAMPER and s.law.curved for s in system.structure.laws):
         return by_series(problem)
@@ -134,7 +135,7 @@ def by_few_series(problem: Problem[EnvelopeRecorder]) -> Outcome | None:
 
 
 def by_trial(trial: ExactTrial, others: float) -> Outcome | None:
-    """Run EXACT, and state why, where it ends within a share of what the `others` cost; else None."""
+    """Run EXACT, and state why, if it ends within a fraction of the cost of the `others`; else None."""
     known = len(trial.system.decisions)
     outcome = trial.run(others)
     if outcome is not None:
@@ -145,19 +146,19 @@ def by_trial(trial: ExactTrial, others: float) -> Outcome | None:
 def to_tolerance(
     runs: StepRefinement | ToleranceRefinement, chosen: Decision, trial: ExactTrial | None, series: float
 ) -> Outcome:
-    """Repeat runs until the peaks converge, which `chosen` states, or EXACT costs less, or TAYLOR, which
-    costs `series`.
+    """Repeat runs until the peaks converge, unless EXACT or TAYLOR costs less.  `chosen` is the decision to
+    state; `series` is the cost of TAYLOR.
 
     Raises
     ------
     Stop
-        A run stopped, and no other run may pass.
+        A run stopped, and no other run can succeed.
     UnfitError
-        Another method may pass.
+        Another method may succeed.
     """
     system = runs.system
     while True:
-        # so both cost no more than twice what series alone would
+        # then both cost no more than twice as much as series alone
         if series + runs.events * costs.of_series_step(system) <= runs.spent + runs.cost_ahead():
             outcome = by_few_series(runs.problem)
             if outcome is not None:
@@ -176,7 +177,7 @@ def to_tolerance(
 
 
 def with_rigid_contact(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> Outcome:
-    """Run the method of choice for a structure with rigid contacts, which only EXACT and TAYLOR take."""
+    """Choose and run the method for a structure with rigid contacts: only EXACT and TAYLOR accept them."""
     system = problem.system
     refuse_rigid(problem, "AUTO")
     if not_linear(system):
@@ -215,19 +216,19 @@ def by_choice(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) ->
         series = np.inf
     if implicit is not None:
         try:
-            worth = series + loading() > SERIES_FIRST  # else a trial may cost more than all the rest
+            worth = series + loading() > SERIES_FIRST  # else a trial may cost more than the whole run
             return to_tolerance(implicit, IMPLICIT, trial if worth else None, series)
         except UnfitError as err:
             reason = str(err)
             if err.dear:
                 return by_series(problem)
-        series = np.inf  # which stop there, too
+        series = np.inf  # series would stop there, too
     method = stepped(system, reason or EXACT_TOO_COSTLY)
     return to_tolerance(StepRefinement(problem, options), method, trial, series)
 
 
 def integrate(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) -> Outcome:
-    """Run the method of choice, and its twin where its error is not estimated otherwise."""
+    """Run the chosen method, and a twin run unless its error is estimated otherwise."""
     watch = Watch(problem.recorder)
     outcome = by_choice(problem.recorded_by(watch), options)
     if outcome.exact:

@@ -21,18 +21,18 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.condensation import Condensed, condense
 from pound_solve.structure.reduction import ReducedSystem
 
-MAX_UNKNOWNS = 4000  #: of one run: a full matrix of as many takes 128 MB
+MAX_UNKNOWNS = 4000  #: unknowns of one run: a full matrix of this size takes 128 MB
 
 
 class ExpandingRecorder:
-    """Passes samples to a recorder with all unknowns, the condensed ones included."""
+    """A recorder that passes on samples with all unknowns, the condensed ones included."""
 
     def __init__(self, recorder: Recorder, condensed: Condensed) -> None:
         self.recorder, self.condensed = recorder, condensed
         self._input_at_start = condensed.put_in(np.zeros(1))
 
     def _expanded(self, t: Array, *motion: Array, before: bool = False) -> list[Array]:
-        """Displacements of all unknowns, and of their derivatives in order, shape (n, n_times) each;
+        """Return the displacements of all unknowns and their derivatives in order, shape (n, n_times) each;
         `before` or after the inputs jump.
         """
         inputs = self.condensed.system.excitation
@@ -69,12 +69,12 @@ class ExpandingRecorder:
         self.recorder.between(Course(whole(course.motion), course.lengths, within))
 
     def report_progress(self, t: float, doing: str = "") -> None:
-        """Pass the progress on."""
+        """Pass on the progress."""
         self.recorder.report_progress(t, doing)
 
 
 def others(system: ReducedSystem) -> str:
-    """Which methods take so many unknowns."""
+    """Return which methods accept so many unknowns."""
     steps = ["NEWMARK"] if rigid_contact(system) is None else []
     able = [method for method in without_steps(system) if method != "EXACT"] + steps
     if not able:

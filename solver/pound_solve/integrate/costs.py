@@ -1,4 +1,4 @@
-"""Counted costs of the methods, by which AUTO chooses.  They are seconds of a nominal machine and never
+"""Counted costs of the methods, by which AUTO chooses.  They are seconds on a nominal machine and are never
 measured, so that AUTO always makes the same choice.
 """
 
@@ -11,19 +11,19 @@ from pound_solve.numerics.modes import massless
 from pound_solve.structure.reduction import ReducedSystem
 
 WINDOW = 1.3e-3  #: of EXACT: a window of dense output
-GRID_POINT = 2e-8  #: each point of its search grids, times the unknowns
-ENVELOPE_POINT = 5e-8  #: each of its points for the envelopes, times their unknowns
+GRID_POINT = 2e-8  #: a point of its search grids, per unknown
+ENVELOPE_POINT = 5e-8  #: a point of its envelopes, per unknown of the envelopes
 DECOMPOSITION = 8e-4  #: a modal decomposition
 PRODUCTS = 1.5e-6  #: matrix products of a decomposition, over the square of its unknowns
 MODES = 8e-9  #: modes of a decomposition, over the cube of its unknowns
-STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and each of its unknowns, twice for a law
-TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and each of its unknowns and laws
-TAYLOR_SMOOTH = 2.5e-6  #: each of its smooth laws
+STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and more per unknown, twice that per law
+TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and more per unknown and law
+TAYLOR_SMOOTH = 2.5e-6  #: more per smooth law
 REVERSALS = 0.25  #: of a smooth law in an interval between two goals: each ends a step of TAYLOR
-MODES_STEPS = 2.0  #: steps of TAYLOR that an interval in modes costs as much as
+MODES_STEPS = 2.0  #: cost of an interval in modes, in steps of TAYLOR
 TAYLOR_RADIANS = 5.0  #: of the fastest mode in a step of TAYLOR
-EVENT_STEPS = 10  #: steps that a located event costs as much as
-POWERS = 30  #: iterations to the fastest decay
+EVENT_STEPS = 10  #: cost of a located event, in steps
+POWERS = 30  #: power iterations for the fastest decay
 INTERPRETED = 100  #: cost of an interpreted step over that of a compiled one
 
 
@@ -49,11 +49,11 @@ def of_series_step(system: ReducedSystem) -> float:
 
 
 def fastest_rate(system: ReducedSystem) -> float:
-    r"""Radians that steps of TAYLOR follow at most [1/T]: of the fastest mode with all springs elastic and
-    all contacts open (they are closed for moments only), or of the fastest decay.
+    r"""Return a bound of the fastest rate that steps of TAYLOR resolve [1/T]: that of the fastest mode with
+    all springs elastic and all contacts open (they are closed only briefly), or of the fastest decay.
 
-    By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).  Unknowns without mass
-    that dashpots resist decay at :math:`\lambda \le` the largest eigenvalue of :math:`K x = \lambda C x`.
+    The row sums of ``M^-1/2 A M^-1/2`` bound its eigenvalues (Gershgorin).  Unknowns without mass but with
+    dashpots decay at :math:`\lambda \le` the largest eigenvalue of :math:`K x = \lambda C x`.
     """
     laws = system.structure.laws
     elastic = np.array([0.0 if s.role.collides else s.steepest for s in laws], float)
@@ -74,7 +74,7 @@ def fastest_rate(system: ReducedSystem) -> float:
 
 
 def fastest_decay(k: Matrix, c: Matrix) -> float:
-    """Largest eigenvalue of ``K x = lambda C x``, by power iteration; infinite where C is singular."""
+    """Return the largest eigenvalue of ``K x = lambda C x`` by power iteration, infinite for singular C."""
     try:
         factor = None if isinstance(c, np.ndarray) else Factor(c)
         rates = np.linalg.solve(c, k) if factor is None else k
@@ -89,7 +89,7 @@ def fastest_decay(k: Matrix, c: Matrix) -> float:
 
 
 class CostlyError(Exception):
-    """A run exceeds its budget; `cost` brought it to time `t`."""
+    """A run exceeds its budget; it has reached the time `t` at this `cost`."""
 
     def __init__(self, cost: float, t: float) -> None:
         super().__init__(f"more than {cost:g}, at {t:g}")
@@ -104,11 +104,12 @@ class Budget:
     begin, end : float
         Times of the run [T].
     most : float
-        Cost of the whole run, at most.
+        Largest cost of the whole run.
     trial : float or None
-        Cost after which it is checked whether the whole, at the rate so far, exceeds that (None: `most`).
+        Cost after which the cost of the whole run, extrapolated at the present rate, is checked against
+        `most` (None: `most`).
     decompositions : float
-        Modal decompositions, at most.
+        Largest number of modal decompositions.
     """
 
     def __init__(
@@ -124,7 +125,7 @@ class Budget:
         self.cost = 0.0
 
     def charge(self, cost: float, t: float, decompositions: int) -> None:
-        """Add a cost at time `t`, of a run that has made so many `decompositions`.
+        """Add a cost at time `t` of a run that has made the given number of `decompositions`.
 
         Raises
         ------

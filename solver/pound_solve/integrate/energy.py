@@ -17,7 +17,7 @@ from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
 
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
-GROWTH = 10.0  #: kinetic energy over all that was put in, above which the motion grows without bound
+GROWTH = 10.0  #: kinetic energy over the total energy put in, above which the motion grows without bound
 
 
 class Works(Protocol):
@@ -30,7 +30,7 @@ class Works(Protocol):
 
 
 def runs_away(kinetic: float, initial: float, gross_input: float) -> bool:
-    """Whether the kinetic energy is far above what was there at the start and what was put in since."""
+    """Return whether the kinetic energy is far above the initial energy and the energy put in since."""
     return not kinetic <= GROWTH * (initial + gross_input) + 1e-300
 
 
@@ -61,7 +61,7 @@ class EnergyAccumulator:
         return np.array([self.works.input, self.works.damping, self.works.contact])
 
     def advance(self, works: Array) -> None:
-        """Go on to later works, shape (n_times, 3), the first of which are the present ones."""
+        """Advance to later works, shape (n_times, 3); the first row equals the present ones."""
         self.works.gross_input += float(np.abs(np.diff(works[:, 0])).sum())
         self.works.input, self.works.damping, self.works.contact = works[-1].tolist()
 
@@ -71,15 +71,15 @@ class EnergyAccumulator:
 
 
 def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
-    """Forces and energies of all laws from their states, at times (n_times,) and motions (n, n_times)
-    between two changes of branch; `drag` of laws that are linear there.
+    """Return forces and energies of all laws from their states, at times (n_times,) and motions
+    (n, n_times) between two changes of branch; `drag` of laws that are linear there.
     """
     laws = [s.law for s in system.structure.laws]
     if not laws:
         return LawValues(*np.zeros((4, 0, len(t))))
     d = system.law_rows @ u + system.law_inputs @ system.excitation.values(t).T
     rate = system.law_rows @ v + system.law_inputs @ system.excitation.values(t, 1).T
-    # `Law.work` and `Law.dissipated` of all laws and times at once: a sample of some laws is a small thing
+    # `Law.work` and `Law.dissipated` for all laws and times at once, because a sample is small
     k, c, f0 = np.array([x.rule.branch(x.p, s[0], s[3])[:3] for x, s in zip(laws, states)]).T[:, :, None]
     begin, before = np.array([s[1:3] for s in states]).T[:, :, None]
     still = k * d + f0
@@ -107,7 +107,7 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
 def energies(
     system: ReducedSystem, t: Array, u: Array, v: Array, stored: Array, lost: Array, works: Array
 ) -> Array:
-    """Return all energies at some times.
+    """Return all energies at the given times.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def energies(
 
 
 def energy_at_start(system: ReducedSystem, start: Start) -> float:
-    """Kinetic and recoverable energy [F L]: with the work put in since, all that the motion can hold."""
+    """Return the kinetic and recoverable energy [F L]; plus the work put in since, it bounds the motion."""
     t, u, v = start.times[:1], start.u, start.v
     laws = law_values(system, t, u[:, None], v[:, None], start.states)
     whole = energies(system, t, u[None], v[None], laws.stored.T, laws.lost.T, np.zeros((1, 3)))

@@ -1,4 +1,4 @@
-"""Intervals between output times: which of them can be advanced in modes as a whole, and when that pays."""
+"""Intervals between output times: which ones can be advanced in modes as a whole, and when that pays."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 
-SAME_LENGTH = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
-FEW_INTERVALS = 50  #: number of intervals of one length up to which tables do not pay
+SAME_LENGTH = 1e-11  #: fraction by which equal intervals may differ, because the clock is rounded
+FEW_INTERVALS = 50  #: number of equal intervals up to which tables do not pay
 MAX_UNKNOWNS = 200  #: of a part
-MIN_RADIANS = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
+MIN_RADIANS = 10.0  #: fewest radians of the fastest mode in an interval that pays: two steps by series
 
 
 def most_common_length(times: Array) -> float:
-    """Length of most of the intervals between some times; 0 where few have the same.
+    """Return the most common length of the intervals between the times; 0 if few intervals share it.
 
     Each length is exact only to the rounding of the clock; their mean removes an error that would
     accumulate over thousands of periods.

@@ -18,13 +18,15 @@ from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-EVENT_TOLERANCE = 1e-12  #: fraction of its largest value up to which an event function is not above zero
+EVENT_TOLERANCE = (
+    1e-12  #: fraction of its largest value up to which an event function counts as not above zero
+)
 SAME_INSTANT = 1e-13  #: fraction of the time within which two events are at one instant
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
-MAX_BETWEEN = 0.1  #: limit of such a share; a sine with seven steps in its period reaches it
-MAX_ROUNDING = 1e-2  #: fraction of a spring's largest force that rounding may make
+MAX_BETWEEN = 0.1  #: limit of that fraction; a sine with seven steps in its period reaches it
+MAX_ROUNDING = 1e-2  #: fraction of a spring's largest force that may be rounding
 RUNAWAY_TEXT = "the motion grows without bound: its energy {:.3g} is far above what was put in"
-MAX_CHANGES, MAX_CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
+MAX_CHANGES, MAX_CHANGES_PER_LAW = 50, 4  #: most changes of branch at one instant: in all, and per law
 CHATTER_TEXT = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
 INTERRUPTED = "interrupted; what was computed up to then is kept"
 
@@ -62,7 +64,7 @@ class Start:
 
 class LawValues(NamedTuple):
     """Forces [F] or [F L], recoverable and lost energies [F L] of all laws, and forces of the dashpots that
-    damping puts beside springs, which are no part of their forces, shape (n_laws, n_times) each.
+    damping adds parallel to springs (not included in the forces), shape (n_laws, n_times) each.
     """
 
     force: Array
@@ -74,8 +76,8 @@ class LawValues(NamedTuple):
 class Motion(NamedTuple):
     """The motion at some instants: their times, shape (n_times,), the unknowns, their velocities and
     accelerations, shape (n, n_times) each, and the forces of the laws, all dashpots included,
-    shape (n_enveloped, n_times).  Only the rows of `Recorder.enveloped_unknowns` need be right, and only
-    the forces of `Recorder.enveloped_laws` are there.
+    shape (n_enveloped, n_times).  Only the rows of `Recorder.enveloped_unknowns` need be valid, and only
+    the forces of `Recorder.enveloped_laws` are present.
     """
 
     t: Array
@@ -86,13 +88,13 @@ class Motion(NamedTuple):
 
 
 class MotionRows(NamedTuple):
-    """Sparse rows of a matrix whose columns are u, v, a and the forces of the laws: entries, row by row,
-    shape (n_entries,) each.
+    """Sparse rows of a matrix whose columns are u, v, a and the forces of the laws.  The entries are stored
+    row by row, shape (n_entries,) each.
 
     Attributes
     ----------
     row : ndarray of int
-        Of the row.
+        Row numbers.
     columns : ndarray of int
     factors : ndarray
     """
@@ -102,12 +104,12 @@ class MotionRows(NamedTuple):
     factors: Array
 
     def some(self, entries: Index | Flags) -> MotionRows:
-        """Some of the entries."""
+        """Return some of the entries."""
         return MotionRows(self.row[entries], self.columns[entries], self.factors[entries])
 
     def summed(self, values: Array) -> tuple[Index, Array]:
-        """Numbers of the rows that have entries, and for each of them the sum of its factors times the
-        `values` of the entries, which have shape (n_entries, n); shape (n_used, n).
+        """Return the numbers of the rows that have entries, and for each the sum of its factors times
+        `values`, shape (n_used, n); `values` belong to the entries, shape (n_entries, n).
         """
         if not len(self.row):
             return self.row, values
@@ -121,7 +123,7 @@ class RowPeaks(NamedTuple):
     Attributes
     ----------
     rows : MotionRows
-        On the motion, by rising numbers.
+        Rows on the motion, in ascending order.
     on_inputs : ndarray, shape (n_rows, 3 n_inputs + 1)
         Factors of the inputs and of their first two derivatives, and a constant.
     high, t_high, low, t_low : ndarray, shape (n_rows,)
@@ -137,18 +139,18 @@ class RowPeaks(NamedTuple):
 
 
 class Course(NamedTuple):
-    """The motion between two samples: at ascending instants and, where it is known, from each of them on.
+    """The motion between two samples: at ascending instants and, if known, after each of them.
 
     Attributes
     ----------
     motion : Motion
     lengths : ndarray, shape (n_times,)
-        Time from each instant up to which its motion is smooth [T]: to the next, or to an event before it.
+        Time after each instant over which the motion is smooth [T]: to the next one or an earlier event.
     within : callable or None
-        The motion from instants of some numbers, shape (n_cells,), on, at shares of these times between 0
-        and 1, shape (n_shares,): n_cells * n_shares instants, cell by cell.  None: nothing is known of it.
+        Returns the motion after the instants with given numbers, shape (n_cells,), at fractions of these
+        times between 0 and 1, shape (n_shares,): n_cells * n_shares instants, cell by cell.  None: unknown.
     extremes : callable or None
-        Counts this motion into the `RowPeaks` of some rows, with proof.  None: by `within` only.
+        Updates the `RowPeaks` of some rows with this motion, with proof.  None: only `within` is available.
     """
 
     motion: Motion
@@ -161,19 +163,19 @@ class RunEnvelopes(Protocol):
     """Envelopes of a run."""
 
     def between(self, course: Course) -> None:
-        """Count in the motion between samples, as `Recorder.between`."""
+        """Include the motion between samples, as `Recorder.between`."""
 
     def take(self, motion: Motion, s: Sequence[Array]) -> object:
-        """Count in samples; `s` are the inputs and their first two rates."""
+        """Include samples; `s` are the inputs and their first two rates."""
 
     def peaks(self) -> tuple[Array, list[str]]:
-        """Largest and smallest accelerations of nodes and forces of members, and the kind of each."""
+        """Return the largest and smallest accelerations of nodes and forces of members, and their kinds."""
 
     def blank(self) -> Self:
         """Return empty envelopes of the same quantities."""
 
     def widen(self, other: Self) -> None:
-        """Include the extremes of another one."""
+        """Include the extremes of other envelopes."""
 
 
 class Recorder(Protocol):
@@ -181,35 +183,35 @@ class Recorder(Protocol):
 
     @property
     def enveloped_unknowns(self) -> Flags:
-        """Which unknowns `between` needs, shape (n,), those of `enveloped_laws` among them."""
+        """Return which unknowns `between` needs, shape (n,), including those of `enveloped_laws`."""
 
     @property
     def enveloped_laws(self) -> Index:
-        """Laws whose forces `between` needs, ascending, shape (n_enveloped,)."""
+        """Return the laws whose forces `between` needs, ascending, shape (n_enveloped,)."""
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take the motion (n, n_times) and the laws' forces and energies at some output times.
 
-        `works`, shape (3, n_times), are the work put in, and that lost so far in the structure's
-        and in the contacts' dashpots.
+        `works`, shape (3, n_times), are the work put in so far, and the losses in the structure's and in
+        the contacts' dashpots.
         """
 
     def between(self, course: Course) -> None:
         """Take the motion between samples: for envelopes."""
 
     def report_progress(self, t: float, doing: str = "") -> None:
-        """Receive the time reached by a run whose samples may not be used, or what keeps it waiting."""
+        """Receive the time reached by a run whose samples may not be used, or what it is doing."""
 
 
 class EnvelopeRecorder(Recorder, Protocol):
-    """A recorder that keeps envelopes, and takes samples of a run that is over."""
+    """A recorder that keeps envelopes, and accepts samples of a finished run."""
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples, as `sample` does, whose progress has been reported before."""
+        """Take samples as `sample` does, but without reporting their progress, which has been reported."""
 
     @property
     def envelopes(self) -> RunEnvelopes:
-        """Envelopes of the motion between the samples, and possibly at them."""
+        """Return the envelopes of the motion between the samples, and possibly at them."""
 
 
 R = TypeVar("R", bound=Recorder, covariant=True)
@@ -224,7 +226,7 @@ class Problem(Generic[R]):
     ----------
     system : ReducedSystem
     start : Start
-        With the output times.
+        State at the start, with the output times.
     monitored : MonitoredOutputs
     recorder : Recorder
         Takes the samples.
@@ -241,14 +243,14 @@ class Problem(Generic[R]):
         return float(self.start.times[0])
 
     def recorded_by(self, recorder: S) -> Problem[S]:
-        """The same problem with another recorder."""
+        """Return the same problem with another recorder."""
         return Problem(self.system, self.start, self.monitored, recorder)
 
 
 @dataclass
 class Outcome:
-    """How an integration went: its peaks, whether they are exact, figures, self-checks;
-    the laws' states at its end.
+    """Result of an integration: its peaks, whether they are exact, figures, self-checks, and the laws'
+    states at its end.
     """
 
     peaks: Peaks
@@ -265,7 +267,7 @@ class Outcome:
 
 
 class Stop(Exception):
-    """The integration cannot go on; says when, where and why.
+    """The integration cannot continue; states when, where and why.
 
     Attributes
     ----------
@@ -274,7 +276,7 @@ class Stop(Exception):
     t : float
         Time reached [T].
     outcome : Outcome
-        Results up to then.
+        Results up to that time.
     """
 
     def __init__(self, code: str, t: float, why: str, outcome: Outcome | None = None) -> None:
@@ -283,7 +285,7 @@ class Stop(Exception):
 
 
 def not_linear(system: ReducedSystem) -> str:
-    """Reason why a reduced system is not linear between events, as some methods need; empty where it is."""
+    """Return why a reduced system is not linear between events, as some methods require; empty if it is."""
     if system.structure.corotational:
         return f"members change their stiffness as they move (GEOMETRY {system.structure.model.geometry})"
     curved = next((s for s in system.structure.laws if s.law.curved), None)
@@ -291,12 +293,12 @@ def not_linear(system: ReducedSystem) -> str:
 
 
 def rigid_contact(system: ReducedSystem) -> LawSpring | None:
-    """The first rigid contact of a reduced system, which no method with steps takes."""
+    """Return the first rigid contact of a reduced system; no method with steps accepts any."""
     return next((s for s in system.structure.laws if s.law.rigid), None)
 
 
 def not_in_series(system: ReducedSystem) -> str:
-    """Reason why the motion of a reduced system has no power series that is known; empty where it has."""
+    """Return why the motion of a reduced system has no known power series; empty if it has one."""
     rigid = rigid_contact(system) is not None
     if system.structure.corotational and (rigid or not has_strings(system)):
         return not_linear(system)
@@ -318,40 +320,40 @@ def not_in_series(system: ReducedSystem) -> str:
 
 
 def has_strings(system: ReducedSystem) -> bool:
-    """Whether all members that change their stiffness are strings (see `structure.corotational`)."""
+    """Return whether all members that change their stiffness are strings (see `structure.corotational`)."""
     return bool((system.corotational.p[:, KIND] == STRING).all())
 
 
 def light_string(system: ReducedSystem) -> int:
-    """The first member whose string moves an unknown without mass across; 0 for none."""
+    """Return the first member whose string moves an unknown without mass transversely; 0 for none."""
     members = system.corotational
     across = used_rows(members.rows[ACROSS::QUANTITIES][:, np.flatnonzero(massless(system.mass))])
     return next((c.element for c, is_light in zip(members.members, across) if is_light), 0)
 
 
 def light(system: ReducedSystem) -> Flags:
-    """Which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,): the force of their
-    dashpots is only known when the velocities have settled.
+    """Return which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,).  The force
+    of their dashpots is known only after the velocities are made consistent.
     """
     return used_rows(system.law_rows[:, np.flatnonzero(massless(system.mass))])
 
 
 def without_steps(system: ReducedSystem) -> list[str]:
-    """Methods without a time step that take a reduced system."""
+    """Return the methods without a time step that accept a reduced system."""
     reasons = {"EXACT": not_linear(system), "TAYLOR": not_in_series(system)}
     return [method for method, why in reasons.items() if not why]
 
 
 def remedy(system: ReducedSystem) -> str:
-    """Advice for a run with too many changes at one instant."""
+    """Return advice for a run with too many changes at one instant."""
     if rigid_contact(system) is not None:
         return "LAWs with a stiffness for the rigid contacts"
     return "NEWMARK EVENTS=STEPPED"  # which passes over the changes
 
 
 def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = EVENT_TOLERANCE) -> list[Check]:
-    """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
-    of which a share `still` of the largest is indistinguishable from zero.
+    """Check whether springs are so stiff that their force is lost in the last digits of their deformation.
+    A fraction `still` of the largest deformation is indistinguishable from zero.
     """
     worst, place = MAX_ROUNDING, None
     for s, d, f in zip(laws, peaks.deformation, peaks.force):
@@ -368,16 +370,16 @@ def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = EVENT
 
 
 def between_check(peaks: Peaks) -> Check:
-    """Check how far peaks depend on the motion between the steps, which is interpolated by the rates at
-    their ends: wrong rates give peaks that never occurred.
+    """Check how far peaks depend on the motion between the steps.  It is interpolated with the rates at
+    their ends, so wrong rates give peaks that never occurred.
     """
     remark = "peaks lie far above both ends of a step; a shorter DT shows them"
     return at_most(Subject.STEPS, BETWEEN, peaks.between, MAX_BETWEEN, remark)
 
 
 def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
-    """Raise Stop where a reduced system has rigid contacts and the method does not take them there; no
-    method does where the motion has no power series.
+    """Raise Stop if a reduced system has rigid contacts that the method does not accept.  No method accepts
+    them if the motion has no power series.
     """
     system = problem.system
     rigid = rigid_contact(system)
@@ -400,8 +402,8 @@ def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
 def goals(system: ReducedSystem, times: Array) -> tuple[Array, Flags]:
     """Return the times after 0 at which an integrator must arrive, and which of them are output times.
 
-    They come after the first of `times`, the start.
-    Breaks of the excitation and output times that differ by rounding only are one: no interval is a sliver.
+    They come after the first of `times`, the start.  Breaks of the excitation and output times that differ
+    only by rounding are merged, so that no interval is extremely short.
     """
     breaks, end = system.excitation.breaks, float(times[-1])
     inner = breaks[(breaks > times[0]) & (breaks < end)]

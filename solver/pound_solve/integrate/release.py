@@ -1,8 +1,8 @@
 r"""Joints without mass at the instant at which a law loses its force.
 
 A law that fails may lose its force suddenly.  Joints without mass and without dashpots (unknowns Z) then
-move instantly, and other laws there may yield, unload or fail on the way.  The path is found by reducing
-the lost force F of the law, which acts along :math:`b`, gradually while everything else is at rest,
+move instantly, and other laws there may yield, unload or fail on the way.  The path is found by gradually
+reducing the lost force F of the law, which acts along :math:`b`, while everything else is at rest,
 
 .. math:: K_{ZZ}\,u_Z + f_Z(u_Z) = p_Z - (1 - \lambda)\,F\,b_Z, \qquad 0 \le \lambda \le 1 ,
 
@@ -28,8 +28,8 @@ from pound_solve.structure.reduction import ReducedSystem
 
 AT_REST = 1e-9  #: fraction of the largest change of a deformation below which a law counts as at rest
 FORCE_JUMP = 1e-9  #: fraction of a force's terms above which a change of branch has made it jump
-PATH_COMPLETE = 1e-13  #: fraction of the largest deformation below which nothing moves any more
-JOINT_ROUNDING = 1e-14  #: fraction of the forces at a joint that their sum may be by rounding
+PATH_COMPLETE = 1e-13  #: fraction of the largest deformation below which a motion counts as zero
+JOINT_ROUNDING = 1e-14  #: rounding of the sum of the forces at a joint, as a fraction of these
 
 
 class JumpingRun(Protocol):
@@ -51,13 +51,13 @@ class JumpingRun(Protocol):
         """Present branches of all laws."""
 
     def force(self, law: int, d: float) -> tuple[float, float]:
-        """Force of a law at rest at deformation `d`, and its tangent."""
+        """Return the force of a law at rest at deformation `d`, and its tangent."""
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
-        """Let a law leave its branch at deformation `d` on a way in the direction of `v`."""
+        """Let a law leave its branch at deformation `d` on a path in the direction of `v`."""
 
     def add_release_work(self, law: int, lost: float, put_in: float) -> None:
-        """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
+        """Add the work `lost` by a dropping force to the work done on its law, and `put_in` by the loads to
         the input.
         """
 
@@ -66,9 +66,9 @@ class JumpingRun(Protocol):
 
 
 def force_jumps(before: Branch, after: Branch, d: float) -> bool:
-    """Whether the force of a law at rest jumps where it changes branch at the deformation `d`.
+    """Return whether the force of a law at rest jumps as it changes branch at the deformation `d`.
 
-    A jump within the rounding of the forces that the branch `before` reaches is none: where nothing has
+    A jump within the rounding of the forces that the branch `before` reaches does not count: if nothing has
     moved yet, `d` itself is rounding.
     """
     ends = [abs(e.constant / e.d_factor) for e in before.events if e.d_factor != 0.0]
@@ -78,8 +78,8 @@ def force_jumps(before: Branch, after: Branch, d: float) -> bool:
 
 
 def fraction_to_event(event: EventFunction, d: float, move: float) -> float:
-    """Fraction of the change `move` of a law's deformation, from `d` on, at which an event occurs; infinite
-    if it does not.
+    """Return the fraction of the change `move` of a law's deformation from `d` at which an event occurs;
+    infinite if it does not.
     """
     if event.d_factor == 0.0:
         return 0.0 if event.v_factor * move > 0.0 else np.inf
@@ -88,8 +88,8 @@ def fraction_to_event(event: EventFunction, d: float, move: float) -> float:
 
 
 def first_event_on_path(branches: Sequence[Branch], d: Array, move: Array) -> tuple[float, int, int]:
-    """Fraction of the changes `move` of all deformations `d` up to the first event, its law and its number;
-    1 and -1 where there is none.
+    """Return the fraction of the changes `move` of all deformations `d` up to the first event, its law and
+    its number; 1 and -1 if there is none.
     """
     first = 1.0, -1, -1
     for i in np.flatnonzero(np.abs(move) > AT_REST * np.abs(move).max(initial=0.0)).tolist():
@@ -101,24 +101,24 @@ def first_event_on_path(branches: Sequence[Branch], d: Array, move: Array) -> tu
 
 
 def undamped_massless(system: ReducedSystem, branches: Sequence[Branch]) -> Index:
-    """Unknowns with neither mass nor dashpot on the present branches."""
+    """Return the unknowns with neither mass nor dashpot on the present branches."""
     damped = np.flatnonzero([b.damping != 0.0 for b in branches])
     resisted = used_rows(system.damping) | used_rows(system.law_rows[damped].T)
     return np.flatnonzero(massless(system.mass) & ~resisted)
 
 
 def sizes(system: ReducedSystem, u: Array, force: Array) -> Array:
-    """Magnitudes of the terms of the forces on the unknowns, from structure and laws, shape (n,)."""
+    """Return the term magnitudes of the forces of structure and laws on the unknowns, shape (n,)."""
     return np.asarray(abs(system.stiffness) @ np.abs(u) + abs(system.law_rows).T @ np.abs(force))
 
 
 def release(run: JumpingRun, law: int) -> None:
-    """Move joints without mass to where they are in balance without the force that `law` has lost.
+    """Move joints without mass to their equilibrium without the force that `law` has lost.
 
     Raises
     ------
     Stop
-        Nothing holds one of them on the way, or the changes of branch do not end.
+        A joint is unrestrained on the way, or the changes of branch do not end.
     """
     system, members = run.system, run.system.structure.corotational
     rows, coefs = system.law_rows, system.excitation.about(np.array([run.t]))[0]
@@ -153,7 +153,7 @@ def release(run: JumpingRun, law: int) -> None:
         put_in = float(system.applied(s) @ (system.expand[:, z] @ (fraction * way)))
         run.add_release_work(law, float(left @ way) * (fraction - 0.5 * fraction * fraction), put_in)
         d += fraction * move
-        for j in np.flatnonzero(move).tolist():  # extremes stand at the ends of the straight parts
+        for j in np.flatnonzero(move).tolist():  # extremes occur at the ends of the straight parts
             run.tracker.deformation(j).take(float(d[j]), run.t)
             run.tracker.force(j).take(run.force(j, float(d[j]))[0], run.t)
         if i >= 0:

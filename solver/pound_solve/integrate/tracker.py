@@ -49,7 +49,7 @@ class Collision:
     impulse: float = 0.0
 
     def count(self, force: float, t: float, impulse: float = 0.0) -> None:
-        """Count a force at a time and an impulse in."""
+        """Include a force at a time, and an impulse."""
         self.impulse += impulse
         if force > self.peak:
             self.peak, self.t_peak = force, t
@@ -62,17 +62,17 @@ class Peaks:
     Attributes
     ----------
     monitored : list of Extreme
-        Of the monitored outputs.
+        Extremes of the monitored outputs.
     deformation, force : list of Extreme
-        Of every law; for contacts the closure and the force (compression positive).
+        Extremes of every law; for contacts, of the closure and the force (compression positive).
     collisions : list of Collision
-        Ended ones in order of their end, those still closed last.
+        Finished collisions in the order of their ends, followed by those of contacts still closed.
     yields : list of int
         Yield events per law.
     dashpot_losses : list of float
         Energy lost in the dashpot of every law (contacts) [F L].
     between : float
-        Largest share of a peak by which it exceeds all values at instants.
+        Largest fraction of a peak by which it exceeds all values at instants.
     """
 
     monitored: list[Extreme]
@@ -100,19 +100,19 @@ class Peak(Protocol):
 
 
 class TrackedExtremes(NamedTuple):
-    """Extremes of the tracked quantities: monitored outputs, deformations of the laws, their forces, in
-    this order; shape (n_monitored + 2 n_laws,) each.
+    """Extremes of the tracked quantities in this order: monitored outputs, deformations of the laws, forces
+    of the laws; shape (n_monitored + 2 n_laws,) each.
 
     Attributes
     ----------
     high, t_high, low, t_low : ndarray
         Largest and smallest value so far and their times.
     value, slope : ndarray
-        At the last instant that a method with steps tracked.
+        Value and slope at the last instant that a method with steps tracked.
     steepest : ndarray
         Largest magnitude of the slope so far.
     reached : ndarray
-        Largest magnitude at an instant; `high` and `low` may lie between two.
+        Largest magnitude at an instant; `high` and `low` may occur between two instants.
     """
 
     high: Array
@@ -165,12 +165,12 @@ class CollisionPeak:
         return self.collision.peak
 
     def take(self, value: float, t: float) -> None:
-        """Count a force in."""
+        """Include a force."""
         self.collision.count(value, t)
 
 
 class ResponseTracker:
-    """Extremes, collisions and yield events while a run goes on.
+    """Extremes, collisions and yield events during a run.
 
     Parameters
     ----------
@@ -180,9 +180,9 @@ class ResponseTracker:
     Attributes
     ----------
     extremes : TrackedExtremes
-        Kernels count into its arrays, other methods through `monitored`, `deformation` and `force`.
+        Kernels update its arrays directly, other methods through `monitored`, `deformation` and `force`.
     open : dict of Collision
-        Collisions that are under way, by law.
+        Collisions in progress, by law.
     """
 
     def __init__(self, laws: Sequence[LawSpring], n_monitored: int) -> None:
@@ -231,7 +231,7 @@ class ResponseTracker:
         v: float,
         force_after: float,
     ) -> None:
-        """Record that a law went from a branch of a kind to one of another at deformation `d`, rate `v`."""
+        """Record that a law changed to a branch of another kind at deformation `d` and rate `v`."""
         if not self.laws[law].role.collides:
             if after is BranchKind.YIELDING and before is not BranchKind.YIELDING:
                 self._yields[law] += 1
@@ -239,7 +239,7 @@ class ResponseTracker:
         was, now = before.closed, after.closed
         ended = self._last_ended(law) if before is BranchKind.RELEASED and now else None
         if ended is not None:
-            # the bodies never parted: the collision goes on
+            # the bodies never parted: the collision continues
             again = self._ended.pop(ended)
             again.t_end = again.separation = np.nan
             self.open[law] = again
@@ -251,12 +251,12 @@ class ResponseTracker:
             self._ended.append(done)
 
     def _last_ended(self, law: int) -> int | None:
-        """Place of the contact's last collision; it is seldom far from the end of the list."""
+        """Return the index of the contact's last collision, which is usually near the end of the list."""
         collisions = self._ended
         return next((i for i in reversed(range(len(collisions))) if collisions[i].law == law), None)
 
     def close(self, dashpot_losses: Array) -> Peaks:
-        """Return what was found; contacts that are still closed come last.
+        """Return the results; collisions of contacts that are still closed come last.
 
         Parameters
         ----------
@@ -277,8 +277,8 @@ class ResponseTracker:
         )
 
     def _between(self) -> float:
-        """Largest share of a peak by which it exceeds all values at instants; peaks that are far below the
-        largest of their unit do not count.
+        """Return the largest fraction of a peak by which it exceeds all values at instants.  Peaks far
+        below the largest of their unit do not count.
         """
         x = self.extremes
         units = [law.unit for law in self.laws]

@@ -1,9 +1,9 @@
-"""EXACT within a budget: what AUTO spends on trying it is at most a third of the whole.
+"""EXACT within a budget: AUTO spends at most a third of the total cost on trials of it.
 
-The cost of a trial that does not end is lost.  All trials together therefore cost no more than half
-(`TRIAL_SHARE`) of what is certain to be needed without them: the rest of the program, the loading of
-kernels, the runs with steps that were made, and the one that follows, or the run of TAYLOR.  A trial ends
-early where, at the rate so far, the run would cost more.
+The cost of an unfinished trial is lost.  Therefore all trials together cost no more than half
+(`TRIAL_SHARE`) of what is certainly needed without them: the rest of the program, the loading of
+kernels, the runs with steps that were made, and the next one, or the run of TAYLOR.  A trial ends early if
+the run, extrapolated at the present rate, would cost more.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import EnvelopeRecorder, Outcome, Problem, Stop
 from pound_solve.numerics.providers import loading
 
-TRIAL_SHARE = 0.5  #: limit of the cost of all trials, as a share of the cost of the other methods
-COST_OF_REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
+TRIAL_SHARE = 0.5  #: limit of the cost of all trials, as a fraction of the cost of the other methods
+COST_OF_REST = 0.5  #: cost of the rest of the program: loading it, reading the deck, writing the results
 CHECKED_AFTER = 0.2  #: fraction of a trial's budget after which its progress is checked
-EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need
+EXPECTED_DECOMPOSITIONS = 12  #: decompositions of all unknowns that a run is assumed to need
 #: decompositions that a trial may make (where combinations of stiffnesses do not return, more will come),
 #: and laws from which on it is not the first thing that is tried (combinations seldom return); both for the
 #: tolerance REFERENCE_TOL: for a smaller one they grow with the root, as the steps do
@@ -33,12 +33,12 @@ class ExactTrial:
     Parameters
     ----------
     refused : str
-        Why EXACT does not serve; empty where it does.
+        Why EXACT is not applicable; empty if it is.
 
     Attributes
     ----------
     cost : float
-        Least cost of the whole run, as far as known.
+        Least known cost of the whole run.
     spent : float
         Cost of all trials.
     """
@@ -56,9 +56,9 @@ class ExactTrial:
             self.cost = np.inf
 
     def run(self, others: float) -> Outcome | None:
-        """Return its run, or None where all trials would cost more than a share of what the `others` do,
-        which still have to load their kernels, or where it stops because a mode is too fast for it or
-        changes do not end.
+        """Run EXACT and return its outcome.  Return None if all trials would cost more than a fraction of
+        the `others`, which still have to load their kernels, or if EXACT stops because a mode is too fast
+        or changes do not end.
 
         Raises
         ------
@@ -84,7 +84,7 @@ class ExactTrial:
             self.cost = err.cost * ((end - begin) / (err.t - begin) if err.t > begin else 1.0)
             return None
         except Stop as stop:
-            if stop.code == "A503":  # rounding stops EXACT, which others may not feel
+            if stop.code == "A503":  # rounding stops EXACT, but perhaps not the others
                 del decisions[known:]
                 self.cost = np.inf
                 return None

@@ -1,18 +1,18 @@
-r"""Whether the motion is unique where several laws yield or fail at one instant.
+r"""Uniqueness of the motion when several laws yield or fail at one instant.
 
-The deformation of laws in series is shared out by the tangent stiffness of the unknowns without mass, which
-have no inertia.  The rates are unique if that stiffness is positive definite with the tangents of *all*
+The tangent stiffness of the unknowns without mass, which have no inertia, distributes the deformation among
+laws in series.  The rates are unique if that stiffness is positive definite with the tangents of *all*
 laws that reach the ends of their branches together (Hill's comparison solid).  If it leaves a motion free
 in which some of these laws continue and others reverse, any of them may continue alone, and rounding
-decides.  Dashpots resist such a motion where the tangent is zero; where it is negative they only slow it
+decides.  Dashpots resist such a motion if the tangent is zero; if it is negative, they only slow it
 down, and the rounding error grows without any physical cause.
 
 A hardening law rests at the start of its yield line as long as another law in series yields at the same
 force.  Whether it has yielded is then undecided, and some rules never forget a yield (see
 `remembers_yield`).
 
-Several laws may also lose their forces together.  The force that one loses loads or relieves the others:
-those that reverse then, and do not lose theirs, might equally have failed first.
+Several laws may also lose their forces together.  The force that one loses loads or relieves the others.
+Laws that then reverse and keep their forces might equally have failed first.
 
 References
 ----------
@@ -35,8 +35,8 @@ from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
 NO_STIFFNESS = 1e-9  #: fraction of the elastic stiffness below which a tangent counts as none
-PARTICIPATION = 1e-6  #: fraction of the largest deformation of the motion that is not held
-MAX_NAMED = 4  #: elements that are named
+PARTICIPATION = 1e-6  #: fraction of the largest deformation in the unrestrained motion
+MAX_NAMED = 4  #: most elements that are named
 PERTURBATION = (
     1e-6  #: fraction of its yield deformation by which a spring goes beyond yield, or stays below
 )
@@ -46,8 +46,8 @@ ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight betw
 
 
 def remembers_yield(spring: LawSpring) -> bool:
-    """Whether a spring behaves differently afterwards, depending on whether it has just reached its first
-    yield or not.
+    """Return whether the later behaviour of a spring depends on whether it has just reached its first
+    yield.
     """
     law = spring.law
     if law.curved or spring.yields is None or spring.strengths is None:
@@ -55,7 +55,7 @@ def remembers_yield(spring: LawSpring) -> bool:
     ends = [y - spring.beside * f for y, f in zip(spring.yields, spring.strengths)]
     for near, far in (ends, ends[::-1]) if np.isfinite(ends).all() else ():
         way = [0.3 * near, 0.8 * near, 4.0 * far, 0.5 * near, 0.9 * near]
-        way += [x for n in range(CYCLES) for x in ((2.0 + n) * far, (2.5 + n) * near)]  # ever further
+        way += [x for n in range(CYCLES) for x in ((2.0 + n) * far, (2.5 + n) * near)]  # growing
         forces = []
         for d in (near * (1.0 - PERTURBATION), near * (1.0 + PERTURBATION)):
             state = drive(law, law.start(), 0.0, d)
@@ -74,9 +74,9 @@ class Uniqueness:
     Attributes
     ----------
     first : float
-        The first instant at which it is open which of them goes on [T]; NaN where there is none.
+        The first instant at which it is undecided which of them continues [T]; NaN if there is none.
     elements : list of int
-        Elements of the laws among which it is open there.
+        Elements of the laws that are undecided at that instant.
     """
 
     def __init__(self, system: ReducedSystem) -> None:
@@ -96,11 +96,12 @@ class Uniqueness:
         t : float
             [T]
         stiffness, damping : ndarray, shape (n_laws,)
-            Tangents and dashpots of the laws if all that are tied go on [F/L], [F T/L].  Where a force is
-            lost: minus infinity for others that come to lose theirs, and the branches they go to.
+            Tangents and dashpots of the laws if all tied laws continue [F/L], [F T/L].  If a force is lost:
+            minus infinity for other laws that are about to lose theirs, and the numbers of their next
+            branches.
         rising : ndarray, shape (n_laws,)
-            Above zero for laws whose deformation rises to the end of its branch, below zero where it falls
-            to it, zero for all others.
+            Positive for laws whose deformation rises to the end of the branch, negative if it falls to it,
+            zero for all others.
         """
         if self.elements:
             return
@@ -108,7 +109,7 @@ class Uniqueness:
             law = int(np.flatnonzero((rising != 0.0) & ~lost)[0])
             self._losses.append((t, law, {int(i): int(damping[i]) for i in np.flatnonzero(lost)}))
             return
-        if not self._straight:  # the tangents of the members move
+        if not self._straight:  # the tangents of the members vary
             return
         key = b"".join(x.tobytes() for x in (stiffness, damping, np.sign(rising)))
         if key in self._known:
@@ -122,14 +123,14 @@ class Uniqueness:
             self.first, self.elements = t, elements
 
     def record_change(self, t: float, law: int, branch: int) -> None:
-        """Record that a law changes from its branch to another, by number."""
+        """Record that a law changes to another branch, given by number."""
         for since, first, others in self._losses:
             if t >= since and others.pop(law, branch) != branch:
                 self._tell(since, [first, law])
 
     def record_rest(self, t: float, law: int, other: int, branch: int) -> None:
-        """Record that a law reverses while another one, or itself, stands at the beginning of a branch, by
-        number.
+        """Record that a law reverses while another law, or the law itself, rests at the beginning of a
+        branch, given by number.
         """
         spring = self.system.structure.laws[other]
         yields = spring.law.rule.branches[branch].kind is BranchKind.YIELDING
@@ -137,14 +138,14 @@ class Uniqueness:
             self._tell(t, [law, other])
 
     def _tell(self, t: float, laws: list[int]) -> None:
-        """Record that it is open which of some laws goes on."""
+        """Record that it is undecided which of some laws continues."""
         if not self.elements:
             self.first = t
             self.elements = sorted({self.system.structure.laws[i].element for i in laws})
 
     def _open(self, among: Flags, stiffness: Array, rising: Array, least: float) -> list[int]:
-        """Elements of tied laws that take part, some going on and some turning back, in a motion of some
-        unknowns whose tangent is below the `least` share of the elastic stiffness.
+        """Return the elements of tied laws that take part, some continuing and some reversing, in a motion
+        of some unknowns whose tangent is below the fraction `least` of the elastic stiffness.
         """
         system, at = self.system, np.flatnonzero(among)
         rows = dense(system.law_rows[:, at])
@@ -160,7 +161,7 @@ class Uniqueness:
         return []
 
     def checks(self) -> list[Check]:
-        """The check of a run: none where its motion is unique."""
+        """Return the check of a run; none if its motion is unique."""
         for since, first, others in self._losses:
             if others:
                 self._tell(since, [first, *others])

@@ -285,7 +285,7 @@ def update_by_extremes(
 
 
 def _count_extreme(peak: Peak, t0: float, function: ValueAndSlope, low: Ends, high: Ends) -> None:
-    """Update a peak with the extreme between two times, whose slopes differ in sign, if it may be larger."""
+    """Update a peak with the extreme between two times whose slopes differ in sign, if it may exceed it."""
     sign = 1.0 if low[2] > 0 else -1.0
     best = peak.high if sign > 0 else -peak.low
     f_low, f_high, s_low, s_high = (sign * float(x) for x in (low[1], high[1], low[2], high[2]))
