@@ -66,7 +66,7 @@ class EnergyAccumulator:
         self.works.input, self.works.damping, self.works.contact = works[-1].tolist()
 
     def runs_away(self, kinetic: float) -> bool:
-        """Whether the motion grows without bound."""
+        """Return whether the motion grows without bound."""
         return runs_away(kinetic, self.initial, self.works.gross_input)
 
 

@@ -194,19 +194,19 @@ class ResponseTracker:
         self._yields = [0] * len(laws)
 
     def monitored(self, i: int) -> TrackedPeak:
-        """Extremes of a monitored output."""
+        """Return the extremes of a monitored output."""
         return TrackedPeak(self.extremes, i)
 
     def deformation(self, law: int) -> TrackedPeak:
-        """Extremes of a law's deformation."""
+        """Return the extremes of a law's deformation."""
         return TrackedPeak(self.extremes, self.n_monitored + law)
 
     def force(self, law: int) -> TrackedPeak:
-        """Extremes of a law's force."""
+        """Return the extremes of a law's force."""
         return TrackedPeak(self.extremes, self.n_monitored + len(self.laws) + law)
 
     def collision_force(self, law: int) -> CollisionPeak:
-        """Largest force of a contact in its present collision."""
+        """Return the largest force of a contact in its present collision."""
         return CollisionPeak(self.open[law])
 
     def begin(

@@ -20,11 +20,11 @@ TRIAL_SHARE = 0.5  #: limit of the cost of all trials, as a fraction of the cost
 COST_OF_REST = 0.5  #: cost of the rest of the program: loading it, reading the deck, writing the results
 CHECKED_AFTER = 0.2  #: fraction of a trial's budget after which its progress is checked
 EXPECTED_DECOMPOSITIONS = 12  #: decompositions of all unknowns that a run is assumed to need
-#: decompositions that a trial may make (where combinations of stiffnesses do not return, more will come),
-#: and laws from which on it is not the first thing that is tried (combinations seldom return); both for the
-#: tolerance REFERENCE_TOL: for a smaller one they grow with the root, as the steps do
+#: decompositions that a trial may make (if combinations of stiffnesses do not recur, more will follow), and
+#: number of laws above which EXACT is not tried first (combinations seldom recur); both for the tolerance
+#: REFERENCE_TOL: for a smaller one they grow with its root, as the steps do
 MAX_DECOMPOSITIONS, MAX_LAWS, REFERENCE_TOL = 40, 12, 1e-3
-MIN_COST_OF_MANY = 1.0  #: what a run with more laws is assumed to cost at least
+MIN_COST_OF_MANY = 1.0  #: least cost that is assumed for a run with more laws
 
 
 class ExactTrial:

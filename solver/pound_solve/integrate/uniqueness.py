@@ -37,10 +37,8 @@ from pound_solve.structure.reduction import ReducedSystem
 NO_STIFFNESS = 1e-9  #: fraction of the elastic stiffness below which a tangent counts as none
 PARTICIPATION = 1e-6  #: fraction of the largest deformation in the unrestrained motion
 MAX_NAMED = 4  #: most elements that are named
-PERTURBATION = (
-    1e-6  #: fraction of its yield deformation by which a spring goes beyond yield, or stays below
-)
-CYCLES = 12  #: cycles after that, in which the forces are compared
+PERTURBATION = 1e-6  #: fraction of its yield deformation by which a spring exceeds yield, or stays below
+CYCLES = 12  #: subsequent cycles in which the forces are compared
 MAX_DIFFERENCE = 1e-3  #: fraction of the elastic force at yield above which the forces differ
 ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight between"
 

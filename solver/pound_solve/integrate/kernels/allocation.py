@@ -24,14 +24,14 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-#: samples and transitions kept between two visits of Python, which cost 2 ms each
+#: samples, transitions and ties kept between two returns to Python, which cost 2 ms each
 SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
-MAX_HELD = 2**20  #: numbers of one kind in those samples at most, except that two samples always fit
-#: motions of one step, and of whole steps between two visits, that envelopes see at least
+MAX_HELD = 2**20  #: most numbers of one kind in those samples, except that two samples always fit
+#: fewest motions of one step, and of whole steps between two returns, that envelopes receive
 MIN_MOTIONS = 64
-SOLUTION_ROUNDING = 16.0 * float(np.finfo(float).eps)  #: fraction of a force that solving for it loses
-MAX_DELAY = 1e-6  #: longest time e by which massless velocities are found, as a share of the longest step
-FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
+SOLUTION_ROUNDING = 16.0 * float(np.finfo(float).eps)  #: relative error of a force from solving for it
+MAX_DELAY = 1e-6  #: longest time e for finding massless velocities, as a fraction of the longest step
+FULL_DIAGONAL = 0.25  #: filled fraction above which a diagonal is cheaper to store whole than by entries
 
 
 class Layout(NamedTuple):
@@ -42,14 +42,14 @@ class Layout(NamedTuple):
     order : ndarray, shape (n,)
         Unknowns of the reduced system in the order of elimination.
     inverse_order : ndarray, shape (n,)
-        Their positions in it.
+        Position of each unknown in `order`.
     pattern : Pattern
     column : ndarray, shape (n_entries,)
         Columns of the pattern's entries.
     joins : ndarray of bool, shape (n_laws,)
         Which laws add to A.
     position : mapping
-        Of pairs of unknowns in the pattern; empty where the stiffness is not in A.
+        Position of pairs of unknowns in the pattern; empty if the stiffness is not in A.
     """
 
     order: Index
@@ -61,13 +61,13 @@ class Layout(NamedTuple):
 
 
 def sparse_rows(a: Matrix) -> Rows:
-    """Rows of a matrix as pointers, columns and values."""
+    """Return the rows of a matrix as pointers, columns and values."""
     rows, columns, values = entries(a)
     return Rows(*_rows(rows, np.arange(a.shape[0]), columns, values))
 
 
 def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[Positions, Positions, Array]:
-    """The entries of some rows, which come row by row, as pointers, columns and values."""
+    """Return the entries of some rows, given row by row, as pointers, columns and values."""
     pointers = np.append(np.searchsorted(rows, wanted), len(rows)).astype(np.uint32)
     return pointers, columns.astype(np.uint32), np.ascontiguousarray(values)
 
@@ -91,7 +91,7 @@ def product(a: Matrix) -> Product:
 
 
 def coupled_pairs(touched: Iterable[Index]) -> tuple[Index, Index]:
-    """All pairs among the unknowns that each of some laws or members touches."""
+    """Return all pairs of unknowns that the same law or member touches."""
     nothing, sets = np.zeros(0, np.int64), list(touched)
     return (
         np.concatenate([nothing, *(np.repeat(x, len(x)) for x in sets)]),
@@ -117,7 +117,7 @@ def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
 
 @by_content(most=8)
 def laid_out(n: int, one: Index, other: Index, joins: Flags) -> Layout:
-    """Choose the order of elimination of n unknowns by the pairs of them that are coupled."""
+    """Choose the order of elimination of n unknowns from the pairs that are coupled."""
     order = ldl.order(n, one, other)
     inverse_order = np.argsort(order)
     pattern = ldl.analyse(n, inverse_order[one], inverse_order[other])
@@ -129,7 +129,7 @@ def laid_out(n: int, one: Index, other: Index, joins: Flags) -> Layout:
 def linear_system(
     system: ReducedSystem, monitored: MonitoredOutputs, layout: Layout, scheme: Scheme, dt: float
 ) -> state.LinearSystem:
-    """The linear part of the equations of motion, for steps up to `dt`."""
+    """Return the linear part of the equations of motion, for steps up to `dt`."""
     o, s, laws = layout.order, system.structure, system.structure.laws
     grid = np.ix_(o, o)
     mass, damping, stiffness = (a[grid] for a in (system.mass, system.damping, system.stiffness))
@@ -173,14 +173,14 @@ def linear_system(
 
 
 def inverse_index(chosen: Index, count: int) -> Index:
-    """Place of each of `count` things among the `chosen` ones, -1 for others."""
+    """Return the index of each of `count` things in `chosen`, -1 for the others."""
     place = np.full(count, -1)
     place[chosen] = np.arange(len(chosen))
     return place
 
 
 def places_in_pattern(rows: Rows, layout: Layout) -> tuple[Positions, Positions, Array]:
-    """Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
+    """Return where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
     pairs: list[list[tuple[int, float]]] = [[] for _ in layout.joins]
     for i in np.flatnonzero(layout.joins).tolist():
         span = slice(rows.pointers[i], rows.pointers[i + 1])
@@ -196,8 +196,8 @@ def places_in_pattern(rows: Rows, layout: Layout) -> tuple[Positions, Positions,
 
 
 def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
-    """The law whose force is the normal force of another, and a bit for each branch where it is pressed;
-    -1 if none.
+    """Return the law whose force is the normal force of `law` (-1 if none), and a bit for each branch on
+    which it is pressed.
     """
     for j, other in enumerate(laws if law.role is Role.FRICTION else ()):
         if (other.element, other.component) == (law.element, law.normal_component):
@@ -206,9 +206,9 @@ def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
 
 
 def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
-    r"""Rounding errors of the deformations `d` at a start, shape (n_laws,): of the strain energy E there a
-    law has a share of :math:`\epsilon^2`, so that it moves by :math:`\epsilon\sqrt{2E/k}`, whatever units
-    its deformation has.
+    r"""Return the rounding errors of the deformations `d` at a start, shape (n_laws,).  A law takes the
+    fraction :math:`\epsilon^2` of the strain energy E there, so it moves by :math:`\epsilon\sqrt{2E/k}`,
+    whatever the units of its deformation.
     """
     k = np.array([s.steepest for s in system.structure.laws], float)
     doubled = float(np.abs(start.u) @ np.abs(system.stiffness @ start.u) + k @ d**2)
@@ -220,8 +220,8 @@ def law_arrays(
     system: ReducedSystem, start: Start, layout: Layout, rules: Sequence[Rule], dashpot_losses: Array,
     dt: float,
 ) -> law_state.Laws:  # fmt: skip
-    """The laws in the state of a start, for steps up to `dt`, with the losses of an accumulator; their
-    branches are not entered yet.
+    """Return the laws in the state of a start, for steps up to `dt`, with the losses of an accumulator.
+    Their branches are not entered yet (see `laws.enter_branch`).
     """
     laws, count = system.structure.laws, len(system.structure.laws)
     t, value = float(start.times[0]), system.excitation.value
@@ -281,12 +281,12 @@ def law_arrays(
 
 
 def _integers(values: Iterable[int]) -> Index:
-    """Values as an array of integers, which may be empty."""
+    """Return values as an array of integers, which may be empty."""
     return np.array([*values], np.int64)
 
 
 def _law_numbers(laws: Sequence[LawSpring], start: Start) -> tuple[Array, Array]:
-    """Parameters and internal variables of laws, a row for each; those of a secant dashpot come last."""
+    """Return parameters and internal variables of laws, a row each; those of a secant dashpot come last."""
     parameters, internal = np.zeros((len(laws), PARAMETERS)), np.zeros((len(laws), VARIABLES + 2))
     for i, (s, (_, _, _, variables)) in enumerate(zip(laws, start.states)):
         n = s.law.rule.variables
@@ -297,7 +297,7 @@ def _law_numbers(laws: Sequence[LawSpring], start: Start) -> tuple[Array, Array]
 
 
 def member_arrays(system: ReducedSystem, layout: Layout, scheme: Scheme) -> state.Corotational:
-    """The corotational members at rest."""
+    """Return the corotational members at rest."""
     members = system.corotational
     count = len(members)
     supports = system.structure.corotational.rows[:, system.structure.n_free :]
@@ -345,7 +345,7 @@ def step_arrays(
     linear: state.LinearSystem,
     extremes: TrackedExtremes,
 ) -> state.Step:
-    """The motion of a start, the factor of the mass, and the extremes of a tracker."""
+    """Return the motion of a start, the factor of the mass, and the extremes of a tracker."""
     n, o, t = system.size, layout.order, float(start.times[0])
     inputs = system.inputs.shape[1]
     value = system.excitation.value
@@ -385,7 +385,7 @@ def buffers(n: int, n_laws: int, unknowns: Index, laws: Index) -> state.Buffers:
     """
     samples = min(SAMPLES, max(MAX_HELD // (3 * max(n, n_laws, 1)), 2))
     log = TRANSITIONS + 16 * n_laws
-    # half of it is for the parts of one step, which events cut
+    # half of it is reserved for the parts of one step that is cut at events
     motions = 2 * max(min(16 * SAMPLES, MAX_HELD // max(3 * len(unknowns) + len(laws), 3)), MIN_MOTIONS)
     u, v, a = np.zeros((3, samples, n))
     force, stored, lost, dashpot = np.zeros((4, samples, n_laws))
@@ -412,7 +412,7 @@ def buffers(n: int, n_laws: int, unknowns: Index, laws: Index) -> state.Buffers:
 
 
 def run_record(t: float, initial_energy: float) -> state.Run:
-    """Counters and clocks at the start of a run."""
+    """Return the counters and clocks at the start of a run."""
     run: state.Run = record(state.Run)
     run.time, run.factor_length, run.initial_energy = t, -1.0, initial_energy
     run.longest_part = np.inf

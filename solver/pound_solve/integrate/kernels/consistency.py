@@ -1,14 +1,15 @@
-r"""Kernels that make the state at an instant consistent with the branches that the laws are on.
+r"""Kernels that make the state at an instant consistent with the present branches of the laws.
 
-Accelerations follow from the equations of motion.  Velocities of massless unknowns have jumped where a
-stiffness or a dashpot did: an implicit step of a tiny length e finds them,
+Accelerations follow from the equations of motion.  Velocities of massless unknowns jump if a stiffness or a
+dashpot jumps.  An implicit step of a tiny length e finds them,
 
 .. math:: (C + e K)\,\Delta v = p - C v - K u - f + e\,\tfrac{d}{dt}(p - K u - f)
 
-over the massless unknowns.  Of an imbalance :math:`r = p - C v - K u - f`, only what dashpots hold makes
-them jump.  What springs alone hold (rounding, an event that is not met to the last digit, a curved law on
-its tangent) would ask for a jump of the displacement, and for a velocity of r / (e K).  It is left out:
-:math:`(C + e K)\,\Delta v_1 = r` divides r into :math:`C\,\Delta v_1`, which dashpots hold, and the rest.
+over the massless unknowns.  Of a residual :math:`r = p - C v - K u - f`, only the part that dashpots resist
+makes them jump.  The part that only springs resist (rounding, an event that is not met to the last digit, a
+curved law on its tangent) would require a jump of the displacement, and a velocity of r / (e K).  It is
+left out: :math:`(C + e K)\,\Delta v_1 = r` splits r into :math:`C\,\Delta v_1`, resisted by dashpots, and
+the rest.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
 
-#: fraction of its largest value within which an event is accepted where it cannot be met better
+#: fraction of its largest value within which an event is accepted if it cannot be met more accurately
 NEARLY_MET = 1e-6
-FORCE_JUMP = 10.0 * NEARLY_MET  #: fraction of the forces of a law above which it has lost one at an event
-DELAY = 1e-8  #: fraction of the longest C / K among massless unknowns that e is
+FORCE_JUMP = 10.0 * NEARLY_MET  #: fraction of a law's forces above which a jump at an event is a lost force
+DELAY = 1e-8  #: e as a fraction of the longest C / K among massless unknowns
 
 
 def touches_massless(linear: LinearSystem, rows: Rows, i: int) -> bool:
-    """Whether law `i` holds a massless unknown, whose velocity may jump."""
+    """Return whether law `i` holds a massless unknown, whose velocity may jump."""
     if not linear.all_mass:
         for q in range(rows.pointers[i], rows.pointers[i + 1]):
             if not linear.has_mass[rows.columns[q]]:
@@ -47,8 +48,8 @@ def touches_massless(linear: LinearSystem, rows: Rows, i: int) -> bool:
 def loses_force(
     linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: float, d: float
 ) -> bool:
-    """Whether law `i` lost a force that had held an unknown without mass, when it left a branch of that
-    `stiffness` and `offset` at the deformation `d`.
+    """Return whether law `i` lost a force that held an unknown without mass when it left a branch with the
+    given `stiffness` and `offset` at the deformation `d`.
     """
     definition = laws.definition
     if definition.contact[i] or definition.curved[i]:
@@ -60,7 +61,7 @@ def loses_force(
 
 
 def slowest_decay(sim: Simulation) -> float:
-    """Longest ratio of dashpot to stiffness of a massless unknown, by their diagonals [T]."""
+    """Return the longest ratio of dashpot to stiffness of a massless unknown, from the diagonals [T]."""
     linear, laws, step = sim.linear, sim.laws, sim.step
     rows = laws.definition.rows
     stiffness, damping, slowest = step.scratch[0], step.scratch[1], 0.0
@@ -82,13 +83,13 @@ def slowest_decay(sim: Simulation) -> float:
 
 
 def factorise_massless(sim: Simulation, quantities: Array) -> float:
-    """Factorise ``K + C / e`` over the massless unknowns, with the members at some quantities.
+    """Factorise ``K + C / e`` over the massless unknowns, with the members at the given quantities.
 
     Returns
     -------
     float
-        1 / e: large enough to leave alone what dashpots hold, not so large that the springs are lost beside
-        them.
+        1 / e: large enough that dashpots hold their unknowns, small enough that the springs are not lost
+        in rounding beside them.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition = laws.definition
@@ -112,14 +113,14 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
         quantity_stiffness(members.parameters, c, quantities, 0, members.present_tangent, c)
         add_tangent(linear, members, step, c, members.present_tangent, 1.0, True)
     if factor(linear.pattern, step.matrix, step.factors[MASSLESS], step.pivots[MASSLESS], step.row) >= 0:
-        for i in range(len(step.row)):  # what nothing holds goes on as it did
+        for i in range(len(step.row)):  # unrestrained unknowns keep their motion
             step.pivots[MASSLESS, i] = float("inf")
     return rate
 
 
 def force_rates(sim: Simulation, velocity: Array, rate: Array, input_rates: Array, out: Array) -> None:
-    """Rates of the forces on the massless unknowns, dashpots excluded, at some velocities and rates of the
-    laws.
+    """Compute the rates of the forces on the massless unknowns, dashpots excluded, at the given velocities
+    and rates of the laws.
     """
     linear, laws, members = sim.linear, sim.laws, sim.members
     rows = laws.definition.rows
@@ -146,7 +147,7 @@ def force_rates(sim: Simulation, velocity: Array, rate: Array, input_rates: Arra
 
 
 def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array) -> None:
-    """Forces of the dashpots, those of the laws included, at some velocities."""
+    """Compute the forces of the dashpots, those of the laws included, at the given velocities."""
     rows = laws.definition.rows
     multiply(linear.damping, velocity, out)
     for i in range(len(laws.definition.rule)):
@@ -157,15 +158,15 @@ def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array
 
 
 def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
-    """Correct velocities of massless unknowns that no dashpot holds, at the end of a step of length `h`.
+    """Correct velocities of massless unknowns without dashpots, at the end of a step of length `h`.
 
-    They follow from the rates of the forces, which remain in balance.  The method itself takes about twice
-    their mean over the step less those at its start, which would oscillate about the true ones undamped.
+    They follow from the rates of the forces, which remain in balance.  The method itself would give about
+    twice their mean over the step less those at its start: an undamped oscillation about the true ones.
 
     Parameters
     ----------
     stale : bool
-        Whether the factor of the massless unknowns must be made anew.
+        Whether the matrix of the massless unknowns must be factorised again.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     if stale:
@@ -182,7 +183,7 @@ def correct_massless_rates(sim: Simulation, stale: bool, h: float) -> None:
 
 
 def jump_massless_rates(sim: Simulation) -> None:
-    """Set the velocities of massless unknowns to those on the present branches (see the module's head)."""
+    """Set the velocities of massless unknowns for the present branches (see the module docstring)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     now, change, force = step.now, step.scratch[0], step.scratch[1]
@@ -242,7 +243,7 @@ def make_consistent(sim: Simulation) -> None:
         subtract_force(sim.members, c, sim.members.now.forces, residual)
     for i in range(len(residual)):
         if not linear.has_mass[i]:
-            residual[i] = 0.0  # in balance, but for rounding that the alphas would take for a load
+            residual[i] = 0.0  # in balance; the alphas would treat its rounding as a load
         now.acceleration[i] = residual[i]
     if linear.diagonal:
         for i in range(len(residual)):

@@ -17,12 +17,12 @@ from pound_solve.structure.corotational import (
     quantity_stiffness,
 )
 
-FORCE_TOLERANCE = 1e-12  #: fraction of the largest force that the members' forces are found to
-MEMBER_ROUNDING = 1e-15  #: fraction of a member's axial stiffness that its forces are rounded to
+FORCE_TOLERANCE = 1e-12  #: tolerance of the members' forces, as a fraction of the largest force
+MEMBER_ROUNDING = 1e-15  #: rounding of a member's forces, as a fraction of its axial stiffness
 
 
 def form_quantities(members: Corotational, u: Array, inputs: Array, out: Array) -> None:
-    """Quantities of the members at displacements `u` and some inputs."""
+    """Compute the quantities of the members at displacements `u` and the given inputs."""
     for c in range(len(out)):
         for j in range(6):
             total = 0.0
@@ -55,7 +55,7 @@ def add_tangent(
     linear: LinearSystem, members: Corotational, step: Step, c: int, tangent: Array, factor: float,
     massless_only: bool,
 ) -> None:  # fmt: skip
-    """Add `factor` times the tangent of member `c` to A; of massless unknowns only, if so asked."""
+    """Add `factor` times the tangent of member `c` to A, optionally for massless unknowns only."""
     first = members.pointers[c]
     for y in range(first, members.pointers[c + 1]):
         for i in range(6):
@@ -74,14 +74,14 @@ def add_tangent(
 
 
 def form_members(members: Corotational, step: Step) -> None:
-    """Quantities and forces of the members at the start of a step."""
+    """Compute the quantities and forces of the members at the start of a step."""
     form_quantities(members, step.now.displacement, step.now.inputs, members.now.quantities)
     for c in range(len(members.parameters)):
         quantity_forces(members.parameters, c, members.now.quantities, 0, members.now.forces, 0)
 
 
 def predict_members(members: Corotational, step: Step) -> None:
-    """Linearise the members' forces about the displacements that lack the acceleration at the end."""
+    """Linearise the members' forces about the predicted displacements (without the end acceleration)."""
     form_quantities(members, step.trial.displacement, step.trial.inputs, members.predicted)
     for c in range(len(members.parameters)):
         quantity_forces(members.parameters, c, members.predicted, 0, members.at_zero, 0)
@@ -89,7 +89,7 @@ def predict_members(members: Corotational, step: Step) -> None:
 
 
 def predicted_force(members: Corotational, c: int) -> None:
-    """Set the force of member `c` at the end of the step to the linearised one where it is predicted."""
+    """Set the force of member `c` at the end of the step to the linearised one at the prediction."""
     for j in range(6):
         members.trial.forces[c, j] = members.at_zero[c, j]
     add_tangent_force(members.tangent, c, members.predicted, members.trial.forces, 1.0)
@@ -109,7 +109,7 @@ def correct_members(members: Corotational, step: Step, beta_h2: float) -> float:
     Returns
     -------
     float
-        Largest distance of a force from its line, over what is allowed.
+        Largest distance of a force from its linearisation, over the tolerance.
     """
     trial, p = members.trial, members.parameters
     size, worst = members.largest[0], 0.0
@@ -140,7 +140,7 @@ def correct_members(members: Corotational, step: Step, beta_h2: float) -> float:
 
 
 def force_size(state: MemberState, c: int, length: float) -> float:
-    """Size of the forces of member `c` [F]."""
+    """Return the magnitude of the forces of member `c` [F]."""
     size: float = max(
         abs(state.quantities[c, AXIAL]),
         abs(state.quantities[c, END_MOMENT]) / length,
@@ -151,6 +151,6 @@ def force_size(state: MemberState, c: int, length: float) -> float:
 
 
 def compute_tangents(members: Corotational, quantities: Array) -> None:
-    """Compute the members' tangents at some quantities, for the next factorisation."""
+    """Compute the members' tangents at the given quantities, for the next factorisation."""
     for c in range(len(members.parameters)):
         quantity_stiffness(members.parameters, c, quantities, 0, members.tangent, c)

@@ -10,8 +10,8 @@ from pound_solve.numerics.ldl import factor as factorise
 def factorise_effective_mass(
     sim: Simulation, on_mass: float, on_damping: float, on_stiffness: float, factor: int
 ) -> int:
-    """Factorise the sum of M, C and K times factors, laws and corotational members included, into row
-    `factor` of `Step.factors`; return -1 or the unknown whose pivot vanishes.
+    """Factorise a weighted sum of M, C and K, laws and corotational members included, into row `factor` of
+    `Step.factors`.  Return -1 or the unknown whose pivot vanishes.
     """
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition = laws.definition

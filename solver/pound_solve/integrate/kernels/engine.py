@@ -73,7 +73,9 @@ class KernelEngine(ABC):
         self.tracker = ResponseTracker(self.law_springs, len(problem.monitored.names))
         self.accumulator = EnergyAccumulator(system, start)
         rules = list(dict.fromkeys(s.law.rule for s in self.law_springs))
-        self.rules = functions.tables(rules or [bilinear.RULE])  # never empty, which compiles to nothing
+        self.rules = functions.tables(
+            rules or [bilinear.RULE]
+        )  # never empty: an empty table does not compile
         layout = allocation.layout(system, scheme)
         self.order = layout.order
         self.linear = allocation.linear_system(system, problem.monitored, layout, scheme, dt)
@@ -99,8 +101,8 @@ class KernelEngine(ABC):
         corotational.compute_tangents(self.members, self.members.now.quantities)
         self.uniqueness = Uniqueness(system)
         self.motion_norms = np.zeros(2)  # v M v and a M a, summed over the samples
-        self.seen = float(self.times[0])  # latest instant that the recorder was shown
-        self.latest = list[list[float]]()  # transitions that were taken in last
+        self.seen = float(self.times[0])  # latest instant that the recorder has received
+        self.latest = list[list[float]]()  # transitions that were fetched last
 
     def run(self) -> Outcome:
         """Integrate to the last output time.
@@ -108,8 +110,7 @@ class KernelEngine(ABC):
         Raises
         ------
         Stop
-            Too many changes within one step, a step that finds no solution, numbers beyond all bounds,
-            or an interrupt.
+            A step has too many changes or no solution, numbers overflow, or the run is interrupted.
         """
         try:
             self.integrate()
@@ -123,15 +124,15 @@ class KernelEngine(ABC):
 
     @abstractmethod
     def figures(self) -> dict[str, Any]:
-        """Figures of the run for the report."""
+        """Return the figures of the run for the report."""
 
     @abstractmethod
     def checks(self, peaks: Peaks) -> list[Check]:
-        """Self-checks of the run."""
+        """Return the self-checks of the run."""
 
     def begin(self, advance: Function) -> None:
-        """Record the contacts that are closed at the start, and set the limits of friction, before a kernel
-        runs.
+        """Record the contacts that are closed at the start, and set the limits of friction.  Call this
+        before a kernel runs.
         """
         laws, t = self.laws, float(self.times[0])
         for i, s in enumerate(self.law_springs):
@@ -148,7 +149,7 @@ class KernelEngine(ABC):
             self.recorder.report_progress(t, notice)
 
     def advance(self, kernel: Function, *given: Any) -> None:
-        """Run a kernel until it has reached the end, and fetch what it keeps whenever it returns."""
+        """Run a kernel until it has reached the end, and fetch its results whenever it returns."""
         ready = provider().ready(kernel)
         while True:
             with np.errstate(all="ignore"):  # a runaway is reported in words
@@ -160,7 +161,7 @@ class KernelEngine(ABC):
                 self.resume(why)
 
     def resume(self, why: int) -> None:
-        """Deal with the reason why a kernel has returned, so that it can go on; stop where it cannot."""
+        """Handle the reason why a kernel has returned, so that it can continue; stop if it cannot."""
         raise self.trouble(why)
 
     def fetch(self) -> None:
@@ -168,12 +169,12 @@ class KernelEngine(ABC):
         self.fetch_transitions()
         self.fetch_motions()
         self._fetch_samples()
-        if not self.state.n_samples:  # a signal that has come is answered at each return of a kernel
+        if not self.state.n_samples:  # a pending signal is handled at each return of a kernel
             self.recorder.report_progress(float(self.state.time))
         self.state.n_samples = self.state.n_motions = 0
 
     def fetch_transitions(self) -> None:
-        """Fetch the transitions from the buffers, and which laws came to theirs together."""
+        """Fetch the transitions from the buffers, and which laws changed at the same instant."""
         for k in range(int(self.state.n_ties)):
             self.uniqueness.examine_tie(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
         for t, law, other, branch in self.buffers.rests[: self.state.n_rests].tolist():
@@ -216,7 +217,7 @@ class KernelEngine(ABC):
         self.recorder.sample(buffers.time[:kept].copy(), u, v, a, values, buffers.works[:kept].T.copy())
 
     def trouble(self, why: int) -> Stop:
-        """The `Stop` that says in words why a kernel has returned early."""
+        """Return the `Stop` that explains why a kernel has returned early."""
         if why == RUNAWAY:
             fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
             name = self.system.name(fastest)
@@ -244,10 +245,10 @@ class KernelEngine(ABC):
         return self.stop("A503", f"{text}; try a DT well below {self.dt:g}{others}")
 
     def _without_branch(self, law: int) -> int | None:
-        """Unknown without mass that a law holds on none of its branches; None if there is none.
+        """Return an unknown without mass that `law` holds on none of its branches, None if there is none.
 
-        At one instant its rate then has one sign on the softening branch and the other on the branches that
-        a rate of that sign leads to.
+        At one instant its rate then has one sign on the softening branch, and the opposite sign on the
+        branches to which a rate of that sign leads.
         """
         rows, has_mass = self.laws.definition.rows, self.linear.has_mass
         unknowns = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
@@ -257,18 +258,18 @@ class KernelEngine(ABC):
         return int(self.order[massless[0]]) if turns and len(massless) and self._softens() else None
 
     def _softens(self) -> bool:
-        """Whether the stiffness of the unknowns without mass is not positive where all laws that change at
-        this instant are on the softest of their branches.
+        """Return whether the stiffness of the unknowns without mass is not positive if all laws that change
+        at this instant are on their softest branches.
         """
         light = np.flatnonzero(massless(self.system.mass))
         if self.system.structure.corotational or len(light) > MAX_DENSE:
-            return True  # it takes too long to find out
+            return True  # an examination takes too long
         stiffness = self.laws.tangent.stiffness.copy()
         changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.state.time}
         for i in {change[0] for change in changes}:
             law, states = self.law_springs[i].law, [self.law_state(i)]
             d = float(self.laws.now.deformation[i])
-            for state in states:  # it grows by those that follow
+            for state in states:  # the list grows by the states that follow
                 after = [law.transition(state, n, d) for n in range(len(law.branch(state).events))]
                 seen = {other[0] for other in states}
                 states += [x for x in after if (i, state[0], x[0]) in changes and x[0] not in seen]
@@ -279,7 +280,7 @@ class KernelEngine(ABC):
         return bool(np.linalg.eigvalsh(elastic + (rows.T * stiffness) @ rows)[0] <= 0.0)
 
     def outcome(self) -> Outcome:
-        """Results of the run."""
+        """Return the results of the run."""
         laws = self.laws
         for law, collision in self.tracker.open.items():
             collision.count(*(float(x[law]) for x in laws.collision))
@@ -289,7 +290,7 @@ class KernelEngine(ABC):
         return Outcome(peaks, self.figures(), states, checks, self.exact)
 
     def law_state(self, i: int) -> State:
-        """State of law `i`."""
+        """Return the state of law `i`."""
         laws, spring = self.laws, self.law_springs[i]
         variables = laws.state.internal[i, : spring.law.rule.variables].tolist()
         if spring.secant:
@@ -298,5 +299,5 @@ class KernelEngine(ABC):
         return int(laws.state.branch[i]), *entry, tuple(variables)
 
     def stop(self, code: str, why: str) -> Stop:
-        """The exception that ends the run here."""
+        """Return the exception that ends the run here."""
         return Stop(code, float(self.state.time), why, self.outcome())

@@ -18,18 +18,17 @@ class LawDefinition(NamedTuple):
     Attributes
     ----------
     rows : Rows
-        Deformation of each law from the unknowns: its row b, by which its force also acts on them.
+        Row b of each law: it gives the deformation from the unknowns, and its force acts on them along b.
     inputs : ndarray, shape (n_laws, n_inputs)
-        Deformations from unit inputs.
+        Deformations due to unit inputs.
     pair_pointers, pair_places, pair_values : ndarray
         Where the ``b b^T`` of each law adds to A: pointers, positions in the pattern of A, products.
     supports : ndarray, shape (n_laws, n_moved)
-        Deformations from unit displacements of moved supports.
+        Deformations due to unit displacements of moved supports.
     rule : ndarray of int
         Number of the law's rule in the tables of functions.
     curved, contact, reports_damping : ndarray of int
-        Whether the law is curved; whether it is a contact; whether damping is part of the force that is
-        reported.
+        Whether the law is curved; whether it is a contact; whether the reported force includes damping.
     tangent_damping, secant_damping : ndarray
         Dashpot as a multiple of the tangent stiffness, and of the secant stiffness [T].
     parameters : ndarray, shape (n_laws, PARAMETERS)
@@ -75,13 +74,13 @@ class LawState(NamedTuple):
 
 
 class SavedState(NamedTuple):
-    """States of the laws to go back to: from a trial, or to the start of a step that is not cut at events.
+    """States of the laws to restore after a trial, or at the start of a step that is not cut at events.
 
     Attributes
     ----------
     in_step : ndarray of bool, shape (n_laws,)
-        Whether the law has left its branch in the present step, so that `values` has its state at the
-        start of the step; only used where steps are not cut at events.
+        Whether the law has left its branch in the present step, so that `values` holds its state at the
+        start of the step; used only if steps are not cut at events.
     values : ndarray, shape (n_laws, 3 + VARIABLES + 2)
         Branch, deformation and work at its entry, internal variables (see `LawState`).
     """
@@ -114,7 +113,7 @@ class BranchEvents(NamedTuple):
     coefficients : ndarray, shape (n_laws, EVENTS, 3)
         a, b and c of each event function, ``a d + b v + c``.
     pending : ndarray of int, shape (n_laws,)
-        Number of the event by which the law is to leave its branch at the present instant; -1 for none.
+        Number of the event by which the law leaves its branch at the present instant; -1 for none.
     """
 
     n_events: Index
@@ -123,9 +122,9 @@ class BranchEvents(NamedTuple):
 
 
 class FrictionCoupling(NamedTuple):
-    """Coupled laws, those of friction: their strength is a share of the force of another law.
+    """Coupled laws (friction), whose strength is a fraction of the force of another law.
 
-    Arrays but for `coupled` have a row for every law; only those of coupled laws are used.
+    All arrays except `coupled` have a row for every law; only the rows of coupled laws are used.
 
     Attributes
     ----------
@@ -140,9 +139,9 @@ class FrictionCoupling(NamedTuple):
     offset_rate : ndarray, shape (n_laws,)
         Rate of the tangent's f0 due to the normal force [F/T].
     limits_at_start : ndarray, shape (n_laws, EVENTS)
-        c of the event functions at the start of the step: it changes with the normal force.
+        c of the event functions at the start of the step; c changes with the normal force.
     limit_rates, limit_rates_at_start : ndarray, shape (n_laws, EVENTS)
-        Rates of c, at the end of the step that was tried and at its start.
+        Rates of c at the end of the trial step and at its start.
     """
 
     coupled: Index
@@ -169,8 +168,8 @@ class LawExtremes(NamedTuple):
     ----------
     deformation, rate : ndarray
     terms : ndarray
-        Largest sum of the absolute terms that a rate is made of: its rounding is a share of them, however
-        small it is itself; as large from the start that a structure at rest moves by less.
+        Largest sum of the absolute terms of a rate.  The rounding of a rate is a fraction of it, however
+        small the rate.  The initial value is so large that a structure at rest moves by less.
     """
 
     deformation: Array
@@ -179,7 +178,7 @@ class LawExtremes(NamedTuple):
 
 
 class CollisionForces(NamedTuple):
-    """Forces of the contacts in the collision that is under way, shape (n_laws,).
+    """Forces of the contacts in the present collision, shape (n_laws,).
 
     Attributes
     ----------
@@ -204,7 +203,7 @@ class Laws(NamedTuple):
     events : BranchEvents
     friction : FrictionCoupling
     now, trial : LawMotion
-        At the start of the step and at its end.
+        Motion at the start of the step and at its end.
     largest : LawExtremes
     collision : CollisionForces
     """

@@ -38,7 +38,7 @@ parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tup
 def curved_force(
     laws: Laws, rules: RuleFunctions, i: int, d: float, v: float
 ) -> tuple[float, float, float, float]:
-    """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
+    """Return the force of a curved law, its derivatives by `d` and `v`, and the work since branch entry."""
     state = laws.state
     response: tuple[float, float, float, float] = curve_of(
         rules,
@@ -54,13 +54,13 @@ def curved_force(
 
 
 def linear_force(tangent: LawTangent, i: int, d: float, v: float) -> float:
-    """Force of law `i` on its linear branch or tangent."""
+    """Return the force of law `i` on its linear branch or tangent."""
     force: float = tangent.stiffness[i] * d + tangent.damping[i] * v + tangent.offset[i]
     return force
 
 
 def proportional_damping(laws: Laws, i: int, k: float) -> float:
-    """Dashpot in proportion to the tangent stiffness `k` of law `i`, or to its secant stiffness."""
+    """Return the dashpot in proportion to the tangent stiffness `k` of law `i`, or its secant stiffness."""
     c: float = (
         laws.definition.tangent_damping[i] * max(k, 0.0)
         + laws.definition.secant_damping[i] * laws.state.internal[i, SECANT_STIFFNESS]
@@ -90,7 +90,7 @@ def enter_branch(laws: Laws, rules: RuleFunctions, i: int) -> None:
 
 
 def law_work(laws: Laws, rules: RuleFunctions, i: int, d: float) -> float:
-    """Work done on law `i` so far, dashpots excluded."""
+    """Return the work done on law `i` so far, dashpots excluded."""
     state = laws.state
     before: float = state.entry_work[i]
     if laws.definition.curved[i]:
@@ -101,7 +101,7 @@ def law_work(laws: Laws, rules: RuleFunctions, i: int, d: float) -> float:
 
 
 def law_force(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> float:
-    """Force of law `i`."""
+    """Return the force of law `i`."""
     if laws.definition.curved[i]:
         c = curved_force(laws, rules, i, d, v)
         return c[0] + proportional_damping(laws, i, c[1]) * v
@@ -109,7 +109,7 @@ def law_force(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> f
 
 
 def dissipative_force(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> float:
-    """Dissipative force of law `i` at the rate `v`: its own dependence on the rate, and proportional
+    """Return the dissipative force of law `i` at the rate `v`: its rate-dependent part and proportional
     dashpots.
     """
     definition = laws.definition
@@ -155,10 +155,10 @@ def leave_branch(laws: Laws, rules: RuleFunctions, i: int, event: int, d: float,
 
 
 def store_normal_force(state: LawState, i: int, force: float, rate: float, v: float) -> None:
-    """Set the normal force of coupled law `i`, and its rate, to those of its contact; zero while that
+    """Set the normal force of coupled law `i` and its rate to those of its contact; zero while the contact
     pulls.
 
-    It pulls only as the bodies part, at a rate `v` below zero: a force below zero at touch is rounding.
+    It pulls only as the bodies part, at a rate `v` below zero; a negative force at touch is rounding.
     """
     state.internal[i, NORMAL_FORCE] = max(force, 0.0)
     state.internal[i, NORMAL_FORCE_RATE] = rate if force >= 0.0 or v > 0.0 else 0.0
@@ -172,11 +172,11 @@ def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
 
 
 def enter_coupled(laws: Laws, rules: RuleFunctions, i: int) -> None:
-    """Copy the branch of coupled law `i` and its event functions into the arrays, with the rates at which
-    its force and the limits of its events change.
+    """Copy the branch of coupled law `i` and its event functions into the arrays, with the rates of its
+    force and of the limits of its events.
 
-    Both are linear in the normal force N, so that the rates are differences between the branch at N plus
-    its change in a unit of time, and the branch at N.
+    Both are linear in the normal force N.  So the rates are the differences between the branch at N plus
+    its change per unit of time and the branch at N.
     """
     state, coefficients, friction = laws.state, laws.events.coefficients, laws.friction
     force = state.internal[i, NORMAL_FORCE]
@@ -193,7 +193,7 @@ def enter_coupled(laws: Laws, rules: RuleFunctions, i: int) -> None:
 
 
 def update_friction_limits(laws: Laws, rules: RuleFunctions, acceleration: Array) -> None:
-    """Strengths of the coupled laws at the end of a step."""
+    """Update the strengths of the coupled laws at the end of a step."""
     for i in laws.friction.coupled:
         j = laws.friction.normal_law[i]
         a = row_product(laws.definition.rows, j, acceleration)
@@ -229,7 +229,7 @@ def couple_friction(laws: Laws, rules: RuleFunctions, acceleration: Array, i: in
     j = friction.normal_law[i]
     d, v, a = laws.now.deformation[j], laws.now.rate[j], row_product(laws.definition.rows, j, acceleration)
     set_normal_force(laws, i, d, v, a)
-    if laws.definition.curved[j]:  # its tangent may be that of the end of a step that was tried
+    if laws.definition.curved[j]:  # its tangent may be that at the end of a trial step
         c = curved_force(laws, rules, j, d, v)
         force = c[0]
         if force == 0.0 == c[1]:  # outside by rounding: the rate is that from inside
@@ -244,7 +244,7 @@ def couple_friction(laws: Laws, rules: RuleFunctions, acceleration: Array, i: in
 
 
 def linearise_law(laws: Laws, rules: RuleFunctions, i: int, d: float, v: float) -> None:
-    """Put the tangent of a curved law at deformation `d` and rate `v` in the place of its branch."""
+    """Replace the branch of a curved law by its tangent at deformation `d` and rate `v`."""
     tangent = laws.tangent
     c = curved_force(laws, rules, i, d, v)
     k, proportional = c[1], proportional_damping(laws, i, c[1])
@@ -277,8 +277,8 @@ def restore_state(laws: Laws, rules: RuleFunctions, i: int) -> None:
 
 
 def event_on_path(laws: Laws, i: int, start: float, end: float, rate: float) -> tuple[int, float]:
-    """First event of law `i` on the straight path of deformations from `start` to `end`, at the rate that
-    holds at its end, and the deformation there (see `laws.automaton.drive`); -1 where there is none.
+    """Return the first event of law `i` on the straight path of deformations from `start` to `end`, at the
+    rate of its end, and the deformation there (see `laws.automaton.drive`); -1 if there is none.
     """
     sign = 1.0 if end >= start else -1.0
     best, where = -1, 0.0
@@ -290,7 +290,7 @@ def event_on_path(laws: Laws, i: int, start: float, end: float, rate: float) -> 
 
 
 def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: float) -> float:
-    """Deformation of event `e` of law `i` on such a path; NaN where it is not met."""
+    """Return the deformation of event `e` of law `i` on such a path; NaN if the event is not met."""
     coefficients = laws.events.coefficients
     sign = 1.0 if end >= start else -1.0
     a, b, c = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]

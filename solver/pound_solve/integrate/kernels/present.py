@@ -19,7 +19,7 @@ class KernelPresent:
     Parameters
     ----------
     engine : KernelEngine
-        Its kernel has returned, and its transitions are taken in.
+        Its kernel has returned, and its transitions have been fetched.
     """
 
     def __init__(self, engine: KernelEngine) -> None:
@@ -53,11 +53,11 @@ class KernelPresent:
             law_kernels.linearise_law(laws, self.engine.rules, law, d, v)
 
     def force(self, law: int, d: float) -> tuple[float, float]:
-        """Force of a law at rest at deformation `d`, and its tangent."""
+        """Return the force of a law at rest at deformation `d`, and its tangent."""
         return self.engine.law_springs[law].law.force(self.engine.law_state(law), d)[:2]
 
     def add_release_work(self, law: int, lost: float, put_in: float) -> None:
-        """Add the work that a force that drops has `lost` to the work done on its law, and that of loads to
+        """Add the work `lost` by a dropping force to the work done on its law, and `put_in` by the loads to
         the input.
         """
         self.engine.laws.state.entry_work[law] += lost

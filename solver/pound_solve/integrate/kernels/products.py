@@ -8,7 +8,7 @@ from pound_solve.numerics.types import Array
 
 
 def evaluate_inputs(coefs: Array, s: float, inputs: Array, rates: Array) -> None:
-    """Inputs and their rates at the local time `s` of a piece of the excitation."""
+    """Compute the inputs and their rates at the local time `s` of a piece of the excitation."""
     top, n = coefs.shape
     for j in range(n):
         value, rate = coefs[top - 1, j], 0.0
@@ -19,7 +19,7 @@ def evaluate_inputs(coefs: Array, s: float, inputs: Array, rates: Array) -> None
 
 
 def form_load(linear: LinearSystem, inputs: Array, out: Array) -> None:
-    """Loads on the unknowns for some inputs."""
+    """Compute the loads on the unknowns for given inputs."""
     for i in range(len(out)):
         out[i] = linear.constant[i]
     for j in range(len(inputs)):
@@ -34,7 +34,7 @@ def copy(x: Array, out: Array) -> None:
 
 
 def multiply(a: Product, x: Array, out: Array) -> None:
-    """Product of a matrix with a vector."""
+    """Compute the product of a matrix with a vector."""
     n = len(x)
     for i in range(n):
         out[i] = a.diagonals[0, i] * x[i]
@@ -51,7 +51,7 @@ def multiply(a: Product, x: Array, out: Array) -> None:
 
 
 def row_product(rows: Rows, i: int, x: Array) -> float:
-    """One sparse row times a vector."""
+    """Return the product of one sparse row with a vector."""
     total = 0.0
     for j in range(rows.pointers[i], rows.pointers[i + 1]):
         total += rows.values[j] * x[rows.columns[j]]
@@ -59,7 +59,7 @@ def row_product(rows: Rows, i: int, x: Array) -> float:
 
 
 def row_magnitude(rows: Rows, i: int, x: Array) -> float:
-    """Sum of the magnitudes of the terms of one sparse row times a vector."""
+    """Return the sum of the magnitudes of the terms of one sparse row times a vector."""
     total = 0.0
     for j in range(rows.pointers[i], rows.pointers[i + 1]):
         total += abs(rows.values[j] * x[rows.columns[j]])

@@ -1,4 +1,4 @@
-"""Kernels that keep what Python fetches: peaks, transitions, samples, motions between the samples."""
+"""Kernels that store results for Python to fetch: peaks, transitions, samples, motions between samples."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from pound_solve.integrate.kernels.state import (
 from pound_solve.laws.functions import RuleFunctions, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
 
-#: steps, and steps times unknowns, after which Python may look whether the user wants to stop
+#: steps, and steps times unknowns, after which Python may check for an interrupt
 PAUSE, BUSY = 100_000, 10_000_000
 
 
 def next_pause(step: Step, run: Run) -> int:
-    """Number of steps after which Python may look again whether the user wants to stop."""
+    """Return the number of steps after which Python may check again for an interrupt."""
     return run.steps + min(PAUSE, 1 + BUSY // (1 + len(step.residual)))
 
 
 def update_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: float) -> None:
-    """Count a value into peak `i`; `law` is not negative for the force of a law."""
+    """Update peak `i` with a value; `law` is not negative for the force of a law."""
     collision = laws.collision
     extremes = step.extremes
     if value > extremes.high[i]:
@@ -46,7 +46,7 @@ def update_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: fl
 
 
 def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
-    """Value and slope of tracked quantity `i` at the start of the coming step (see `tracker.Extremes`)."""
+    """Return value and slope of tracked quantity `i` at the start of the next step (`tracker.Extremes`)."""
     linear, laws = sim.linear, sim.laws
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     now, outputs, n_laws = sim.step.now, len(linear.monitored_constants), len(definition.rule)
@@ -65,7 +65,7 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     if definition.reports_damping[law] and tangent.damping[law] != 0.0:
         value += tangent.damping[law] * v
         slope += tangent.damping[law] * row_product(rows, law, now.acceleration)
-        # the acceleration of an unknown without mass is a jump of its velocity over a step, or a part
+        # the acceleration of an unknown without mass is a jump of its velocity over the length of a step
         if touches_massless(linear, rows, law):
             slope = 0.0
     return value, slope
@@ -92,7 +92,7 @@ def track_peaks(sim: Simulation, t: float, since: float) -> None:
 
 
 def log_transition(sim: Simulation, i: int, before: int, t: float, force: float) -> None:
-    """Put a change of branch into the log; a contact begins to count its force anew."""
+    """Add a change of branch to the log, and reset the collision forces of a contact."""
     laws = sim.laws
     collision = laws.collision
     row = sim.buffers.log[sim.run.n_transitions]
@@ -106,7 +106,7 @@ def log_transition(sim: Simulation, i: int, before: int, t: float, force: float)
 
 
 def store_sample(sim: Simulation, rules: RuleFunctions, t: float) -> None:
-    """Keep the motion, the laws' forces and energies, and the works."""
+    """Store the motion, the laws' forces and energies, and the works."""
     laws, buffers, works = sim.laws, sim.buffers, sim.works
     definition, state = laws.definition, laws.state
     at, now = sim.run.n_samples, sim.step.now
@@ -140,7 +140,7 @@ def store_sample(sim: Simulation, rules: RuleFunctions, t: float) -> None:
 
 
 def take_first_sample(sim: Simulation, rules: RuleFunctions) -> None:
-    """Make the start consistent and keep it as the first sample."""
+    """Make the start consistent and store it as the first sample."""
     run = sim.run
     make_consistent(sim)
     track_peaks(sim, run.time, 0.0)
@@ -149,9 +149,9 @@ def take_first_sample(sim: Simulation, rules: RuleFunctions) -> None:
 
 
 def store_motion(sim: Simulation, rules: RuleFunctions, t: float) -> None:
-    """Keep the present motion for the envelopes.
+    """Store the present motion for the envelopes.
 
-    If a step is cut into more parts than there is room for, the rest is not kept.
+    If a step is cut into more parts than there is room for, the rest is not stored.
     """
     laws, buffers, run = sim.laws, sim.buffers, sim.run
     nothing = len(buffers.enveloped_unknowns) + len(buffers.enveloped_laws) == 0

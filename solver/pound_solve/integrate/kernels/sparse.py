@@ -9,14 +9,14 @@ from pound_solve.numerics.types import Array, Index
 
 
 class Product(NamedTuple):
-    """A matrix to be multiplied with: along its diagonals where they are full enough, else row by row.
+    """A matrix for products with vectors, stored by diagonals that are full enough, otherwise by rows.
 
     Attributes
     ----------
     offsets : ndarray, shape (n_diagonals,)
         Column less row; the first is zero.
     diagonals : ndarray, shape (n_diagonals, n)
-        Their entries, from the first row that has one.
+        Entries of the diagonals, each from its first row on.
     row : ndarray, shape (n_rows,)
         Rows that have other entries.
     pointers : ndarray, shape (n_rows + 1,)

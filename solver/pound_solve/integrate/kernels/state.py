@@ -1,6 +1,6 @@
 """State of the kernels: named arrays in the order of elimination, and the records of a run.
 
-Every array has a name and one place where it is allocated (`allocation`).  An instant of the motion is a
+Every array has a name and is allocated in one place (`allocation`).  An instant of the motion is a
 `MotionState`; a step has one at its start, ``now``, and one at its end, ``trial``, until it is accepted.
 """
 
@@ -35,7 +35,7 @@ M_ROW, C_ROW, K_ROW = range(3)  #: rows of `LinearSystem.on_pattern`
 #: force, its time and impulse of the contact since the last change
 LOG_LAW, LOG_BEFORE, LOG_AFTER, LOG_TIME, LOG_DEFORMATION, LOG_RATE, LOG_FORCE = range(7)
 LOG_PEAK, LOG_PEAK_TIME, LOG_IMPULSE, LOG_COLUMNS = range(7, 11)
-#: rows of `Buffers.ties` of an instant; of a law that loses its force, the first holds minus infinity and
+#: rows of `Buffers.ties` of an instant; for a law that loses its force, the first holds minus infinity and
 #: the second its next branch
 TIE_STIFFNESS, TIE_DAMPING, TIE_RATE = range(3)
 
@@ -44,7 +44,7 @@ class Run(Protocol):
     """Counters and clocks of a run: a numpy record."""
 
     started: int  #: whether the first sample is taken
-    goal: int  #: the time that is integrated to, by its number
+    goal: int  #: number of the present goal
     step: int  #: steps taken towards the goal
     n_samples: int  #: samples in the buffers
     n_transitions: int  #: transitions in the buffers
@@ -54,21 +54,21 @@ class Run(Protocol):
     changes_at_instant: int  #: transitions at one instant
     lost_force: int  #: law that held a joint without mass and lost its force, -1 for none
     branches_passed: int  #: branches left in a step that is not cut at events
-    updates: int  #: of rank one since the factor was made; above `MAX_UPDATES` if it is invalid
-    branches_changed: int  #: whether sums, modes and factors over the laws must be made anew (series)
-    massless_factor_stale: int  #: whether row `MASSLESS` of the factors must be made anew (steps)
+    updates: int  #: rank-one updates since the factorisation; above `MAX_UPDATES` if the factor is invalid
+    branches_changed: int  #: whether sums, modes and factors over the laws must be recomputed (series)
+    massless_factor_stale: int  #: whether row `MASSLESS` of the factors must be recomputed (steps)
     softening: int  #: steps that are too long for a softening branch
-    n_ties: int  #: instants at which laws give way together in the buffers
-    n_rests: int  #: laws that rest where a branch begins in the buffers
+    n_ties: int  #: instants in the buffers at which laws yield or fail together
+    n_rests: int  #: laws in the buffers that rest at the start of a branch
     changed_law: int  #: law that changed its branch last, -1 for none
-    failed_law: int  #: law by which the last of Newton's iterations failed, -1 for none
+    failed_law: int  #: law for which Newton's iterations last failed to converge, -1 for none
     failed_unknown: int  #: unknown whose pivot vanished, -1 for none
     time: float
-    factor_length: float  #: step that the factor at hand is for
+    factor_length: float  #: step length of the present factor
     initial_energy: float  #: kinetic and recoverable
     runaway_energy: float  #: kinetic energy that stopped the run
-    longest_part: float  #: that a step may take at once for now
-    #: what is left of a step in which a law lost the force that held a massless unknown, negative for none
+    longest_part: float  #: longest part of a step that is allowed at present
+    #: rest of a step in which a law lost the force that held a massless unknown, negative for none
     remaining_step: float
     last_event: float  #: time of the last transition
     load_jump_time: float  #: time at which a load has jumped, negative for none
@@ -83,7 +83,7 @@ class LinearSystem(NamedTuple):
     inputs : ndarray, shape (n_inputs, n)
         Loads of unit inputs.
     nodal_inputs : ndarray, shape (n, n_inputs)
-        The part of them that is forces on nodes.
+        The part of these loads that acts on nodes as forces.
     constant : ndarray, shape (n,)
         Constant loads.
     pattern : Pattern
@@ -95,12 +95,12 @@ class LinearSystem(NamedTuple):
     has_mass : ndarray, shape (n,)
         Which unknowns have mass.
     all_mass : bool
-        Whether all have.
+        Whether all unknowns have mass.
     massless_vary : bool
         Whether the stiffness of massless unknowns changes along a branch: by curved laws or by corotational
         members.
     instant : float
-        A time that is tiny against a step, for the velocities of massless unknowns.
+        A time much shorter than a step, for the velocities of massless unknowns.
     has_stiffness : bool
         Whether the stiffness is in the pattern.
     diagonal : bool
@@ -112,9 +112,10 @@ class LinearSystem(NamedTuple):
     monitored_inputs : ndarray, shape (n_monitored, n_inputs)
     monitored_constants : ndarray, shape (n_monitored,)
     reactions : ndarray, shape (3, n_moved, n)
-        Of moved supports from displacements, velocities, accelerations; empty with one motion for the base.
+        Reactions of moved supports due to displacements, velocities, accelerations; empty for one base
+        motion.
     support_forces, support_rates : ndarray, shape (n_moved, n_inputs)
-        Reactions from the inputs, and the supports' velocities.
+        Reactions due to the inputs, and the supports' velocities.
     support_damping : ndarray, shape (n_moved, n_moved)
     """
 
@@ -163,23 +164,23 @@ class Corotational(NamedTuple):
     ----------
     parameters : ndarray, shape (n_members, 10)
     pointers : ndarray, shape (n_members + 1,)
-        Into the unknowns that each touches.
+        Pointers into the unknowns that each member touches.
     unknown : ndarray, shape (n_touched,)
     rows : ndarray, shape (n_touched, 6)
-        Their share in the six quantities.
+        Coefficients of these unknowns in the six quantities.
     pair_pointers : ndarray, shape (n_members + 1,)
-        Into the pairs of unknowns.
+        Pointers into the pairs of unknowns.
     pair : ndarray, shape (n_pairs, 3)
-        Position in the pattern of A, and the two touched ones.
+        Position in the pattern of A, and the two unknowns by their index in `unknown`.
     inputs : ndarray, shape (n_members, 6, n_inputs)
     supports : ndarray, shape (n_members, 6, n_moved)
     now, trial : MemberState
     predicted : ndarray, shape (n_members, 6)
-        Quantities at the end of the step but for the acceleration there.
+        Quantities at the end of the step without the terms of the acceleration there.
     at_zero : ndarray, shape (n_members, 6)
-        Forces at zero quantities of the straight line that stands for the member in an iteration.
+        Linearised forces of the member in an iteration, at zero quantities.
     tangent : ndarray, shape (n_members, 36)
-        Tangents that are in the factor.
+        Tangents that the factor contains.
     present_tangent : ndarray, shape (n_members, 36)
         Tangents at the present quantities.
     product : ndarray, shape (most touched, 6)
@@ -235,11 +236,11 @@ class Step(NamedTuple):
     Attributes
     ----------
     now, trial : MotionState
-        At its start and at its end.
+        Motion at its start and at its end.
     residual : ndarray, shape (n,)
         ``p - C v - K u - f`` at the start, in balance with the inertia.
     right_side : ndarray, shape (n,)
-        Of the equations for the acceleration, laws apart.
+        Right side of the equations for the acceleration, without laws.
     marked : ndarray, shape (n,)
         Which unknowns are held by a law that has left its branch at the present instant.
     scratch : ndarray, shape (4, n)
@@ -273,19 +274,19 @@ class Buffers(NamedTuple):
     ----------
     displacement, velocity, acceleration : ndarray, shape (n_samples, n)
     force, stored, lost, dashpot : ndarray, shape (n_samples, n_laws)
-        Of the laws: forces, recoverable and lost energies, forces of dashpots beside springs.
+        Forces of the laws, recoverable and lost energies, forces of dashpots parallel to springs.
     time : ndarray, shape (n_samples,)
     works : ndarray, shape (n_samples, 3)
-        Input, lost in the structure's, in the contacts' dashpots.
+        Input, loss in the structure's dashpots, loss in the contacts' dashpots.
     log : ndarray, shape (n_log, LOGGED)
         Transitions.
     ties : ndarray, shape (n_ties, 3, n_laws)
-        Of instants at which laws come to their events together: tangents and dashpots if these go on, and
-        the rates at which they come; zero for all others (see `ties.note_ties`).
+        For each instant at which laws reach their events together: tangents and dashpots of these laws if
+        they continue, and their rates; zero for all other laws (see `ties.note_ties`).
     tie_time : ndarray, shape (n_ties,)
     rests : ndarray, shape (n_rests, 4)
-        Of laws that rest where a branch begins as a law turns: the time, that law, the one that rests, and
-        the number of its branch (see `ties.note_rests`).
+        For each law that rests at the start of a branch as a law reverses: the time, the reversing law, the
+        resting law, and the number of its branch (see `ties.note_rests`).
     enveloped_unknowns : ndarray, shape (n_unknowns,)
         Unknowns that the envelopes need.
     motion : ndarray, shape (n_motions, 3, n_unknowns)
@@ -328,15 +329,15 @@ class Scheme(NamedTuple):
 
 
 class Goals(NamedTuple):
-    """Times that a run integrates to one after the other, and the excitation on the way.
+    """Times to which a run integrates in turn, and the excitation on the way.
 
     Attributes
     ----------
     times : ndarray, shape (n_goals,)
     sampled : ndarray, shape (n_goals,)
-        Whether a sample is taken there.
+        Whether a sample is taken at the goal.
     piece : ndarray, shape (n_goals,)
-        Piece of the excitation up to there.
+        Piece of the excitation up to the goal.
     coefs : ndarray, shape (n_pieces, degree + 1, n_inputs)
         Polynomials of the excitation.
     begins : ndarray, shape (n_pieces,)
@@ -351,7 +352,7 @@ class Goals(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A piece of the excitation, over which the inputs are polynomials of the time.
+    """A piece of the excitation, over which the inputs are polynomials in time.
 
     Attributes
     ----------
@@ -366,13 +367,13 @@ class Piece(NamedTuple):
 
 
 def piece_of(goals: Goals, goal: int) -> Piece:
-    """The piece of the excitation up to a goal."""
+    """Return the piece of the excitation up to a goal."""
     piece = goals.piece[goal]
     return Piece(goals.coefs[piece], goals.begins[piece])
 
 
 class Simulation(NamedTuple):
-    """All that a run works on, whatever its method; kernels are handed it as one.
+    """The complete state of a run of any method, passed to kernels as one argument.
 
     Attributes
     ----------

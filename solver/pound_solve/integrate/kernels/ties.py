@@ -5,8 +5,8 @@ If only massless unknowns separate such laws, rounding may decide which of them 
 the same force.  Whether it has yielded is then undecided; this is examined when either law reverses.
 
 One order is decided here.  Laws in series at a joint without mass lose their forces at the same instant.
-If one of them becomes slack, the others do not deform while it is.  A law whose branch ends at zero force
-therefore changes first, as it would with a small mass at the joint.
+While one of them is slack, the others do not deform.  Therefore a law whose branch ends at zero force
+changes first, as it would with a small mass at the joint.
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.laws.functions import RuleFunctions
 
-#: fraction of its largest terms that an event function may lack of an event at the same instant
+#: fraction of its largest terms within which an event function is at an event of the same instant
 NEAR_EVENT = 1e-9
-STATIONARY_RATE = 1e-4  #: fraction of its largest rate up to which a law stands still
+STATIONARY_RATE = 1e-4  #: fraction of its largest rate up to which a law counts as at rest
 
 
 def event_near(a: float, b: float, c: float, d: float, largest: float) -> bool:
-    """Whether the event function ``a d + b v + c`` depends on the deformation alone and is zero at `d`, to
-    within a share of its terms at the `largest` deformation so far.
+    """Return whether the event function ``a d + b v + c`` depends on the deformation alone and is zero at
+    `d`, within a fraction of its terms at the `largest` deformation so far.
     """
     return b == 0.0 and a != 0.0 and abs(a * d + c) <= NEAR_EVENT * (abs(a) * largest + abs(c))
 
 
 def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
-    """Whether such an event function is zero at the deformation `d` and rises at the rate `v`."""
+    """Return whether such an event function is zero at the deformation `d` and rises at the rate `v`."""
     return a * v > 0.0 and event_near(a, b, c, d, largest)
 
 
 def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
-    """Number of the event of a law that occurs now, if the law holds an unknown without mass; else -1."""
+    """Return the event of law `i` that occurs now, if it holds an unknown without mass; else -1."""
     definition, coefficients = laws.definition, laws.events.coefficients
     if (
         definition.contact[i]
@@ -62,8 +62,8 @@ def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
 
 
 def becomes_slack(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, event: int) -> bool:
-    """Whether a law that holds an unknown without mass has neither stiffness nor force after an event, and
-    loses no force by it.
+    """Return whether a law that holds an unknown without mass has neither stiffness nor force after an
+    event, and loses no force by it.
     """
     definition, tangent = laws.definition, laws.tangent
     d, v, k, f0 = laws.now.deformation[i], laws.now.rate[i], tangent.stiffness[i], tangent.offset[i]
@@ -78,9 +78,9 @@ def becomes_slack(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int
 
 
 def event_before_slack(sim: Simulation, rules: RuleFunctions, law: int, event: int) -> tuple[int, int]:
-    """Law and event to be taken first where `law` becomes slack by its `event`: those of another law that
-    comes to zero force at the same instant and keeps a stiffness (see the module's head); else the given
-    ones.
+    """Return the law and event to be taken first if `law` becomes slack by its `event`.  They are those of
+    another law that reaches zero force at the same instant and keeps a stiffness (see the module
+    docstring), else the given ones.
     """
     linear, laws = sim.linear, sim.laws
     if laws.tangent.stiffness[law] != 0.0 and becomes_slack(linear, laws, rules, law, event):
@@ -92,8 +92,8 @@ def event_before_slack(sim: Simulation, rules: RuleFunctions, law: int, event: i
 
 
 def branch_begun(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, reverses: bool) -> int:
-    """Return the branch at whose beginning law `i` stands, as it `reverses` or else rests; -1 for none, and
-    for laws that hold no unknown without mass.
+    """Return the branch at whose start law `i` is, as it `reverses` or else rests; -1 for none, and for
+    laws that hold no unknown without mass.
     """
     definition, coefficients, state = laws.definition, laws.events.coefficients, laws.state
     if (
@@ -118,9 +118,7 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int,
 
 
 def note_rests(sim: Simulation, rules: RuleFunctions, law: int, event: int) -> None:
-    """Record which laws, `law` included, stand at the beginning of a branch as `law` reverses by its
-    `event`.
-    """
+    """Record which laws, `law` included, are at the start of a branch as `law` reverses by its `event`."""
     laws, buffers, run = sim.laws, sim.buffers, sim.run
     definition, coefficients = laws.definition, laws.events.coefficients
     reverses = coefficients[law, event, 0] == 0.0 and coefficients[law, event, 1] != 0.0
@@ -135,12 +133,12 @@ def note_rests(sim: Simulation, rules: RuleFunctions, law: int, event: int) -> N
 
 
 def note_ties(sim: Simulation, rules: RuleFunctions, law: int, stiffness: float, offset: float) -> None:
-    """Record the tangents that the laws have if all that come to their events together with `law` change
-    branch; nothing where no other does.
+    """Record the tangents of the laws if all that reach their events together with `law` change branch.
+    Nothing is recorded if there is no other.
 
-    `law` has just left a branch of that `stiffness` and `offset`.  Where it has become softer, the tangents
-    of other laws that become softer are recorded; where it has lost its force, minus infinity and the next
-    branch of other laws that lose their forces.
+    `law` has just left a branch with the given `stiffness` and `offset`.  If it has become softer, the
+    tangents of other laws that become softer are recorded.  If it has lost its force, minus infinity and
+    the next branch are recorded for other laws that lose their forces.
     """
     linear, laws, buffers, run = sim.linear, sim.laws, sim.buffers, sim.run
     definition, tangent = laws.definition, laws.tangent

@@ -1,4 +1,4 @@
-"""Kernels of power: what moved supports, loads and dashpots put in and take out."""
+"""Kernels for the power that moved supports and loads put in and dashpots take out."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def support_power(
     linear: LinearSystem, laws: Laws, members: Corotational, motion: MotionState, law_motion: LawMotion,
     member_state: MemberState,
 ) -> tuple[float, float]:  # fmt: skip
-    """Power that moved supports put in, and that lost in dashpots which end at them, at one instant."""
+    """Return the power that moved supports put in, and the loss in dashpots attached to them, now."""
     definition = laws.definition
     put, lost = 0.0, 0.0
     moved = len(linear.support_damping)
@@ -46,7 +46,7 @@ def support_power(
 
 
 def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
-    """Force on unknown `i` by constant loads and FORCES."""
+    """Return the force on unknown `i` due to constant loads and FORCES."""
     force: float = linear.constant[i]
     for j in range(len(inputs)):
         force += linear.nodal_inputs[i, j] * inputs[j]
@@ -55,8 +55,8 @@ def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
 
 @reorder_sums
 def damping_power_sum(now: MotionState, trial: MotionState) -> float:
-    """Sum of which a third is the mean power that the structure's dashpots take in a step, in which forces
-    and velocities are linear.
+    """Return three times the mean power that the structure's dashpots take in a step with linear forces and
+    velocities.
     """
     loss = 0.0
     for i in range(len(now.velocity)):
@@ -69,9 +69,7 @@ def damping_power_sum(now: MotionState, trial: MotionState) -> float:
 
 @reorder_sums
 def load_power_sum(now: MotionState, trial: MotionState) -> float:
-    """Sum of which a sixth is the mean power of the loads in a step, in which loads and velocities are
-    linear.
-    """
+    """Return six times the mean power of the loads in a step with linear loads and velocities."""
     work = 0.0
     for i in range(len(now.velocity)):
         work += (2.0 * now.load[i] + trial.load[i]) * now.velocity[i] + (

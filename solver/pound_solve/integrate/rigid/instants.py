@@ -82,7 +82,7 @@ class RigidInstants:
         return np.stack([polynomial.value(coefs, 0.0, order) for order in range(3)])
 
     def _closed(self) -> Flags:
-        """Which rigid contacts are closed, shape (n_rigid,)."""
+        """Return which rigid contacts are closed, shape (n_rigid,)."""
         return np.array([self.run.branches[i].constrains for i in self.contacts.laws], bool)
 
     def begin(self) -> bool:

@@ -1,4 +1,4 @@
-"""Kernels of TAYLOR: laws change their branches, and the state is made consistent with the new ones."""
+"""Kernels of TAYLOR that change branches of laws and make the state consistent with the new branches."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from pound_solve.integrate.series.state import Extent, Series
 from pound_solve.integrate.series.tracking import event_of
 from pound_solve.laws.functions import RuleFunctions
 
-AHEAD = 1e-3  #: part of a step in which laws are searched for events at the instant of another one's
+AHEAD = 1e-3  #: fraction of a step in which laws are searched for events at the instant of another event
 
 
 def change_branch(
@@ -71,7 +71,7 @@ def change_branches(
     stiffness, offset = laws.tangent.stiffness[event.law], laws.tangent.offset[event.law]
     change_branch(sim, rules, series, now, event)
     note_ties(sim, rules, event.law, stiffness, offset)
-    # with unknowns without mass `settle_state` decides
+    # if there are unknowns without mass, `settle_state` decides
     for i in range(len(laws.definition.rule) if len(series.massless.unknown) == 0 else 0):
         if i != event.law and series.rigid.index_of[i] < 0:
             other = event_of(laws, series, ahead, i)
@@ -88,8 +88,8 @@ def count_instant(run: Run, h: float) -> None:
 
 
 def refresh_branches(sim: Simulation, rules: RuleFunctions, series: Series) -> bool:
-    """Update what depends on the branches after a change: tangents of smooth laws and dampers, sums, modes,
-    factors; False where an unknown without mass is not held, which `run.failed_unknown` names.
+    """Update all that depends on the branches after a change: tangents of smooth laws and dampers, sums,
+    modes, factors.  Return False if an unknown without mass is unrestrained (`run.failed_unknown`).
     """
     laws, run = sim.laws, sim.run
     massless = series.massless
@@ -110,8 +110,8 @@ def settle_state(sim: Simulation, rules: RuleFunctions, series: Series, piece: P
     """Make the velocities of unknowns without mass and the forces of closed rigid contacts consistent with
     the present branches.
 
-    These rates jump where a stiffness or a dashpot among them changes, and a law whose rate thereby changes
-    its sign must leave its branch, too.  Of several such laws the first in number leaves, and all are
+    These rates jump if a stiffness or a dashpot among them changes.  A law whose rate then changes its sign
+    must leave its branch, too.  Of several such laws the one with the lowest number leaves, and all are
     examined again.  This least-index rule (Murty's, for linear complementarity problems) terminates if the
     laws harden.
 
@@ -138,7 +138,7 @@ def settle_state(sim: Simulation, rules: RuleFunctions, series: Series, piece: P
         begin_series(sim, series, piece, 1.0)
         if in_series:  # forces that are series need the accelerations
             next_term(sim, series, 0, 1.0, n_powers)
-        # at the start no law has lost a force: what moves there is the rounding of the state of rest
+        # at the start no law has lost a force: a motion there is the rounding of the state of rest
         if run.changed_law >= 0 and joints_jump(laws, series, n_powers):
             return LOST_FORCE
         for i in massless.unknown:

@@ -7,7 +7,7 @@ cells and at any instant between them.
 Over an interval of length h every quantity is the product of a row with the vector :math:`x =
 (\mathrm{Re}\,c, \mathrm{Im}\,c, \sigma_0, \sigma_1)`: coefficients c of the free motions of eigenvalues
 :math:`\lambda`, inputs :math:`\sigma_0`, and their changes over the interval :math:`\sigma_1`.  Let
-:math:`(\rho_r, \rho_i, r_0, r_1)` be the row at the start.  At the share s of the interval it is
+:math:`(\rho_r, \rho_i, r_0, r_1)` be the row at the start.  At the fraction s of the interval it is
 
 .. math:: \bigl(\mathrm{Re}\,g\,\rho_r + \mathrm{Im}\,g\,\rho_i,\; \mathrm{Re}\,g\,\rho_i -
           \mathrm{Im}\,g\,\rho_r,\; r_0,\; r_1 + s\,r_0\bigr), \qquad g = e^{\lambda h s} .
@@ -28,7 +28,7 @@ from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Complex, Index
 
-TERMS_OF_CELL = 16  #: of the series of a step for each of its cells, which have some 2.5 radians each
+TERMS_OF_CELL = 16  #: terms of the series of a step per cell of about 2.5 radians
 
 
 class StepCourse:
@@ -45,7 +45,7 @@ class StepCourse:
         self.derivatives = np.append(np.repeat(np.arange(3), self.size), 0 * envelope.laws)
 
     def _motion(self, steps: Index, places: Array) -> Motion:
-        """The motion at places between 0 and 1 in some steps."""
+        """Return the motion at places between 0 and 1 in some steps."""
         x, n, count = self.envelope, len(self.unknowns), len(places)
         first, last = (int(steps[0]), int(steps[-1]) + 1) if len(steps) else (0, 0)
         coefs = x.coefs[first:last] if last - first == len(steps) else x.coefs[steps]
@@ -61,7 +61,7 @@ class StepCourse:
         return Motion(t, u, v, a, forces.reshape(coefs.shape[1] - n, len(t)))
 
     def _within(self, cells: Index, shares: Array) -> Motion:
-        """The motion at shares of some cells (see `protocol.Course`)."""
+        """Return the motion at fractions of some cells (see `protocol.Course`)."""
         steps = np.unique(cells // self.cells)
         places = ((np.arange(self.cells)[:, None] + shares) / self.cells).ravel()
         whole = self._motion(steps, places)
@@ -71,7 +71,7 @@ class StepCourse:
         return Motion(*(_of_cells(x, chosen, len(shares)) for x in whole))
 
     def _extremes(self, peaks: RowPeaks) -> None:
-        """Count the steps into the extremes of rows (see `protocol.Course`)."""
+        """Update the extremes of rows with the steps (see `protocol.Course`)."""
         x, count = self.envelope, int(self.envelope.kept[STEPS])
         about = self.excitation.about(x.begin[:count])
         _, n_powers, n_inputs = about.shape
@@ -103,7 +103,7 @@ class StepCourse:
         )
 
     def course(self) -> Course:
-        """The motion over all steps that were kept."""
+        """Return the motion over all steps that were kept."""
         steps, shares = np.arange(self.envelope.kept[STEPS]), np.arange(self.cells) / self.cells
         motion = self._motion(steps, shares)
         lengths = np.repeat(self.envelope.length[steps] / self.cells, self.cells)
@@ -111,7 +111,7 @@ class StepCourse:
 
 
 def _powers(places: Array, count: int) -> Array:
-    """Powers up to so many and their first two derivatives at places, shape (3, n_places, count)."""
+    """Return the first `count` powers and their first two derivatives, shape (3, n_places, count)."""
     k = np.arange(count)
     powers = np.zeros((3, len(places), count))
     powers[0] = places[:, None] ** k
@@ -121,7 +121,7 @@ def _powers(places: Array, count: int) -> Array:
 
 
 def _of_cells(x: Array, chosen: Index, count: int) -> Array:
-    """Columns of an array that belong to some of the cells, `count` for each cell."""
+    """Return the columns of an array that belong to the chosen cells, `count` for each cell."""
     cells = x.reshape(*x.shape[:-1], x.shape[-1] // count, count)
     return np.asarray(cells[..., chosen, :].reshape(*x.shape[:-1], len(chosen) * count))
 
@@ -136,8 +136,8 @@ class IntervalCourse:
         self.rows = [self._rows(b) for b in range(len(modal.counts))]
 
     def _rows(self, b: int) -> Array:
-        """Rows that give displacements, velocities, accelerations and forces of laws of a part from its
-        x.
+        """Return the rows that give displacements, velocities, accelerations and forces of laws of a part
+        from its x.
         """
         modal, laws, (_, q, _, seen) = self.modal, self.envelope.laws, self.modal.counts[b]
         place = modal.index_of[b, laws]
@@ -148,15 +148,15 @@ class IntervalCourse:
         return np.vstack([*modal.motion[b, :, :seen], force])[:, :n_x]
 
     def _rates(self, b: int) -> tuple[Complex, int, int]:
-        """Eigenvalues of a part times the length of the interval; numbers of modes and of inputs."""
+        """Return the eigenvalues of a part times the interval length; numbers of modes and of inputs."""
         modal, q = self.modal, int(self.modal.counts[b, 1])
         real, imaginary = modal.exponent_per_cell[b, :, :q]
         rate = (real + 1j * imaginary) * (self.cells // 2)
         return rate, q, modal.particular_solution.shape[2] // 2
 
     def _on_grid(self, b: int, count: int) -> Array:
-        """The rows of a part at the starts of all cells of the first `count` intervals, shape (n_rows,
-        n_intervals, n_cells): one table serves all intervals.
+        """Return the rows of a part at the starts of all cells of the first `count` intervals, shape
+        (n_rows, n_intervals, n_cells), with one table for all intervals.
         """
         rate, q, n_inputs = self._rates(b)
         places = np.arange(self.cells) / self.cells
@@ -169,8 +169,8 @@ class IntervalCourse:
         return np.asarray(moved.reshape(count, self.cells, -1).transpose(2, 0, 1))
 
     def _at(self, b: int, intervals: Index, places: Array) -> Array:
-        """The rows of a part at places in some intervals, shape (n_rows, n_intervals, n_places), with the
-        modes evaluated there.
+        """Return the rows of a part at places in some intervals, shape (n_rows, n_intervals, n_places),
+        with the modes evaluated there.
         """
         rate, q, n_inputs = self._rates(b)
         x = self.envelope.x[intervals, b, None]
@@ -181,7 +181,7 @@ class IntervalCourse:
         return np.asarray((moved @ self.rows[b].T).transpose(2, 0, 1))
 
     def _motion(self, intervals: Index, places: Array, parts: Sequence[Array]) -> Motion:
-        """The motion from the rows of all parts."""
+        """Return the motion from the rows of all parts."""
         envelope, modal = self.envelope, self.modal
         t = envelope.start[intervals, None] + places * modal.length[0]
         u, v, a = motions = np.zeros((3, self.size, t.size))
@@ -196,7 +196,7 @@ class IntervalCourse:
         return Motion(t.ravel(), u, v, a, forces)
 
     def course(self) -> Course:
-        """The motion over all intervals that were kept."""
+        """Return the motion over all intervals that were kept."""
         count, parts = int(self.envelope.kept[INTERVALS]), range(len(self.rows))
         places = np.arange(self.cells)[None] / self.cells
         motion = self._motion(np.arange(count), places, [self._on_grid(b, count) for b in parts])

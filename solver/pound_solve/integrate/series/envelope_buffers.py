@@ -11,8 +11,8 @@ from pound_solve.integrate.series.forces import total_force
 from pound_solve.integrate.series.state import EnvelopeBuffers, Extent, Modal, Series
 from pound_solve.numerics.types import Index
 
-MAX_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
-MAX_KEPT, MIN_KEPT = 4096, 8  #: of these
+MAX_HELD = 2**21  #: most numbers stored for the steps and for the intervals
+MAX_KEPT, MIN_KEPT = 4096, 8  #: most and fewest steps or intervals
 STEPS, INTERVALS = range(2)  #: places in `EnvelopeBuffers.kept`
 
 
@@ -41,12 +41,12 @@ def allocate(unknowns: Index, laws: Index, modal: Modal, n_coefs: int) -> Envelo
 
 
 def is_full(envelope: EnvelopeBuffers) -> bool:
-    """Whether there is no room for another step."""
+    """Return whether there is no room for another step."""
     return bool(envelope.kept[STEPS] == len(envelope.begin))
 
 
 def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
-    """Keep the series of a step, while the laws are as at its start."""
+    """Store the series of a step.  Call this while the laws are still as at its start."""
     t, h, degree, end = extent
     envelope = series.envelope
     if not envelope.is_needed[0]:
@@ -72,12 +72,12 @@ def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
 
 
 def has_room(envelope: EnvelopeBuffers) -> bool:
-    """Whether another interval in modes can be kept."""
+    """Return whether another interval in modes can be stored."""
     return bool(envelope.kept[INTERVALS] < len(envelope.start))
 
 
 def keep_interval(tangent: LawTangent, series: Series, t: float) -> None:
-    """Keep the modes at the start of an interval, the time `t`."""
+    """Store the modes at the start of an interval, the time `t`."""
     envelope, modal = series.envelope, series.modal
     if not envelope.is_needed[0]:
         return

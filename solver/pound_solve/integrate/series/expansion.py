@@ -6,9 +6,9 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
     (k+1)(k+2)\,M c_{k+2} = h^2\Bigl(p_k - K c_k - \sum_i b_i f_{ik}\Bigr) - h (k+1)\,C c_{k+1},
 
 :math:`f_{ik} = k_i d_{ik} + (k+1) c_i d_{i,k+1}/h` those of the laws' forces on their present branches.
-Terms are added until two in a row are below a share `TRUNCATION` of the motion in the energy norm,
-:math:`k^2 c_k^T M c_k / h^2`.  If the last ones allowed are not, the step ends at the place where they
-would be; if that place is far from the end, the step is tried again, shorter.
+Terms are added until two in a row are below the fraction `TRUNCATION` of the motion in the energy norm,
+:math:`k^2 c_k^T M c_k / h^2`.  If the last terms allowed are still larger, the step ends at the place where
+they are that small.  If that place is far from the end, a shorter step is tried.
 
 Two numbers go through these kernels: `degree`, the highest power of the series of a step, and `n_powers`,
 the number of coefficients of the excitation's polynomials, one more than their degree.
@@ -38,16 +38,16 @@ from pound_solve.numerics.jit import reorder_sums
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
-MAX_DEGREE = 32  #: of a series, at most
+MAX_DEGREE = 32  #: highest degree of a series
 UNCHECKED_TERMS = 4  #: terms after which it is checked whether they suffice
-TRUNCATION = 1e-14  #: fraction of the motion that a term left out may be
-UNSEEN_ENERGY = 1e-13  #: fraction of its energy that a term may carry that works need not see
-MAX_GROWTH = 2.0  #: how much longer than the last a step may be
+TRUNCATION = 1e-14  #: largest term left out, as a fraction of the motion
+UNSEEN_ENERGY = 1e-13  #: fraction of the energy up to which works may neglect a term
+MAX_GROWTH = 2.0  #: largest ratio of the lengths of successive steps
 
 
 @reorder_sums
 def dot(a: Array, b: Array) -> float:
-    """Product of two vectors."""
+    """Return the product of two vectors."""
     total = 0.0
     for k in range(len(a)):
         total += a[k] * b[k]
@@ -55,7 +55,7 @@ def dot(a: Array, b: Array) -> float:
 
 
 def expand_inputs(series: Series, piece: Piece, t: float, h: float) -> None:
-    """Series of the inputs from the time `t` on, in steps of `h`."""
+    """Expand the inputs about the time `t` for a step of length `h`."""
     s, coefs, begin = series.inputs, piece.coefs, t - piece.begin
     n_powers, n = coefs.shape
     for j in range(n):
@@ -71,21 +71,21 @@ def expand_inputs(series: Series, piece: Piece, t: float, h: float) -> None:
 
 
 def expand_deformations(laws: Laws, series: Series, degree: int, n_powers: int) -> None:
-    """Coefficients of the deformations up to `degree`."""
+    """Compute the coefficients of the deformations up to `degree`."""
     for k in range(degree + 1):
         for i in range(len(laws.definition.rule)):
             series.deformation[i, k] = deformation_term(laws.definition, series, k, n_powers, i)
 
 
 def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
-    """Twice the kinetic energy of the term `k`."""
+    """Return twice the kinetic energy of the term `k`."""
     multiply(linear.mass, series.motion[k], series.mass_product)
     energy: float = dot(series.motion[k], series.mass_product) * (k / h) * (k / h)
     return energy
 
 
 def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
-    """Twice the kinetic energy of the term `k`, and twice the elastic one of the unknowns without mass."""
+    """Return twice the kinetic energy of the term `k` plus twice the elastic one of massless unknowns."""
     massless, energy = series.massless, kinetic_of_term(linear, series, k, h)
     for n in range(len(massless.unknown)):
         x = series.motion[k, massless.unknown[n]]
@@ -96,8 +96,8 @@ def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> fl
 def structural_forces(
     linear: LinearSystem, series: Series, k: int, on_stiffness: float, on_damping: float, out: Array
 ) -> None:
-    """Negative forces of structure and laws from the coefficients `k` and of dashpots from those `k` + 1,
-    times factors; zero for unknowns without mass, for which they are not needed.
+    """Compute negative forces of structure and laws from the coefficients `k`, and of dashpots from the
+    coefficients `k` + 1, times factors.  They are zero for unknowns without mass, which do not need them.
     """
     c, massless, springs = series.motion, series.massless, series.springs
     if len(massless.unknown):
@@ -117,7 +117,7 @@ def structural_forces(
 
 
 def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) -> None:
-    """Coefficients `k` + 2 of the unknowns from the two before (see the module's head).
+    """Compute the coefficients `k` + 2 of the unknowns from the two before (see the module docstring).
 
     The order matters: forces `k` give the unknowns with mass; closed contacts constrain these; remainders
     of smooth laws (`k` + 2) and of dampers (`k` + 1) follow from the motion so far, and the unknowns
@@ -156,7 +156,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) 
         for i in range(n):
             new[i] *= below
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
-        for i in series.massless.unknown:  # loads on these are for `add_massless`
+        for i in series.massless.unknown:  # `add_massless` applies their loads
             new[i] = 0.0
     hold_contacts(laws, series, k + 2, h, n_powers)
     find_remainders(laws, series, k + 2, n_powers)
@@ -182,7 +182,7 @@ def begin_series(sim: Simulation, series: Series, piece: Piece, h: float) -> Non
 
 
 def valid_up_to(series: Series, degree: int, end: float) -> float:
-    """Fraction or multiple of a step up to which forces that are series are accurate, at most `end`."""
+    """Return the multiple of a step, at most `end`, up to which forces that are series are accurate."""
     end = contacts_valid_up_to(series.power_contacts, degree, end)
     end = smooth_valid_up_to(series.smooth, degree, end)
     return dampers_valid_up_to(series.power_dampers, degree, end)
@@ -196,8 +196,7 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
     degree : int
         Its highest power.
     end : float
-        Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all
-        bounds.
+        Fraction or multiple of the step up to which the series is accurate; NaN if numbers overflow.
     """
     control = series.control
     linear = sim.linear
@@ -239,7 +238,7 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
 
 
 def derivative_factor(k: int, order: int, h: float) -> float:
-    """Factor of the power `k` in a derivative of the given order, for a step of length `h`."""
+    """Return the factor of the power `k` in a derivative of the given order, for a step of length `h`."""
     factor = 1.0
     for j in range(order):
         factor *= (k - j) / h
@@ -274,7 +273,7 @@ def evaluate_motion(c: Array, degree: int, s: float, h: float, order: int, out: 
 
 
 def law_at(series: Series, degree: int, s: float, h: float, i: int) -> tuple[float, float]:
-    """Deformation and rate of a law at the place `s`."""
+    """Return deformation and rate of a law at the place `s`."""
     d, v = series.deformation[i, degree], 0.0
     for k in range(degree - 1, -1, -1):
         v = v * s + d

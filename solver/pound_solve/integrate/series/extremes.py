@@ -1,4 +1,4 @@
-"""Kernel: the largest and the smallest values of rows on the motion over the steps that were kept.
+"""Kernel for the largest and the smallest values of rows on the motion over the stored steps.
 
 Within a step such a row is a polynomial, whose extremes are isolated with proof
 (`events.polynomial_roots`).  Its value at the start and the sizes of its terms show beforehand whether it
@@ -31,7 +31,7 @@ class RowExtremes(NamedTuple):
     high, t_high, low, t_low : ndarray, shape (n_rows,)
         Largest and smallest values so far, and their times.
     first, far : ndarray, shape (n_series, 3)
-        Of the derivatives of every series in the present step: value at the start, and a bound of its
+        For the derivatives of every series in the present step: value at the start, and a bound of the
         change.
     polynomial : ndarray
         Work space, see `polynomial_roots.room`.
@@ -52,8 +52,8 @@ class RowExtremes(NamedTuple):
 
 
 def bound_series(extremes: RowExtremes, i: int, c: Array, degree: int, h: float) -> None:
-    """Value and first two derivatives of series `i` at the start of a step, and bounds of their changes in
-    it.
+    """Compute value and first two derivatives of series `i` at the start of a step, and bounds of their
+    changes in it.
     """
     zeroth, first, second = abs(c[1]) + abs(c[2]), 2.0 * abs(c[2]), 0.0
     for k in range(3, degree + 1):
@@ -65,7 +65,7 @@ def bound_series(extremes: RowExtremes, i: int, c: Array, degree: int, h: float)
 
 
 def may_exceed(extremes: RowExtremes, r: int) -> bool:
-    """Whether row `r` may exceed its extremes in the present step."""
+    """Return whether row `r` may exceed its extremes in the present step."""
     first, far = extremes.constant[r], 0.0
     for q in range(extremes.pointers[r], extremes.pointers[r + 1]):
         i, order, factor = extremes.source[q], extremes.derivative[q], extremes.factors[q]

@@ -1,4 +1,4 @@
-"""Events of forces that are series, beside those of a law's branch, whose numbers are not negative."""
+"""Numbers of events of forces that are series; events of a law's branch have nonnegative numbers."""
 
 from __future__ import annotations
 

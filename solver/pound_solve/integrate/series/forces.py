@@ -1,8 +1,8 @@
 """Kernels for forces that are separate series: of closed rigid contacts, power contacts, smooth laws and
 dampers.
 
-Where the motion has the degree n, such a force is known up to the degree n - 2: the coefficients `k` + 2 of
-the motion follow from those `k` of the forces.
+For a motion of degree n, such a force is known up to the degree n - 2, because the coefficients `k` + 2 of
+the motion follow from the coefficients `k` of the forces.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def refresh_branch_series(laws: Laws, rules: RuleFunctions, series: Series, i: i
 
 
 def has_series(series: Series, i: int) -> bool:
-    """Whether the force of law `i` is a series of its own."""
+    """Return whether the force of law `i` is a separate series."""
     pressed = is_closed(series.rigid, i) or has_force(series.power_contacts, i)
     smooth = series.smooth.index_of[i] >= 0
     return pressed or is_sliding(series.friction, i) or smooth or is_fast(series.power_dampers, i)
@@ -69,7 +69,9 @@ def total_force(laws: Laws, series: Series, degree: int, h: float, i: int, out: 
                     laws.definition, smooth, r, k, h
                 )
         return
-    acts = 1.0 if series.power_contacts.index_of[i] < 0 else 0.0  # which presses nothing now
+    acts = (
+        1.0 if series.power_contacts.index_of[i] < 0 else 0.0
+    )  # a power contact without force is left out
     for k in range(degree + 1):
         out[k] = acts * tangent.stiffness[i] * d[k]
     out[0] += acts * tangent.offset[i]
@@ -79,7 +81,7 @@ def total_force(laws: Laws, series: Series, degree: int, h: float, i: int, out: 
 
 
 def force_at(force: Array, degree: int, s: float) -> float:
-    """Force at the place `s` of a step whose series has this `degree`."""
+    """Return the force at the place `s` of a step whose series has this `degree`."""
     value = 0.0
     for k in range(degree - 2, -1, -1):
         value = value * s + force[k]

@@ -25,14 +25,14 @@ from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array, Index
 
-KT, MU, MUD = range(3)  #: among the parameters
-OVERDUE = 1e-9  #: fraction of its terms above which an event function has jumped, as the normal force has
+KT, MU, MUD = range(3)  #: indices of parameters
+OVERDUE = 1e-9  #: fraction of its terms above which an event function has jumped with the normal force
 
 
 def allocate(laws: Index, normal: Index, n_laws: int, n_coefs: int) -> Friction:
     """Lay out the friction `laws` for series of `n_coefs` coefficients.
 
-    The laws `normal` have the forces that press.
+    The forces of the laws `normal` are the normal forces.
     """
     return Friction(
         laws=laws,
@@ -47,18 +47,18 @@ def allocate(laws: Index, normal: Index, n_laws: int, n_coefs: int) -> Friction:
 
 
 def set_sliding_direction(state: LawState, friction: Friction, i: int) -> None:
-    """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 where it does not."""
+    """Set the direction in which friction law `i` slides on its branch: +1, -1, or 0 if it does not."""
     at = state.branch[i]
     friction.sliding_direction[friction.index_of[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
 
 
 def is_sliding(friction: Friction, i: int) -> bool:
-    """Whether law `i` is friction that slides."""
+    """Return whether law `i` is friction that slides."""
     return bool(friction.index_of[i] >= 0 and friction.sliding_direction[friction.index_of[i]] != 0.0)
 
 
 def normal_force_term(laws: Laws, series: Series, r: int, k: int, h: float, n_powers: int) -> float:
-    """Coefficient `k` of the normal force of friction `r`."""
+    """Return coefficient `k` of the normal force of friction `r`."""
     tangent = laws.tangent
     j, contacts = series.friction.normal[r], series.power_contacts
     row = contacts.index_of[j]
@@ -73,9 +73,7 @@ def normal_force_term(laws: Laws, series: Series, r: int, k: int, h: float, n_po
 
 
 def add_friction(laws: Laws, series: Series, k: int, h: float, n_powers: int, new: Array) -> None:
-    """Add the coefficients `k` of the forces of friction to the right side `new` of the coefficients
-    `k` + 2.
-    """
+    """Add coefficients `k` of the friction forces to the right side `new` of coefficients `k` + 2."""
     friction = series.friction
     for r in range(len(friction.laws)):
         i = friction.laws[r]
@@ -131,7 +129,7 @@ def touch_event(laws: Laws, rules: RuleFunctions, friction: Friction, r: int) ->
 
 
 def lift_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
-    """Instant at which the contact of friction `i` begins to pull, or to press again; law -1 for none."""
+    """Return when the contact of friction `i` begins to pull, or to press again; law -1 for none."""
     friction, p = series.friction, series.polynomial[POLYNOMIAL]
     r = friction.index_of[i]
     sign = -1.0 if friction.pressing[r] else 1.0
@@ -142,7 +140,7 @@ def lift_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
 
 
 def friction_event(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
-    """The first event of friction law `i` before the place `end`, see `no_event`."""
+    """Return the first event of friction law `i` before the place `end`, see `no_event`."""
     friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
     r, parameters = friction.index_of[i], laws.definition.parameters[i]
     if laws.state.branch[i] == OPEN:

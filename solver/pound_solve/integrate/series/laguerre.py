@@ -1,9 +1,9 @@
-"""LAGUERRE: event-driven integration by implicit series, for structures with modes far above the motion.
+"""LAGUERRE: event-driven integration by implicit series, for modes far faster than the motion.
 
 Axial stiffness, small masses at joints and stiffness-proportional damping produce modes that do not show in
 the motion but that the steps of TAYLOR must resolve.  A step of LAGUERRE instead solves a few times with
-one matrix (see `single_pole`), is as long as the motion allows, and has an error that TOL bounds.  Between
-its ends the motion is a polynomial; events, peaks and works are found as in TAYLOR.
+one matrix (see `single_pole`).  It is as long as the motion allows, and TOL bounds its error.  Within a
+step the motion is a polynomial; events, peaks and works are found as in TAYLOR.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from pound_solve.integrate.series.taylor import MAX_STEPS, Taylor
 
 
 class Laguerre(Taylor):
-    """One run; see the module's head."""
+    """One run; see the module docstring."""
 
     exact = False
     words = f"LAGUERRE, implicit series of {LAST_TERM} terms"
     asking = "TOL"
 
     def remedy(self) -> str:
-        """Text on what requires fewer steps."""
+        """Return advice on what requires fewer steps."""
         return ", a larger one for fewer"
 
     def figures(self) -> dict[str, Any]:
-        """Figures of the run for the report."""
+        """Return the figures of the run for the report."""
         control, shortest = self.control, float(self.control.shortest_length)
         return {
             "method": self.name,
@@ -46,8 +46,8 @@ class Laguerre(Taylor):
 
 
 def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
-    """Integrate a reduced system by implicit series; see the module's head.  `options` may hold STEPS, the
-    most that a run may come to.
+    """Integrate a reduced system by implicit series; see the module docstring.  `options` may hold STEPS,
+    the largest number of steps.
 
     Raises
     ------

@@ -57,17 +57,17 @@ from pound_solve.integrate.series.tracking import first_event, track_laws, track
 from pound_solve.integrate.series.works import add_works
 from pound_solve.laws.functions import RuleFunctions
 
-MIN_SHORTENING = 1.0 / 16.0  #: factor of the length of a step that is tried again, at least
-MAX_SHORTENING = 0.9  #: this factor, at most
-MIN_PART = 0.5  #: smallest part of a step, as it was tried, that is taken
-#: fraction of the time to the goal: longest implicit step in which a contact leaves its rest
+MIN_SHORTENING = 1.0 / 16.0  #: smallest factor of the length of a step that is tried again
+MAX_SHORTENING = 0.9  #: largest such factor
+MIN_PART = 0.5  #: smallest fraction of a trial step that is accepted
+#: longest implicit step in which a contact leaves its rest, as a fraction of the time to the goal
 MAX_FIRST_STEP = 1e-4
 
 
 def update_displacement_scale(laws: Laws, series: Series, extent: Extent) -> None:
-    """Update the largest deformations of contacts with the displacements of their two bodies over a step:
-    rounding of the deformation is a share of these, and for bodies that move alike the
-    deformation is nothing but rounding.
+    """Update the largest deformations of contacts with the displacements of their two bodies over a step.
+    The rounding of the deformation is a fraction of these displacements; for bodies that move alike, the
+    deformation is only rounding.
     """
     definition, rows, motion = laws.definition, laws.definition.rows, series.motion
     for i in range(len(definition.rule)):
@@ -90,7 +90,7 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
         d, v = law_at(series, degree, end, h, i)
         if is_closed(series.rigid, i):
             d, v = laws.state.entry_deformation[i], 0.0
-        if is_sliding(series.friction, i):  # its work is added up
+        if is_sliding(series.friction, i):  # its work is accumulated separately
             laws.state.entry_deformation[i] = d
         laws.now.deformation[i], laws.now.rate[i] = d, v
         largest.deformation[i] = max(largest.deformation[i], abs(d))
@@ -100,35 +100,35 @@ def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) ->
 
 
 def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
-    """Whether the contact of an event starts an implicit step at rest.  Its motion may then be smaller than
-    the error of the polynomial, so that its direction is unreliable.
+    """Return whether the contact of an event starts an implicit step at rest.  Its motion may then be
+    smaller than the error of the polynomial, so that its direction is unreliable.
     """
     at_rest = event.law >= 0 and laws.definition.contact[event.law] and laws.now.rate[event.law] == 0.0
     return at_rest and is_laguerre(series)
 
 
 def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
-    """Whether Python must empty the buffers, or may look whether the user wants to stop."""
+    """Return whether Python must empty the buffers or may check for an interrupt."""
     log_is_full = len(buffers.log) - run.n_transitions < len(buffers.log) // 2
     crowded = log_is_full or run.n_ties > len(buffers.ties) // 2
     return crowded or run.steps >= pause or is_full(series.envelope)
 
 
 def step_length(control: StepControl, t: float, goal: float) -> float:
-    """Length of the next step: what is left to the goal in equal parts; 0 where it vanishes in the rounding
-    of the time.
+    """Return the length of the next step, which divides the time to the goal into equal parts; 0 if it
+    vanishes in the rounding of the time.
     """
     left = goal - t
     h: float = left / np.ceil(max(left / control.next_length, 1.0) * (1.0 - 1e-9))
     if h == left:
         return h
-    # the step is what the rounded clock advances by, except at time 0, where the clock resolves any step
+    # the step equals the advance of the rounded clock, except at time 0, where the clock resolves any step
     return t + h - t if goal + h > goal else 0.0
 
 
 def shorten_step(control: StepControl, h: float, fit: float) -> None:
-    """Choose a shorter step after one that did not fit, shorter by a tenth at least: with less, the equal
-    parts of what is left would be as long as before.
+    """Choose a step shorter by at least a tenth after a rejected one.  With less, the equal parts of the
+    remaining time would be as long as before.
     """
     control.next_length = h * (min(fit, MAX_SHORTENING) if fit > MIN_SHORTENING else MIN_SHORTENING)
     control.n_rejected += 1
@@ -139,9 +139,9 @@ def complete_step(
 ) -> None:
     """Accept a step: update peaks, kept motion, works, and the present motion.
 
-    What reads the tangents of the step's start comes before `add_works`, which leaves those of its last
-    Gauss point behind; `accept_step` then sets the forces at the end, and smooth laws and dampers get new
-    tangents.
+    All functions that read the tangents at the start of the step are called before `add_works`, which
+    leaves the tangents of its last Gauss point.  `accept_step` then sets the forces at the end, and smooth
+    laws and dampers get new tangents.
     """
     laws, run = sim.laws, sim.run
     track_outputs(sim, series, extent, len(piece.coefs))
@@ -218,7 +218,7 @@ def step_to_goal(
             degree, fit = expand_series(sim, series, piece, h)
             # terms that were not needed make room for a longer step
             least, room = MIN_PART, MAX_DEGREE / degree
-        if not fit >= least:  # terms far too large say nothing about the motion
+        if not fit >= least:  # far too large terms are no information on the motion
             shorten_step(control, h, fit)
             pause -= 1  # or a run that shortens its steps without end could not be interrupted
             continue
@@ -277,7 +277,7 @@ def reach_goal(
 
 
 def store_sample_at_goal(sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece) -> None:
-    """Keep the present motion; as the first sample, count it into the peaks."""
+    """Store the present motion; if it is the first sample, include it in the peaks."""
     run = sim.run
     now = sim.step.now
     why = settle_state(sim, rules, series, piece)
@@ -296,7 +296,7 @@ def store_sample_at_goal(sim: Simulation, rules: RuleFunctions, series: Series, 
 
 
 def massless_load_work(sim: Simulation, series: Series, piece: Piece) -> float:
-    """Sum over the unknowns without mass of the present load, by a piece, times displacement."""
+    """Return the sum of present load times displacement over the unknowns without mass."""
     total, trial = 0.0, sim.step.trial
     evaluate_inputs(piece.coefs, sim.run.time - piece.begin, trial.inputs, trial.input_rates)
     for i in series.massless.unknown:

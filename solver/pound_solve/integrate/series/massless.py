@@ -1,7 +1,7 @@
 r"""Unknowns without mass in a power series: kernels, and the arrays they work on.
 
-An unknown without mass that a dashpot resists is of order one: its rate follows from the force that is left
-for the dashpot.  One that springs alone resist is of order zero: its displacement follows from equilibrium.
+An unknown without mass that a dashpot resists is of order one: its rate follows from the remaining force on
+the dashpot.  One that only springs resist is of order zero: its displacement follows from equilibrium.
 The coefficient k of the first kind follows from the coefficients k - 1 of all unknowns and k of those with
 mass; that of the second kind then follows from the coefficients k of all others:
 
@@ -66,7 +66,7 @@ def allocate(
     ----------
     linear : LinearSystem
     stiffness, damping : Matrix, shape (n, n)
-        In the order of elimination, laws apart.
+        In the order of elimination, without laws.
     law_rows : Matrix, shape (n_laws, n)
     elastic : ndarray, shape (n_laws,)
         Initial stiffness of the laws [F/L].
@@ -127,8 +127,8 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
     Returns
     -------
     int
-        -1, or the number of one that nothing holds, or that would snap through, by K; one that is held by
-        dashpots between such unknowns alone, by C.
+        -1 or the number of a failed unknown.  A failure of K means that it is unrestrained or would snap
+        through; a failure of C, that it has dashpots only to other such unknowns.
     """
     form_matrix(laws.tangent, massless, ORDER_ONE)
     massless.n_of_order[ORDER_ONE] = massless.n_of_order[ORDER_ZERO] = 0
@@ -158,7 +158,7 @@ def factorise_orders(laws: Laws, massless: Massless) -> int:
 
 
 def least_damped_unknowns(laws: Laws, massless: Massless) -> Index:
-    """Numbers of the unknowns of order one that take part in their least damped motion."""
+    """Return the numbers of the unknowns of order one that take part in their least damped motion."""
     form_matrix(laws.tangent, massless, ORDER_ONE)
     c = np.zeros((len(massless.unknown), len(massless.unknown)))
     c[massless.pattern.ai, massless.column] = c[massless.column, massless.pattern.ai] = massless.matrix
@@ -170,8 +170,8 @@ def least_damped_unknowns(laws: Laws, massless: Massless) -> Index:
 def solve_order(massless: Massless, which: int) -> None:
     """Solve in place for the unknowns of one order; the right sides of the others do not matter.
 
-    As `ldl.solve`, but for some unknowns only: those of the other order have unit rows, so that their part
-    of L is zero.  The unknowns come in ascending order of elimination.
+    Like `ldl.solve`, but for some unknowns only.  Unknowns of the other order have unit rows, so their part
+    of L is zero.  The unknowns must be in ascending order of elimination.
     """
     pattern, lower, x = massless.pattern, massless.factors[which], massless.right_side
     unknowns, inverse_pivots = massless.unknowns_of_order[which], massless.inverse_pivots[which]
@@ -188,8 +188,8 @@ def solve_order(massless: Massless, which: int) -> None:
 
 
 def balance_forces(series: Series, k: int, n_powers: int, which: int) -> None:
-    """Right sides for the unknowns of one order: loads less the forces of K and of the laws, with the parts
-    of smooth laws and dampers beyond their tangents, at the coefficients `k`.
+    """Form the right sides for the unknowns of one order from the coefficients `k`: loads less the forces
+    of K and of the laws, including the parts of smooth laws and dampers beyond their tangents.
     """
     massless, springs, c = series.massless, series.springs, series.motion[k]
     members, x = massless.unknowns_of_order[which], massless.right_side
@@ -234,8 +234,8 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> N
 
 
 def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_powers: int) -> None:
-    """Compute the coefficients `k` of the unknowns without mass (see the module's head), which must be zero
-    before for `k` > 1.
+    """Compute the coefficients `k` of the unknowns without mass (see the module docstring).  For `k` > 1
+    they must be zero before the call.
     """
     massless, c, x = series.massless, series.motion, series.massless.right_side
     if k < 2:
@@ -252,7 +252,7 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_pow
 
 
 def joints_jump(laws: Laws, series: Series, n_powers: int) -> bool:
-    """Whether the laws at joints without mass deform instantly."""
+    """Return whether the laws at joints without mass deform instantly."""
     massless, most, far = series.massless, 0.0, 0.0
     for i in massless.laws:
         d = laws.now.deformation[i]
@@ -262,11 +262,11 @@ def joints_jump(laws: Laws, series: Series, n_powers: int) -> bool:
 
 
 def first_violated(laws: Laws, which: Index) -> tuple[int, int]:
-    """First of some laws whose rate has jumped so that an event function of the rate is above zero, and its
-    event; -1 where there is none.
+    """Return the first of some laws whose rate has jumped so that an event function of the rate is above
+    zero, and its event; -1 if there is none.
 
-    A rate up to the rounding of the force over the dashpot's coefficient counts as zero: at rest it is
-    nothing else.
+    A rate up to the rounding of the force over the dashpot's coefficient counts as zero: at rest the rate
+    is only this rounding.
     """
     coefficients = laws.events.coefficients
     for i in which:

@@ -1,15 +1,15 @@
 r"""Kernels of TAYLOR: intervals that are advanced in modes because they certainly contain no event.
 
-While no contact is closed and all laws are on branches as stiff as at the start, the motion over an
+While no contact is closed and all laws are on branches with their initial stiffness, the motion over an
 interval between two goals is known in closed form (`modal_tables`).  An interval without an event is
 advanced by this form; any other is advanced by series.
 
-A followed quantity is :math:`y = \mathrm{Re}\sum_j \rho_j c_j e^{\lambda_j t}` and a straight line.  From
-the chord between two places a time :math:`\tau` apart it departs by
+A followed quantity is :math:`y = \mathrm{Re}\sum_j \rho_j c_j e^{\lambda_j t}` plus a straight line.  Its
+distance from the chord between two places a time :math:`\tau` apart is at most
 
 .. math:: |y - y_\text{chord}| \le \sum_j |\rho_j|\,|c_j| \min\bigl(2, \tfrac18|\lambda_j\tau|^2\bigr)
 
-at most.  The bound holds because no mode grows: :math:`|c_j e^{\lambda_j t}| \le |c_j|` bounds a mode and
+The bound holds because no mode grows: :math:`|c_j e^{\lambda_j t}| \le |c_j|` bounds a mode and
 the ends of its chord, and :math:`\tau^2/8` times the second derivative bounds its distance from the chord.
 If an event or a peak may therefore lie in a cell, the power series of that quantity over the cell, with the
 terms :math:`\rho_j c_j (\lambda_j\tau)^k/k!`, decides, as in a step by series.
@@ -41,8 +41,8 @@ DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_m
 
 @reorder_sums
 def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, before: float) -> None:
-    """Set the first `rows` of `out` to the product of a matrix and a vector plus `before` times what they
-    were.
+    """Set the first `rows` of `out` to the product of a matrix and a vector plus `before` times their
+    previous values.
     """
     for i in range(rows):
         total = before * out[i]
@@ -52,7 +52,7 @@ def multiply_dense(a: Array, x: Array, rows: int, columns: int, out: Array, befo
 
 
 def refresh_modes(laws: Laws, series: Series) -> None:
-    """Check whether the modes are valid on the present branches, and compute where these come to rest."""
+    """Check whether the modes are valid on the present branches, and compute their static positions."""
     modal = series.modal
     modal.is_valid[0] = 0
     if modal.length[0] == 0.0:
@@ -157,15 +157,15 @@ def follow_cells(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
 
 
 def cell_bounds(modal: Modal, cell: int, i: int) -> tuple[float, float]:
-    """Bounds of a followed quantity over a cell."""
+    """Return bounds of a followed quantity over a cell."""
     begin, end = modal.values[cell, i], modal.values[cell + 1, i]
     return min(begin, end) - modal.chord_error[i], max(begin, end) + modal.chord_error[i]
 
 
 @reorder_sums
 def next_powers(re: Array, im: Array, turn: Array, share: float) -> tuple[float, float]:
-    """Multiply complex numbers by the `turn` of each times a share; return their real sum, and the sum of
-    their sizes.
+    """Multiply complex numbers by their factors `turn` times `share`; return their real sum, and the sum of
+    their magnitudes.
     """
     total, sizes = 0.0, 0.0
     for j in range(len(re)):
@@ -178,7 +178,7 @@ def next_powers(re: Array, im: Array, turn: Array, share: float) -> tuple[float,
 
 
 def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> int:
-    """Power series of a followed quantity over a cell; return its highest power, 0 if that is too high."""
+    """Form the power series of a followed quantity over a cell; return its degree, 0 if it is too high."""
     for k in range(MAX_DEGREE + 1):
         p[k] = 0.0
     p[0], degree = modal.values[cell, i], UNCHECKED_TERMS
@@ -208,8 +208,8 @@ def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> 
 
 
 def may_change(events: BranchEvents, modal: Modal, cell: int, i: int) -> bool:
-    """Whether law `i` may leave its branch within a cell, by the bounds of its deformation, not of its
-    rate.
+    """Return whether law `i` may leave its branch within a cell, by the bounds of its deformation (not of
+    its rate).
     """
     coefficients = events.coefficients
     low, high = cell_bounds(modal, cell, i)
@@ -221,7 +221,7 @@ def may_change(events: BranchEvents, modal: Modal, cell: int, i: int) -> bool:
 
 
 def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
-    """Whether it is certain that no law leaves its branch within the interval from the time `t` on."""
+    """Return whether no law can leave its branch within the interval that starts at the time `t`."""
     modal = series.modal
     cells = len(modal.values) - 1
     h = modal.length[0] / cells
@@ -235,15 +235,15 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
 
 
 def exceeds_peaks(extremes: TrackedExtremes, i: int, low: float, high: float) -> bool:
-    """Whether bounds let a tracked quantity exceed its peaks."""
+    """Return whether a tracked quantity within these bounds may exceed its peaks."""
     return not (high <= extremes.high[i] and low >= extremes.low[i])
 
 
 def update_peaks_at_cell_ends(
     laws: Laws, step: Step, modal: Modal, i: int, at: int, k: float, constant: float, t: float
 ) -> None:
-    """Update peak `at` with ``k y + constant`` at the ends of the cells, y being followed quantity `i`: the
-    motion within cells seldom exceeds it then.
+    """Update peak `at` with ``k y + constant`` at the ends of the cells, where y is followed quantity `i`.
+    The motion within cells then seldom exceeds the peak.
     """
     cells = len(modal.values) - 1
     for end in range(cells + 1):
@@ -294,7 +294,7 @@ def add_interval_works(modal: Modal, n_inputs: int, works: Works) -> None:
     for b in range(len(modal.counts)):
         first, x = 2 * modal.counts[b, MODES], modal.x[b, 0]
         size = first + 2 * n_inputs
-        for i in range(size):  # of a symmetric form one half
+        for i in range(size):  # one half of a symmetric form
             half = dot(modal.damping_work[b, i, :i], x[:i])
             works.damping += x[i] * (2.0 * half + modal.damping_work[b, i, i] * x[i])
         for i in range(2 * n_inputs):
@@ -316,9 +316,9 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
 
 
 def advance_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float) -> bool:
-    """Advance in modes over the interval up to a goal; False where that is not certain to be right.
+    """Advance in modes over the interval up to a goal; return False if that may be wrong.
 
-    The motion stays in the modes, see `from_modes`.
+    The motion stays in the modes: call `from_modes` before using it.
     """
     run = sim.run
     modal, n_inputs = series.modal, series.inputs.shape[1]

@@ -1,8 +1,8 @@
 r"""Tables for intervals in modes: the matrices that `modal` multiplies with, for one interval length h.
 
-On the branches on which a run starts, the parts of the structure that only contacts join have complex modes
-of their own, :math:`\dot q_i = \lambda_i q_i + F_i s(t)`.  Under inputs that are straight lines over the
-interval, :math:`s = \sigma_0 + \sigma_1 t/h`, each is a free motion and a straight line,
+On the initial branches, each part of the structure that only contacts join to others has separate complex
+modes, :math:`\dot q_i = \lambda_i q_i + F_i s(t)`.  Under inputs that are straight lines over the
+interval, :math:`s = \sigma_0 + \sigma_1 t/h`, each is a free motion plus a straight line,
 
 .. math:: q_i = c_i\,e^{\lambda_i t} - \frac{F_i}{\lambda_i}\Bigl(\sigma_0 + \frac{\sigma_1}{\lambda_i h}
           + \sigma_1\frac th\Bigr),
@@ -30,8 +30,8 @@ from pound_solve.numerics.types import Array, Complex, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_CONDITION = 3e3  #: of its modes
-MAX_CELLS = 100_000  #: in an interval: faster modes than that are for no table
-MAX_RADIANS = 5.0  #: radians of the fastest mode in a cell, at most, as in a step by series
+MAX_CELLS = 100_000  #: most cells in an interval: faster modes get no table
+MAX_RADIANS = 5.0  #: most radians of the fastest mode in a cell, as in a step by series
 MIN_CELLS = 4  #: cells
 START = np.zeros(1)  #: of an interval
 PANEL, POINTS = 8.0, 16  #: radians that Gauss's rule with so many points integrates to rounding
@@ -43,7 +43,7 @@ class ModalPart:
     Parameters
     ----------
     mass, damping, stiffness : ndarray, shape (n, n)
-        Of its n unknowns, laws on their branches among them.
+        Matrices of its n unknowns, including laws on their branches.
     inputs : ndarray, shape (n, n_inputs)
     constant : ndarray, shape (n,)
     rows : ndarray, shape (n_laws + n_monitored, n)
@@ -53,9 +53,9 @@ class ModalPart:
     Attributes
     ----------
     followed : ndarray of int
-        Which it moves of the deformations of the laws and the monitored outputs.
+        Indices of the deformations of the laws and the monitored outputs that it moves.
     rows : ndarray of complex, shape (n_followed, n_modes)
-        These on the modes.
+        These quantities in terms of the modes.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class ModalPart:
         self, mass: Array, damping: Array, stiffness: Array, inputs: Array, constant: Array, rows: Array,
         length: float,
     ) -> None:  # fmt: skip
-        # where modes do not pay they are not loaded
+        # loaded only if modes pay
         from pound_solve.integrate.propagators.modal import ModalPropagator
         from pound_solve.integrate.propagators.state_space import state_space
 
@@ -86,8 +86,8 @@ class ModalPart:
         self.rows = rows[self.followed] @ self.modes.u_q
 
     def table(self, rows: Complex, places: Array, order: int = 0) -> Array:
-        """Derivative of an order, 0 or 1, of some rows at places in [0, 1] of the interval, on x, shape
-        (n_places, n_rows, n_x).
+        """Return the derivative of order 0 or 1 of some rows at places in [0, 1] of the interval, as rows
+        on x, shape (n_places, n_rows, n_x).
         """
         free = (rows * self.rate**order) * np.exp(self.rate * self.length * places[:, None])[:, None]
         start, slope = rows @ self.steady, rows @ (self.steady / (self.rate * self.length)[:, None])
@@ -99,7 +99,7 @@ class ModalPart:
 
     @cached_property
     def works(self) -> tuple[Array, Array, Array]:
-        """Work lost in dashpots as ``x^T D x``, and put in as ``sigma^T P x + w x``."""
+        """Return D, P and w: the dashpots' loss is ``x^T D x``, the input ``sigma^T P x + w x``."""
         panels = int(np.ceil(np.abs(self.rate).max() * self.length / PANEL))
         points, weights = np.polynomial.legendre.leggauss(POINTS)
         places = ((np.arange(panels)[:, None] + 0.5 + 0.5 * points) / panels).ravel()
@@ -115,14 +115,14 @@ class ModalPart:
         return lost, put, end - start
 
 
-#: runs of one structure under several motions have the same
+#: runs of one structure under several motions share them
 shared_part = by_content(most=16)(ModalPart)
 
 
 def parts_of(
     system: ReducedSystem, stiffness: Array, monitored: Array, length: float
 ) -> list[tuple[Index, ModalPart]]:
-    """The parts that only contacts join, with their unknowns; none where modes do not serve or pay."""
+    """Return the parts that only contacts join, with their unknowns; none if modes do not apply or pay."""
     straight = system.excitation.coefs.shape[1] <= 2
     if not straight or length == 0.0 or costs.fastest_rate(system) * length < MIN_RADIANS:
         return []
@@ -157,24 +157,24 @@ def allocate(
     system: ReducedSystem, stiffness: Array, monitored: MonitoredOutputs, times: Array, place: Index,
     enveloped: Index,
 ) -> Modal:  # fmt: skip
-    """Lay out the tables of all parts, one after the other.
+    """Allocate the tables of all parts.
 
     Parameters
     ----------
     system : ReducedSystem
     stiffness : ndarray, shape (n_laws,)
-        Of the laws on the branches on which the run starts [F/L].
+        Stiffness of the laws on their initial branches [F/L].
     monitored : MonitoredOutputs
     times : ndarray
-        At which the run must arrive.
+        Times at which the run must arrive.
     place : ndarray of int, shape (n,)
-        Of the unknowns in the order of elimination.
+        Index of each unknown in the order of elimination.
     enveloped : ndarray of int
         Unknowns that the envelopes need, in that order.
     """
     length, outputs = most_common_length(times), dense(monitored.rows)
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
-    stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
+    stiffness = stiffness * open_  # parts have separate modes while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
     if any(np.abs(p.rate).max() * length > MAX_CELLS * MAX_RADIANS for _, p in parts):
         parts = []
@@ -226,8 +226,8 @@ def allocate(
 def fill_tables(
     out: Modal, b: int, part: ModalPart, seen: Index, unknowns: Index, enveloped: Index
 ) -> None:
-    """Fill in the tables of part `b`; `seen` are the numbers, among all that the envelopes need, of those
-    of its `unknowns` that are `enveloped`.
+    """Fill in the tables of part `b`.  `enveloped` are those of its `unknowns` that the envelopes need, and
+    `seen` their numbers among all that the envelopes need.
     """
     modes, rate = part.modes, part.rate
     h, steady = part.length, part.steady

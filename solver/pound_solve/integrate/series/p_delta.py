@@ -4,8 +4,8 @@ The force across a string (see `structure.corotational`) is the product of two s
 
 .. math:: f_k = \frac1L \sum_{j=0}^{k} n_j\, y_{k-j},
 
-known as soon as the motion up to k is.  It has no potential: the work :math:`\int y^2/2L\;dn` that the
-axial force does on the way which a string leaves out counts as put in.
+known as soon as the motion up to k is known.  It has no potential: the work :math:`\int y^2/2L\;dn` of the
+axial force on the shortening that a string leaves out counts as put in.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pound_solve.structure.corotational import ACROSS, AXIAL, LENGTH, N0
 
 
 def allocate(members: int, n_coefs: int) -> PDeltaMembers:
-    """Lay out so many `members` for series of `n_coefs` coefficients."""
+    """Allocate the given number of `members` for series of `n_coefs` coefficients."""
     return PDeltaMembers(*np.zeros((3, members, n_coefs)))
 
 
 def quantity_term(members: Corotational, series: Series, c: int, j: int, k: int, n_powers: int) -> float:
-    """Coefficient `k` of quantity `j` of member `c`."""
+    """Return coefficient `k` of quantity `j` of member `c`."""
     total = 0.0
     for y in range(members.pointers[c], members.pointers[c + 1]):
         total += members.rows[y, j] * series.motion[k, members.unknown[y]]
@@ -50,8 +50,8 @@ def add_p_delta(members: Corotational, series: Series, k: int, h: float, n_power
 
 
 def p_delta_power(members: Corotational, series: Series, degree: int, s: float, h: float) -> float:
-    """Power that the strings put in at the place `s`; sets the members' transverse forces to those
-    there.
+    """Return the power that the strings put in at the place `s`, and set the members' transverse forces to
+    those there.
     """
     p_delta, power = series.p_delta, 0.0
     for c in range(len(members.parameters)):

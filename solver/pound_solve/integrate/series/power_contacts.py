@@ -9,9 +9,9 @@ power :math:`w = x^n` follows from those of x,
 
 .. math:: w_k = \frac{1}{k x_0} \sum_{j=1}^{k} (n j - k + j)\, x_j\, w_{k-j},
 
-(Euler's recurrence), which gives each term of the force from the motion up to the next term: no equation
-has to be solved.  The series converges as far as the nearest instant of touch, past or future: steps
-towards it shorten in proportion to the time left, down to an overlap `NO_OVERLAP` whose force is
+(Euler's recurrence), which gives each term of the force from the motion up to the next term; no equation
+has to be solved.  The series converges up to the nearest instant of touch, past or future.  Steps
+towards it shorten in proportion to the remaining time, down to an overlap `NO_OVERLAP` whose force is
 negligible.  The force is zero where it would be tensile, unless the law allows tension.
 
 References
@@ -37,14 +37,14 @@ from pound_solve.numerics.types import Array, Flags
 #: no overlap beyond rounding; a force acts; the force would be tensile, and is zero
 APART, PRESSED, FORCE_FREE = range(3)
 NO_OVERLAP = 1e-12  #: overlap that counts as none, over the largest deformation
-FORCE_TRUNCATION = 1e-10  #: fraction of the force that the last of its terms may be
-FIRST_STEP = 0.4  #: length of the first step after a touch, as a share of the time since touch
+FORCE_TRUNCATION = 1e-10  #: largest last term of the force, as a fraction of the force
+FIRST_STEP = 0.4  #: length of the first step after a touch, as a fraction of the time since touch
 SPRING, DASHPOT = range(2)  #: rows of `PowerContacts.overlap_powers`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `PowerContacts.constants`
 
 
 def allocate(curved: Flags, n_coefs: int) -> PowerContacts:
-    """Lay out the `curved` ones of the laws for series of `n_coefs` coefficients."""
+    """Allocate the `curved` laws for series of `n_coefs` coefficients."""
     laws = np.flatnonzero(curved)
     return PowerContacts(
         laws=laws,
@@ -58,13 +58,13 @@ def allocate(curved: Flags, n_coefs: int) -> PowerContacts:
 
 
 def overlap(laws: Laws, i: int) -> float:
-    """Present overlap of contact `i`."""
+    """Return the present overlap of contact `i`."""
     x: float = laws.now.deformation[i] - laws.definition.parameters[i, GAP]
     return x
 
 
 def touch_overlap(laws: Laws, i: int) -> float:
-    """Overlap of contact `i` up to which it counts as zero."""
+    """Return the overlap of contact `i` up to which it counts as zero."""
     x: float = NO_OVERLAP * (laws.largest.deformation[i] + abs(laws.definition.parameters[i, GAP]))
     return x
 
@@ -98,8 +98,8 @@ def enter_power_contact(laws: Laws, rules: RuleFunctions, contacts: PowerContact
 
 
 def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
-    """Coefficient `k` of the power `n` of an overlap that starts at `x` and changes with the deformation
-    `d`; `w` holds those before it.
+    """Return coefficient `k` of the power `n` of an overlap that starts at `x` and changes with the
+    deformation `d`; `w` holds the previous coefficients.
     """
     if k == 0:
         first: float = x**n
@@ -114,7 +114,7 @@ def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
 
 
 def force_term(constants: Array, power: Array, x: float, d: Array, k: int, h: float) -> float:
-    """Coefficient `k` of the force of one contact, from those of its deformation `d` up to `k` + 1."""
+    """Return coefficient `k` of the force of a contact, from those of its deformation `d` up to `k` + 1."""
     spring, dashpot = power[SPRING], power[DASHPOT]
     spring[k] = power_term(constants[N], x, d, spring, k)
     force: float = constants[K] * spring[k]
@@ -145,7 +145,7 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, n_powers: int, ne
 
 
 def any_overlap(contacts: PowerContacts) -> bool:
-    """Whether any of the contacts has an overlap beyond rounding."""
+    """Return whether any of the contacts has an overlap beyond rounding."""
     overlaps = False
     for r in range(len(contacts.laws)):
         overlaps = overlaps or contacts.phase[r] != APART
@@ -153,8 +153,8 @@ def any_overlap(contacts: PowerContacts) -> bool:
 
 
 def accurate_fraction(force: Array, degree: int, end: float) -> float:
-    """Fraction or multiple of a step up to which the series of a force is accurate, at most `end`; NaN
-    where its terms are not finite.
+    """Return the multiple of a step, at most `end`, up to which the series of a force is accurate; NaN if
+    its terms are not finite.
     """
     last, most = degree - 2, 0.0
     for k in range(last + 1):
@@ -166,7 +166,7 @@ def accurate_fraction(force: Array, degree: int, end: float) -> float:
 
 
 def contacts_valid_up_to(contacts: PowerContacts, degree: int, end: float) -> float:
-    """Fraction or multiple of a step up to which the forces of all contacts are accurate, at most `end`."""
+    """Return the multiple of a step, at most `end`, up to which the forces of all contacts are accurate."""
     for r in range(len(contacts.laws)):
         if contacts.phase[r] != APART:
             end = accurate_fraction(contacts.force[r], degree, end)
@@ -191,5 +191,5 @@ def change_phase(laws: Laws, contacts: PowerContacts, control: StepControl, i: i
 
 
 def has_force(contacts: PowerContacts, i: int) -> bool:
-    """Whether law `i` is a power contact that presses."""
+    """Return whether law `i` is a power contact that presses."""
     return bool(contacts.index_of[i] >= 0 and contacts.phase[contacts.index_of[i]] == PRESSED)

@@ -7,12 +7,12 @@ start of the step, a linear dashpot, and a remainder that is known from the term
 .. math:: f_k = n c\,x_0^{n-1}\,\frac{k+1}{h}\,d_{k+1} \pm r_k, \qquad
           r_k = \frac{1}{k x_0} \sum_{j=1}^{k-1} (n j - k + j)\, x_j\, |f|_{k-j} .
 
-So nodes without mass follow at the rate that their springs leave to the tangents: Newton's iteration finds
-it at the start of every step (`branches.settle_state`).
+The rates of nodes without mass therefore follow from the spring forces and the tangents; Newton's iteration
+finds them at the start of every step (`branches.settle_state`).
 
-The series ends where the damper turns, before or behind: steps shorten in proportion to the rate.  Where
-it, or the force, is below a share `SLOW_RATE` of the largest, the force goes straight through zero: what
-that changes on one side of a turn, it changes back on the other.
+The series converges up to the nearest reversal of the damper, past or future; steps shorten in proportion
+to the rate.  If the rate or the force is below the fraction `SLOW_RATE` of the largest, the force is linear
+through zero.  The errors of this on both sides of a reversal cancel.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ LIMIT, RATE = 2, 3  #: columns of `PowerDampers.constants`, beside K and N
 
 
 def allocate(viscous: Flags, light: Flags, n_coefs: int) -> PowerDampers:
-    """Lay out the `viscous` ones of the laws for series of `n_coefs` coefficients; the laws `light` hold
-    unknowns without mass.
+    """Allocate the `viscous` laws for series of `n_coefs` coefficients; the laws `light` hold unknowns
+    without mass.
     """
     laws = np.flatnonzero(viscous)
     n = len(laws)
@@ -94,7 +94,7 @@ def linearise_dampers(laws: Laws, rules: RuleFunctions, dampers: PowerDampers) -
 
 
 def is_fast(dampers: PowerDampers, i: int) -> bool:
-    """Whether law `i` is a damper whose force is a series."""
+    """Return whether law `i` is a damper whose force is a series."""
     return bool(dampers.index_of[i] >= 0 and dampers.is_series[dampers.index_of[i]])
 
 
@@ -139,8 +139,8 @@ def add_damper_remainders(
 
 
 def dampers_valid_up_to(dampers: PowerDampers, degree: int, end: float) -> float:
-    """Fraction or multiple of a step up to which the dampers' forces, and the rates of those that hold
-    unknowns without mass, are accurate, at most `end`.
+    """Return the multiple of a step, at most `end`, up to which the dampers' forces are accurate, and the
+    rates of dampers that hold unknowns without mass.
     """
     for r in range(len(dampers.laws)):
         if dampers.is_series[r]:

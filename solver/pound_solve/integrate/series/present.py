@@ -21,7 +21,7 @@ class Present(KernelPresent):
     Parameters
     ----------
     engine : KernelEngine
-        Its kernel has returned, and its transitions are taken in.
+        Its kernel has returned, and its transitions have been fetched.
     series : Series
     """
 
@@ -46,13 +46,13 @@ class Present(KernelPresent):
         refresh_branch_series(self.engine.laws, self.engine.rules, self.series, law)
 
     def add_impact_work(self, put_in: float, lost: Array) -> None:
-        """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
+        """Add the work that moving supports put in at an impact, and the loss of each law, (n_laws,)."""
         self.add_input_work(put_in)
         self.engine.accumulator.works.contact += float(lost.sum())
         self.engine.laws.state.dashpot_loss[:] += lost
 
     def turn_back(self, which: Index) -> None:
-        """Let those of some laws leave their branches whose rates an impact has reversed."""
+        """Change the branches of the given laws whose rates an impact has reversed."""
         now, laws = self.engine.laws.now, self.engine.laws
         for _ in range(MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule)):
             law, event = first_violated(laws, which)
@@ -61,8 +61,8 @@ class Present(KernelPresent):
             self.transition(law, event, float(now.deformation[law]), float(now.rate[law]))
 
     def hand_back_impact(self, known: Index) -> None:
-        """Let the run go on after an impact; the rates of the laws `known` do not depend on unknowns
-        without mass, which `branches.settle_state` looks after.
+        """Let the run continue after an impact.  The rates of the laws `known` do not depend on unknowns
+        without mass, which `branches.settle_state` treats.
         """
         laws = self.engine.laws
         self.hand_back()

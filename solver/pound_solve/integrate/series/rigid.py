@@ -1,8 +1,8 @@
 r"""Rigid contacts in a power series: kernels, and the arrays they work on.
 
-While contacts are held closed their deformations stay at the gaps, by forces r that are a series of their
-own.  With the coefficient k of the motion as it would be without them, and the rows B, the inverse masses
-and :math:`G = B M^{-1} B^T` of `rigid.contacts`,
+While contacts are closed, forces r, which are a separate series, keep their deformations at the gaps.  With
+the coefficient k of the motion without them, and the rows B, the inverse masses and
+:math:`G = B M^{-1} B^T` of `rigid.contacts`,
 
 .. math:: G\,x_k = B c_k + B_s s_k - g\,\delta_{k0}, \qquad c_k \leftarrow c_k - M^{-1} B^T x_k, \qquad
           r_{k-2} = \frac{k(k-1)}{h^2}\, x_k
@@ -51,7 +51,7 @@ def set_closed_contacts(rigid: Rigid, contacts: RigidContacts, closed: Flags) ->
 
 
 def is_closed(rigid: Rigid, law: int) -> bool:
-    """Whether a law is a rigid contact that is closed."""
+    """Return whether a law is a rigid contact that is closed."""
     return bool(rigid.index_of[law] >= 0 and rigid.is_closed[rigid.index_of[law]])
 
 

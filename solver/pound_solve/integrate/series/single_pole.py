@@ -6,22 +6,22 @@ Written as :math:`E\dot y = A y + g`, :math:`y = (u, v)`, the equations of motio
 .. math:: y = \sum_{n \ge 0} L_n^{(-1)}(\theta/\gamma)\, y_n, \qquad
           (E - \gamma h A)(y_n - y_{n+1}) = E y_n + \gamma h\,(g_n - g_{n+1}),
 
-:math:`g_n` being the coefficients of the loads in the same polynomials.  So each term is one solve with one
-matrix, :math:`S = M + \gamma h C + (\gamma h)^2 K` over the unknowns:
+where :math:`g_n` are the coefficients of the loads in the same polynomials.  So each term needs one solve
+with the same matrix :math:`S = M + \gamma h C + (\gamma h)^2 K` over the unknowns:
 
 .. math:: S\,\delta = M v_n + \gamma h\,(p_n - p_{n+1} - K u_n), \qquad
           u_{n+1} = -\gamma h\,\delta, \quad v_{n+1} = v_n - \delta .
 
-Unknowns without mass are no special case: E leaves out their rates.  The series ends with the term s, of
-which :math:`L_s(1/\gamma) = 0`: the equations of motion are then met at the end of the step, and what is
-stiff has decayed there (the method is L-stable).  Within the step the sum is a polynomial, of which powers
-of :math:`\theta` make the same series as TAYLOR's: events, peaks, works and contacts are those of TAYLOR.
+Unknowns without mass are no special case: E leaves out their rates.  The series ends with the term s for
+which :math:`L_s(1/\gamma) = 0`.  The equations of motion are then met at the end of the step, and stiff
+components have decayed there (the method is L-stable).  Within the step the sum is a polynomial in
+:math:`\theta`, a series like TAYLOR's, so events, peaks, works and contacts are treated as in TAYLOR.
 
 The initial rate of the truncated sum is wrong by the terms left out.  Reversals of hinges are detected by
 the sign of the rate, so a polynomial that restores the exact initial rate is added,
 :math:`\theta(1-\theta)^{s-1}`; it leaves the end of the step unchanged.
 
-The length of a step is such that the last term is below a share of the motion in the norm of energy,
+The length of a step is such that the last term is below a fraction of the motion in the energy norm,
 :math:`v^T M v + u^T K u`; it bounds the error of the step while the terms decrease.
 
 References
@@ -50,13 +50,13 @@ from pound_solve.numerics.types import Array
 LAST_TERM = 6  #: number of the last term of a series
 #: index (ascending) of the root of Laguerre's polynomial used for 1/gamma; it makes the method A-stable
 ROOT = 2
-ERROR_SHARE = 0.5  #: fraction of the error that a step is made for
+ERROR_SHARE = 0.5  #: fraction of the allowed error at which the length of a step aims
 TERM_ROUNDING = 1e-24  #: fraction of the energy of a state that the rounding of a term may have
-TERMS_OF_WORK = 8  #: terms for which works are integrated right
+TERMS_OF_WORK = 8  #: terms for which works are integrated accurately
 
 
 def pole(last: int, root: int) -> float:
-    """The pole gamma of a series that ends with a term: one over a root of Laguerre's polynomial."""
+    """Return the pole gamma of a series with the last term `last`: one over a root of its polynomial."""
     return 1.0 / float(np.sort(np.polynomial.laguerre.lagroots(np.eye(last + 1)[last]).real)[root])
 
 
@@ -83,7 +83,7 @@ def monomials(last: int, gamma: float) -> Array:
 
 
 def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
-    """Lay out series of `n` unknowns whose last term is below a share of the motion; None for none."""
+    """Allocate series of `n` unknowns, with the last term below a `tolerance` of the motion; None: none."""
     if tolerance is None:
         none, empty = np.zeros(0), np.zeros((0, 0))
         return SinglePole(empty, empty, 0.0, 0.0, empty, empty, empty, none, none, none)
@@ -105,7 +105,7 @@ def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
 
 
 def is_laguerre(series: Series) -> bool:
-    """Whether the steps of a run are Laguerre series."""
+    """Return whether the steps of a run are Laguerre series."""
     return len(series.single_pole.basis) > 0
 
 
@@ -166,8 +166,8 @@ def energy(linear: LinearSystem, series: Series, n: int) -> float:
 
 
 def match_initial_velocity(series: Series, velocity: Array, h: float) -> None:
-    """Let the motion begin with the present velocities, from which its truncated series deviates by the
-    terms that are left out; its end remains as it is.
+    """Correct the initial velocities of the truncated series, which lack the terms left out, to the present
+    velocities.  The end of the step does not change.
     """
     laguerre, last = series.single_pole, len(series.single_pole.basis) - 1
     defect = laguerre.velocity_defect
@@ -226,8 +226,8 @@ def expand_laguerre(sim: Simulation, series: Series, piece: Piece, h: float) -> 
     degree : int
         Its highest power.
     fit : float
-        Multiple of the step that would be right; below 1 the step must be taken again, shorter.  NaN where
-        an unknown is loose or numbers are beyond all bounds.
+        Multiple of the step that would fit; below 1 the step must be repeated, shorter.  NaN if an unknown
+        is unrestrained or numbers overflow.
     """
     control = series.control
     run = sim.run

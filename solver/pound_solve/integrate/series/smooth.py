@@ -4,19 +4,19 @@ The tangent of a smooth rule depends on a power of a part w of its deformation (
 
 .. math:: f = k d + q w + f_0, \qquad (1 + b p)\,\dot w = (1 + a p)\,\dot d, \qquad p = (w/y)^n .
 
-On a branch, and on one side of w = 0, the force therefore has a power series, of which Leibniz's rule gives
+On a branch, and on one side of w = 0, the force therefore has a power series.  Leibniz's rule gives
 
 .. math:: w_k = \frac{1 + a p_0}{1 + b p_0}\,d_k + r_k, \qquad
           k\,(1 + b p_0)\,r_k = \sum_{j=1}^{k-1} (k - j)\,p_j\,(a\,d_{k-j} - b\,w_{k-j}) .
 
-The first part is the tangent at the start of the step, a spring as of any law (see `springs`), among the
-unknowns without mass, too.  The remainder :math:`q r_k` follows from the motion up to k - 1: a known force.
-Dashpots in proportion to the tangent have forces in proportion to the rate of f, so a remainder as well.
-Every step begins with the closed form of the law, so that no error adds up.
+The first part is the tangent at the start of the step, a spring like that of any law (see `springs`), also
+for unknowns without mass.  The remainder :math:`q r_k` follows from the motion up to k - 1: a known force.
+Dashpots in proportion to the tangent have forces in proportion to the rate of f, so they have a remainder,
+too.  Every step begins with the closed form of the law, so that errors do not accumulate.
 
-The series of p is a product where n is a whole number.  Where it is not, it follows from that of w (see
-`curved`), which converges up to w = 0 only: around that the power is left out as long as it changes the
-force by less than `POWER_LEFT_OUT`, and steps lengthen from there on in proportion to w.
+The series of p is a product if n is an integer.  Otherwise it follows from that of w (see `curved`), which
+converges only up to w = 0.  Near w = 0 the power is left out as long as it changes the force by less than
+`POWER_LEFT_OUT`; after that, steps lengthen in proportion to w.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.constants`
 
 
 def allocate(smooth: Flags, n_coefs: int) -> Smooth:
-    """Lay out the `smooth` ones of the laws for series of `n_coefs` coefficients."""
+    """Allocate the `smooth` laws for series of `n_coefs` coefficients."""
     laws = np.flatnonzero(smooth)
     n = len(laws)
     return Smooth(
@@ -66,8 +66,8 @@ def allocate(smooth: Flags, n_coefs: int) -> Smooth:
 
 
 def set_rate_floor(largest: LawExtremes, smooth: Smooth, length: float) -> None:
-    """Raise the largest rates, which others are compared with, to a creep over the `length` of the run:
-    otherwise laws at rest would reverse for ever with the rounding of other laws' rates.
+    """Raise the largest rates, the reference for other rates, to a creep over the `length` of the run.
+    Otherwise laws at rest would reverse repeatedly with the rounding of other laws' rates.
     """
     for r in range(len(smooth.laws)):
         i, creep = smooth.laws[r], CREEP * abs(smooth.constants[r, Y]) / length
@@ -75,7 +75,7 @@ def set_rate_floor(largest: LawExtremes, smooth: Smooth, length: float) -> None:
 
 
 def is_product(n: float) -> bool:
-    """Whether the power `n` is computed by multiplication: a whole number that is not too large."""
+    """Return whether the power `n` is computed by multiplication: a whole number that is not too large."""
     return n == np.floor(n) and n < 2.0**MAX_POWER_BITS
 
 
@@ -112,7 +112,7 @@ def linearise_smooth(laws: Laws, rules: RuleFunctions, smooth: Smooth) -> None:
 
 
 def product_term(a: Array, b: Array, k: int) -> float:
-    """Coefficient `k` of the product of two series."""
+    """Return coefficient `k` of the product of two series."""
     total = 0.0
     for j in range(k + 1):
         total += a[j] * b[k - j]
@@ -176,7 +176,7 @@ def find_remainders(laws: Laws, series: Series, k: int, n_powers: int) -> None:
 
 
 def dashpot_remainder(definition: LawDefinition, smooth: Smooth, r: int, k: int, h: float) -> float:
-    """Coefficient `k` of the dashpot force of smooth law `r` beyond that of its tangent."""
+    """Return coefficient `k` of the dashpot force of smooth law `r` beyond that of its tangent."""
     rate = (k + 1) / h * smooth.remainder[r, k + 1]
     force: float = definition.tangent_damping[smooth.laws[r]] * smooth.constants[r, Q] * rate
     return force
@@ -206,10 +206,10 @@ def power_defect(smooth: Smooth, r: int, degree: int, s: float) -> float:
 
 
 def smooth_valid_up_to(smooth: Smooth, degree: int, end: float) -> float:
-    """Fraction or multiple of a step up to which the forces are accurate, at most `end`.
+    """Return the multiple of a step, at most `end`, up to which the forces are accurate.
 
-    Where the series of a power begins with a high term, the last terms do not show its error: this is
-    evaluated at the end, too.
+    If the series of a power begins with a high term, the last terms do not show its error.  Therefore the
+    error at the end is evaluated, too.
     """
     for r in range(len(smooth.laws)):
         end = accurate_fraction(smooth.force[r], degree, end)

@@ -1,4 +1,4 @@
-"""The laws on their present branches, added up over the unknowns: kernels, and the arrays they work on.
+"""The laws on their present branches, summed over the unknowns: kernels and their arrays.
 
 Between two events a law is a spring, a dashpot and a constant force.  Their sums are formed once after
 every event, so that a term of the series costs one product instead of a walk over all laws.
@@ -33,7 +33,7 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Ass
     inputs : ndarray, shape (n_inputs, n)
         Loads of unit inputs.
     stiffness : Matrix, shape (n, n), or None
-        K, if it is to be part of the sums.
+        K, if the sums include it.
     """
     i, j, values = entries(np.zeros((0, 0)) if stiffness is None else stiffness)
     every = np.arange(0 if stiffness is None else n)  # free bodies have a row, too
@@ -104,7 +104,7 @@ def add_product(springs: AssembledSprings, x: Array, out: Array) -> None:
 
 
 def load_term(springs: AssembledSprings, series: Series, k: int, n_powers: int, i: int) -> float:
-    """Coefficient `k` of the load on an unknown less the constant forces of laws."""
+    """Return coefficient `k` of the load on an unknown less the constant forces of laws."""
     load: float = springs.constant[i] if k == 0 else 0.0
     if k < n_powers:
         for j in range(series.inputs.shape[1]):
@@ -113,7 +113,7 @@ def load_term(springs: AssembledSprings, series: Series, k: int, n_powers: int, 
 
 
 def deformation_term(definition: LawDefinition, series: Series, k: int, n_powers: int, i: int) -> float:
-    """Coefficient `k` of the deformation of law `i`."""
+    """Return coefficient `k` of the deformation of law `i`."""
     d = row_product(definition.rows, i, series.motion[k])
     if k < n_powers:
         for j in range(series.inputs.shape[1]):

@@ -28,11 +28,11 @@ class AssembledSprings(NamedTuple):
     Attributes
     ----------
     row : ndarray, shape (n_rows,)
-        Unknowns that laws hold; all, where some have no mass.
+        Unknowns that laws hold; all unknowns, if some have no mass.
     index_of : ndarray, shape (n,)
-        Place of an unknown in `row`, -1 for others.
+        Index of each unknown in `row`, -1 for the others.
     rows : Rows
-        Sum of ``k b b^T`` in these rows, and K where some have no mass.
+        Sum of ``k b b^T`` in these rows, plus K if some unknowns have no mass.
     stiffness : ndarray, shape (n_entries,)
         K in these rows, zero where all have mass.
     pair_pointers, pair_places, pair_values : ndarray
@@ -65,15 +65,15 @@ class Massless(NamedTuple):
     Attributes
     ----------
     unknown : ndarray, shape (n_massless,)
-        Their places in the order of elimination.
+        Their indices in the order of elimination.
     with_mass : ndarray, shape (n - n_massless,)
-        Places of the unknowns with mass.
+        Indices of the unknowns with mass.
     damping, damping_with_mass : Rows
         Rows of C over all unknowns, for the unknowns without mass and for those with mass.
     laws : ndarray, shape (n_holding,)
         Laws that hold an unknown without mass, ascending.
     index_of_law : ndarray, shape (n_laws,)
-        Place of a law in `laws`, -1 for others.
+        Index of each law in `laws`, -1 for the others.
     rows : Rows
         Deformations of these laws over the unknowns without mass.
     pattern : Pattern
@@ -134,7 +134,7 @@ class Rigid(NamedTuple):
     ----------
     laws : ndarray, shape (n_rigid,)
     index_of : ndarray, shape (n_laws,)
-        Place of a law in `laws`, -1 for others.
+        Index of each law in `laws`, -1 for the others.
     gap : ndarray, shape (n_rigid,)
     velocity_change : ndarray, shape (n_rigid, n)
         Change of the velocities for unit impulses.
@@ -172,7 +172,7 @@ class PowerContacts(NamedTuple):
     ----------
     laws : ndarray, shape (n_curved,)
     index_of : ndarray, shape (n_laws,)
-        Place of a law in `laws`, -1 for others.
+        Index of each law in `laws`, -1 for the others.
     constants : ndarray, shape (n_curved, 6)
         Numbers that `Rule.power_law` returns on the present branch.
     phase : ndarray, shape (n_curved,)
@@ -195,13 +195,13 @@ class PowerContacts(NamedTuple):
 
 
 class Friction(NamedTuple):
-    """The friction of contacts, numbered among itself (see `friction`).
+    """The friction laws of contacts, numbered among themselves (see `friction`).
 
     Attributes
     ----------
     laws : ndarray, shape (n_friction,)
     index_of : ndarray, shape (n_laws,)
-        Place of a law in `laws`, -1 for others.
+        Index of each law in `laws`, -1 for the others.
     normal : ndarray, shape (n_friction,)
         The laws of the contacts.
     sliding_direction : ndarray, shape (n_friction,)
@@ -233,7 +233,7 @@ class Smooth(NamedTuple):
     ----------
     laws : ndarray, shape (n_smooth,)
     index_of : ndarray, shape (n_laws,)
-        Place of a law in `laws`, -1 for others.
+        Index of each law in `laws`, -1 for the others.
     constants : ndarray, shape (n_smooth, 7)
         w, y, n, a, b and q of `Rule.smooth_curve`, and dw/dd, at the start of the step.
     bent : ndarray, shape (n_smooth,)
@@ -266,7 +266,7 @@ class PowerDampers(NamedTuple):
     ----------
     laws : ndarray, shape (n_viscous,)
     index_of : ndarray, shape (n_laws,)
-        Place of a law in `laws`, -1 for others.
+        Index of each law in `laws`, -1 for the others.
     constants : ndarray, shape (n_viscous, 4)
         c, with the sign of the rate, and n; rate up to which the force is linear; rate of the tangent.
     on_massless : ndarray
@@ -338,7 +338,7 @@ class Modal(NamedTuple):
     stiffness : ndarray, shape (n_laws,)
         Stiffness of the laws in the tables.
     counts : ndarray, shape (n_parts, 4)
-        Unknowns, modes, followed quantities, unknowns that envelopes look at.
+        Numbers of unknowns, modes, followed quantities, and unknowns that envelopes need.
     unknowns : ndarray, shape (n_parts, n)
         Their places in the order of elimination.
     to_modes, from_modes : ndarray, shape (n_parts, 2, 2 n_modes, n) and (n_parts, 2, n, 2 n_modes)
@@ -354,7 +354,7 @@ class Modal(NamedTuple):
     followed : ndarray, shape (n_parts, n_followed)
         Numbers of what is followed: deformations of the laws, then monitored outputs.
     index_of : ndarray, shape (n_parts, n_all_followed)
-        Place in a part of each followed quantity, -1 where the part does not have it.
+        Index of each followed quantity in a part, -1 for the others.
     exponent_per_cell : ndarray, shape (n_parts, 2, n_modes)
         Real and imaginary parts of the eigenvalues times the length of a cell.
     amplitude : ndarray, shape (n_parts, n_followed, n_modes)
@@ -415,9 +415,9 @@ class EnvelopeBuffers(NamedTuple):
     Attributes
     ----------
     is_needed : ndarray, shape (1,)
-        Whether there is anything to see.
+        Whether the envelopes need any motion.
     unknowns, laws : ndarray
-        Unknowns, by their places in the order of elimination, and laws.
+        Unknowns, by their indices in the order of elimination, and laws.
     kept : ndarray, shape (2,)
         Steps and intervals that were kept.
     coefs : ndarray, shape (n_steps, n_unknowns + n_laws, MAX_DEGREE + 1)
@@ -429,7 +429,7 @@ class EnvelopeBuffers(NamedTuple):
     x, equilibrium : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
         `Modal.x` and `Modal.equilibrium` at their starts.
     constant_forces : ndarray, shape (n_intervals, n_laws)
-        Forces of the laws where the modes come to rest.
+        Forces of the laws at the static positions of the modes.
     start : ndarray, shape (n_intervals,)
         Times.
     """
@@ -459,13 +459,13 @@ class SinglePole(NamedTuple):
         Polynomials in each power.
     gamma : float
     allowed : float
-        Energy that the last term may have, as a share of that of the motion.
+        Largest energy of the last term, as a fraction of that of the motion.
     displacement, velocity : ndarray, shape (s + 1, n)
         Coefficients of the unknowns.
     inputs : ndarray, shape (s + 2, n_inputs)
         Coefficients of the inputs.
     decrement : ndarray, shape (n,)
-        Scratch: by how much the next coefficients of the velocities are less.
+        Scratch: decrease from the coefficients of the velocities to the next ones.
     velocity_defect : ndarray, shape (n,)
         Scratch: present velocities less those with which the truncated series begins, times the step.
     initial_slope : ndarray, shape (s + 1,)

@@ -10,10 +10,10 @@ and extremes are found with proof (see `events.polynomial_roots`).  Works are in
 each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others
 (see `massless`).
 
-Elastic time without contact is taken in modes, from goal to goal (`modal`).  Elsewhere a step costs what
-its products cost: where EXACT has to decompose many unknowns, or many combinations of stiffnesses, TAYLOR
-is faster, and as exact.  Where the fastest mode is far above the motion (a stiff node with little mass, a
-strong dashpot), it takes many steps.
+Elastic motion without contact is advanced in modes, from goal to goal (`modal`).  Otherwise the products
+determine the cost of a step.  If EXACT has to decompose many unknowns, or many combinations of stiffnesses,
+TAYLOR is faster and as exact.  If the fastest mode is far above the motion (a stiff node with little mass,
+a strong dashpot), TAYLOR takes many steps.
 
 References
 ----------
@@ -89,7 +89,7 @@ from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
 
-MAX_STEPS = 5_000_000  #: that a run may come to
+MAX_STEPS = 5_000_000  #: most steps of a run
 
 
 def gauss_rules(rules: int) -> Array:
@@ -103,7 +103,7 @@ def gauss_rules(rules: int) -> Array:
 
 
 class Taylor(KernelEngine):
-    """One run; see the module's head."""
+    """One run; see the module docstring."""
 
     exact = True
     keeps_steps = False
@@ -202,8 +202,8 @@ class Taylor(KernelEngine):
         return state.Damped(unknown, matrix, np.zeros((n_coefs, n)), np.zeros(n), np.zeros(n))
 
     def _intervals(self) -> Array:
-        """Times between which intervals may be taken in modes; none where something acts that modes do not
-        cover.
+        """Return the times between which intervals may be advanced in modes; none if something acts that
+        modes do not cover.
         """
         laws, linear = self.laws, self.linear
         others = (
@@ -232,8 +232,8 @@ class Taylor(KernelEngine):
         self.advance(march.march, self.series, ahead)
 
     def resume(self, why: int) -> None:
-        """Let rigid contacts strike, close or part, or joints without mass move where a force is lost; stop
-        where the run cannot go on.
+        """Let rigid contacts strike, close or part, or move joints without mass after a lost force; stop if
+        the run cannot continue.
         """
         if why not in (RIGID_EVENT, LOST_FORCE):
             raise self.trouble(why)
@@ -241,7 +241,7 @@ class Taylor(KernelEngine):
             present = Present(self, self.series)
             release(present, int(self.state.changed_law))
             present.hand_back()
-            self.state.changed_law = -1  # the force is lost: what is left of a jump is rounding
+            self.state.changed_law = -1  # the force is lost: the rest of a jump is rounding
             return
         self._at_instant(self._strike)
         self.state.events += 1
@@ -282,7 +282,7 @@ class Taylor(KernelEngine):
         x.largest[:] = np.maximum(x.largest, rounding)
 
     def fetch_motions(self) -> None:
-        """Show the recorder the series and the modes that were kept."""
+        """Pass the stored series and modes to the recorder."""
         envelope = self.series.envelope
         if envelope.kept[envelope_buffers.STEPS]:
             self.recorder.between(StepCourse(envelope, self.order, self.system.excitation).course())
@@ -291,7 +291,7 @@ class Taylor(KernelEngine):
         envelope.kept[:] = 0
 
     def fetch(self) -> None:
-        """Fetch what was kept; stop where steps are too short for the length of the run."""
+        """Fetch the stored results; stop if steps are too short for the length of the run."""
         super().fetch()
         done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
@@ -300,14 +300,14 @@ class Taylor(KernelEngine):
             raise self.stop("A502", why + self.remedy())
 
     def remedy(self) -> str:
-        """Which methods need not follow the fastest mode."""
+        """Return which methods need not resolve the fastest mode."""
         linear = not not_linear(self.system)
         if self.contacts.laws:
             return ", which EXACT need not follow" if linear else ""
         return f", which {'LAGUERRE and ' if linear else ''}NEWMARK need not follow"
 
     def trouble(self, why: int) -> Stop:
-        """The `Stop` that says in words why the kernel has returned early."""
+        """Return the `Stop` that explains why the kernel has returned early."""
         if why == STEP_TOO_SHORT:
             return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
         if why == UNRESTRAINED:
@@ -322,7 +322,7 @@ class Taylor(KernelEngine):
         return super().trouble(why)
 
     def _explain_massless(self) -> str:
-        """Which unknown without mass is not held, and why."""
+        """Return which unknown without mass is unrestrained, and why."""
         fault = int(self.state.failed_unknown)
         name, n = (
             self.system.name(int(self.order[fault])),
@@ -338,7 +338,7 @@ class Taylor(KernelEngine):
         return self.system.explain_massless(int(self.order[fault]))
 
     def _softest(self) -> int:
-        """Unknown without mass that moves most in the softest motion of those without mass and dashpot."""
+        """Return the unknown that moves most in the softest motion of unknowns without mass and dashpot."""
         light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
         if len(light) > MAX_DENSE:
             return int(self.order[int(self.state.failed_unknown)])
@@ -364,8 +364,8 @@ class Taylor(KernelEngine):
 
 
 def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome:
-    """Integrate a reduced system by power series; see the module's head.  `options` may hold STEPS, the
-    most that a run may come to.
+    """Integrate a reduced system by power series; see the module docstring.  `options` may hold STEPS, the
+    largest number of steps.
 
     Raises
     ------

@@ -1,5 +1,5 @@
-"""Kernels of TAYLOR: within a step event functions, deformations, forces and monitored outputs are
-polynomials, whose first rise and extremes are isolated with proof (`events.polynomial_roots`).
+"""Kernels of TAYLOR for events and peaks.  Within a step event functions, deformations, forces and outputs
+are polynomials, whose first rise and extremes are isolated with proof (`events.polynomial_roots`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from pound_solve.laws.automaton import GAP
 
 
 def parting_event(series: Series, degree: int, end: float, i: int) -> LocatedEvent:
-    """The instant at which closed rigid contact `i` would pull, before the place `end`, see `no_event`."""
+    """Return when closed rigid contact `i` would pull, before the place `end`, see `no_event`."""
     r, p = series.rigid.index_of[i], series.polynomial[POLYNOMIAL]
     still = EVENT_TOLERANCE * series.rigid.largest[r]
     copy_force(series, degree, i, -1.0, p)
@@ -41,7 +41,7 @@ def parting_event(series: Series, degree: int, end: float, i: int) -> LocatedEve
 
 
 def phase_event(laws: Laws, series: Series, degree: int, first: LocatedEvent, i: int) -> LocatedEvent:
-    """The instant at which power contact `i` begins or ceases to have a force, or the `first` event."""
+    """Return the instant at which the force of power contact `i` begins or ends, or the `first` event."""
     contacts, r = series.power_contacts, series.power_contacts.index_of[i]
     phase, d, p = contacts.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
     if contacts.constants[r, K] == 0.0:
@@ -65,7 +65,7 @@ def phase_event(laws: Laws, series: Series, degree: int, first: LocatedEvent, i:
 
 
 def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent:
-    """The first event of law `i` in a step, in lengths of the step, see `no_event`."""
+    """Return the first event of law `i` in a step, in lengths of the step, see `no_event`."""
     coefficients = laws.events.coefficients
     degree, h, end = extent.degree, extent.h, extent.end
     if series.friction.index_of[i] >= 0:
@@ -98,10 +98,10 @@ def event_of(laws: Laws, series: Series, extent: Extent, i: int) -> LocatedEvent
 
 
 def first_event(laws: Laws, series: Series, extent: Extent) -> LocatedEvent:
-    """The first event of any law in a step, in lengths of the step, see `no_event`.
+    """Return the first event of any law in a step, in lengths of the step, see `no_event`.
 
-    An event of a contact counts if it is there before that of another law: bodies that move alike meet only
-    where a hinge of one has yielded, and that of the other has not yet.
+    An event of a contact counts only if it clearly precedes that of any other law.  Otherwise bodies that
+    move alike would seem to meet while a hinge of one has yielded and that of the other has not.
     """
     first = no_event(extent.end)
     for late in range(2):
@@ -138,7 +138,7 @@ def update_peak(laws: Laws, step: Step, series: Series, extent: Extent, i: int, 
 
 
 def track_outputs(sim: Simulation, series: Series, extent: Extent, n_powers: int) -> None:
-    """Count the monitored outputs over a step into the peaks."""
+    """Update the peaks with the monitored outputs over a step."""
     linear, degree = sim.linear, extent.degree
     p = series.polynomial[POLYNOMIAL]
     for i in range(len(linear.monitored_constants)):

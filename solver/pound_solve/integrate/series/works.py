@@ -20,7 +20,7 @@ def add_law_losses(
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at the Gauss point `s`.
 
-    Forces, tangents of smooth laws and dampers, and `laws.trial` are those of this point afterwards.
+    Afterwards forces, tangents of smooth laws and dampers, and `laws.trial` are those of this point.
     """
     laws, works, moved = sim.laws, sim.works, len(sim.linear.support_damping) > 0
     definition, tangent = laws.definition, laws.tangent
@@ -52,7 +52,7 @@ def add_law_losses(
 
 
 def work_put_in(linear: LinearSystem, series: Series, extent: Extent, n_powers: int) -> float:
-    """Work of the loads on the nodes over a step: their series times those of the velocities."""
+    """Return the work of the loads on the nodes over a step: their series times those of the velocities."""
     put, power, degree, end = 0.0, 1.0, extent.degree, extent.end
     for k in range(1, degree + 1):
         power *= end
