@@ -46,7 +46,7 @@ def update_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: fl
 
 
 def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
-    """Return value and slope of tracked quantity `i` at the start of the next step (`tracker.Extremes`)."""
+    """Return value and slope of tracked quantity `i` at the next start (`tracker.TrackedExtremes`)."""
     linear, laws = sim.linear, sim.laws
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
     now, outputs, n_laws = sim.step.now, len(linear.monitored_constants), len(definition.rule)

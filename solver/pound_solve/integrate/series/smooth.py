@@ -14,7 +14,7 @@ for unknowns without mass.  The remainder :math:`q r_k` follows from the motion 
 Dashpots in proportion to the tangent have forces in proportion to the rate of f, so they have a remainder,
 too.  Every step begins with the closed form of the law, so that errors do not accumulate.
 
-The series of p is a product if n is an integer.  Otherwise it follows from that of w (see `curved`), which
+The series of p is a product if n is an integer.  Else it follows from that of w (`power_contacts`), which
 converges only up to w = 0.  Near w = 0 the power is left out as long as it changes the force by less than
 `POWER_LEFT_OUT`; after that, steps lengthen in proportion to w.
 """

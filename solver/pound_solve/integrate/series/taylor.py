@@ -1,11 +1,11 @@
 r"""TAYLOR: event-driven integration by power series, explicit, without a time step to choose.
 
-Between events the reduced system is linear, so the motion has a power series that converges however far;
-its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
-of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), of smooth
-hysteresis (`smooth`) and of friction (`friction`), whose forces are series of their own.  A step goes as
-far as `expansion.MAX_DEGREE` terms are right to rounding, some five radians of the fastest mode that takes
-part. Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise
+Between events the reduced system is linear, so the motion has a power series that converges everywhere.
+Each coefficient follows from the previous ones by products with the sparse K and C (see `expansion`).  The
+forces of closed rigid contacts (`rigid`), power contacts (`power_contacts`), smooth hysteresis (`smooth`)
+and friction (`friction`) are separate series, whose coefficients follow likewise.  A step is as long as
+`expansion.MAX_DEGREE` terms are accurate to rounding: about five radians of the fastest mode that takes
+part.  Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise
 and extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule,
 each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others
 (see `massless`).
