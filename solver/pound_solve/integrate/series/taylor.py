@@ -5,7 +5,7 @@ Each coefficient follows from the previous ones by products with the sparse K an
 forces of closed rigid contacts (`rigid`), power contacts (`power_contacts`), smooth hysteresis (`smooth`)
 and friction (`friction`) are separate series, whose coefficients follow likewise.  A step is as long as
 `expansion.MAX_DEGREE` terms are accurate to rounding: about five radians of the fastest mode that takes
-part.  Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise
+part.  Within it each event function and each quantity whose peak is kept is a polynomial, whose first rise
 and extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule,
 each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others
 (see `massless`).
