@@ -18,9 +18,8 @@ from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-EVENT_TOLERANCE = (
-    1e-12  #: fraction of its largest value up to which an event function counts as not above zero
-)
+#: fraction of its largest value up to which an event function counts as not above zero
+EVENT_TOLERANCE = 1e-12
 SAME_INSTANT = 1e-13  #: fraction of the time within which two events are at one instant
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
 MAX_BETWEEN = 0.1  #: limit of that fraction; a sine with seven steps in its period reaches it

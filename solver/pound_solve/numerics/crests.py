@@ -24,9 +24,8 @@ GRID_CELLS = 48  #: cells of the grid on which the extreme of a polynomial is se
 NEWTON_ITERATIONS = 3  #: iterations from the grid to the extreme
 SAMPLES_BESIDE = 2  #: additional samples on either side, which show the curvature
 MARGIN = 1.5  #: factor on the change over a cell, for the amount by which a quantity may exceed its samples
-EXCESS = (
-    0.5  #: fraction of a quantity's changes from node to node, by which it may exceed the largest there
-)
+#: fraction of a quantity's changes from node to node, by which it may exceed the largest there
+EXCESS = 0.5
 CURVATURE_MARGIN = 1.5  #: factor on the range of the second differences, for the largest curvature
 
 _AROUND = np.arange(-SAMPLES_BESIDE, GROUP + SAMPLES_BESIDE + 1)

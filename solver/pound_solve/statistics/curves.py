@@ -22,9 +22,8 @@ LEVELS: Final = (
 FRACTILES: Final = (0.16, 0.5, 0.84)  #: shares of the records, or runs, in tables and pictures
 PARAM: Final = "PARAM "  #: prefix of the description of a PARAM's variable
 COLLAPSE: Final = "collapse"  #: demand that is infinite where a run stopped early, else zero
-NEEDED: Final = (
-    "needed_gap"  #: demand that is infinite for runs with a collision: above the gap, but unknown
-)
+#: demand that is infinite for runs with a collision: above the gap, but unknown
+NEEDED: Final = "needed_gap"
 
 
 class Asked(NamedTuple):

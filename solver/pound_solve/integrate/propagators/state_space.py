@@ -21,9 +21,8 @@ import numpy as np
 from pound_solve.numerics.modes import generalised
 from pound_solve.numerics.types import Array, Flags
 
-SLOW_MODES = (
-    1e-3  #: modes with omega^2 below this fraction of the largest are solved again in their subspace
-)
+#: modes with omega^2 below this fraction of the largest are solved again in their subspace
+SLOW_MODES = 1e-3
 RIGID_MODE = 1e-14  #: omega^2 below this fraction of the rounding scale (times the size): rigid-body mode
 DEPENDENT = 1e-12  #: singular values of constraints below this fraction of the largest count as zero
 

@@ -69,9 +69,8 @@ def total_force(laws: Laws, series: Series, degree: int, h: float, i: int, out: 
                     laws.definition, smooth, r, k, h
                 )
         return
-    acts = (
-        1.0 if series.power_contacts.index_of[i] < 0 else 0.0
-    )  # a power contact without force is left out
+    # a power contact without force is left out
+    acts = 1.0 if series.power_contacts.index_of[i] < 0 else 0.0
     for k in range(degree + 1):
         out[k] = acts * tangent.stiffness[i] * d[k]
     out[0] += acts * tangent.offset[i]

@@ -49,9 +49,8 @@ from pound_solve.numerics.matrices import (
 from pound_solve.numerics.modes import scaling, softest
 from pound_solve.numerics.types import Array, Index
 
-DEFORMATION_JUMP = (
-    1e-9  #: fraction of the largest deformation above which a change at one instant is a jump
-)
+#: fraction of the largest deformation above which a change at one instant is a jump
+DEFORMATION_JUMP = 1e-9
 #: rows of `Massless.factors`: unknowns that a dashpot resists, and those that springs alone hold
 ORDER_ONE, ORDER_ZERO = range(2)
 PARTICIPATION = 1e-6  #: fraction of the largest component of a motion above which an unknown takes part

@@ -35,9 +35,8 @@ from pound_solve.numerics.types import Array, Flags
 SLOW_RATE = 1e-10  #: fraction of the largest rate, or of the force there, below which it is linear
 SLOW_RATE_OF_UNIT = 1e-12  #: the same, of the rate one
 DEAD_BAND = 1e-3  #: fraction of this rate between the two events, lest they follow one another
-RATE_CONVERGED = (
-    1e-6  #: fraction of a rate that Newton's iteration changes last: it leaves the square of that
-)
+#: fraction of a rate that Newton's iteration changes last: it leaves the square of that
+RATE_CONVERGED = 1e-6
 RATE_ROUNDING = 1e-15  #: fraction of the velocities whose difference a rate is
 LIMIT, RATE = 2, 3  #: columns of `PowerDampers.constants`, beside K and N
 

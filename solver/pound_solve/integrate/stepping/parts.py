@@ -32,9 +32,8 @@ MAX_PARTS, MAX_PARTS_PER_LAW = (
     100,
     8,
 )  #: parts of a step that may end at one instant: in all, and more per law
-SHORTEST_PART = (
-    3e-8  #: shortest part, as a fraction of the step, used while laws alternate between branches
-)
+#: shortest part, as a fraction of the step, used while laws alternate between branches
+SHORTEST_PART = 3e-8
 
 
 def factorise_part(sim: Simulation, scheme: Scheme, length: float, halvings: int) -> int:
