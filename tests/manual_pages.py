@@ -40,7 +40,7 @@ def messages() -> list[str]:
     lines = []
     for prefix, subject in SUBJECTS.items():
         rows = ((c, title, text) for c, (title, text) in MESSAGES.items() if c.startswith(prefix))
-        lines += [f"## {subject}", "", *table("Code | Title | Meaning and cure", rows), ""]
+        lines += [f"## {subject}", "", *table("Code | Title | Meaning and remedy", rows), ""]
     return lines
 
 

@@ -337,7 +337,7 @@ class HistoryRecorder:
             self.keep(t[:first], u[:, :first], v[:, :first], a[:, :first], parts, works[:, :first])
         at = ((x[:, first], labels) for x, labels in checked)
         where = next(n for x, labels in at for n, y in zip(labels, x) if not abs(y) <= LARGEST)
-        return Stop("A504", float(t[first]), f"the motion is beyond all numbers, first at {where}")
+        return Stop("A504", float(t[first]), f"the response overflowed, first at {where}")
 
     def between(self, course: Course) -> None:
         """Widen the envelopes only (see `integrate.protocol.Recorder`)."""

@@ -72,7 +72,7 @@ class EnergyAccumulator:
 
 def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
     """Return forces and energies of all laws from their states, at times (n_times,) and motions
-    (n, n_times) between two changes of branch; `drag` of laws that are linear there.
+    (n, n_times) between two changes of branch; forces of dashpots are those of laws that are linear there.
     """
     laws = [s.law for s in system.structure.laws]
     if not laws:

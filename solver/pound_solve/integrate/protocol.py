@@ -37,9 +37,9 @@ class MonitoredOutputs:
     Attributes
     ----------
     names : sequence of str
-    rows : ndarray, shape (n_watch, n)
-    input_rows : ndarray, shape (n_watch, n_inputs)
-    constants : ndarray, shape (n_watch,)
+    rows : ndarray, shape (n_monitored, n)
+    input_rows : ndarray, shape (n_monitored, n_inputs)
+    constants : ndarray, shape (n_monitored,)
     """
 
     names: Sequence[str]
@@ -364,7 +364,9 @@ def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = EVENT
         return []
     name = f"share of the force of element {place} that rounding of its deformation makes"
     return [
-        beyond(Subject.ROUNDING, name, worst, MAX_ROUNDING, "too stiff for the distance that it gives way")
+        beyond(
+            Subject.ROUNDING, name, worst, MAX_ROUNDING, "too stiff: its deformation is lost in rounding"
+        )
     ]
 
 

@@ -156,7 +156,7 @@ class Exact(EventDrivenRun):
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
-            raise self.stop("A504", "the motion grew beyond all numbers")
+            raise self.stop("A504", "the response overflowed: the motion grows without bound")
         overdue = self.search.events.violated(
             coarse, self.largest, CERTAIN * EVENT_TOLERANCE, self._massless_laws
         )

@@ -125,7 +125,7 @@ class Laplace(EventDrivenRun):
         value, rate, second = (self.rows.rows @ x + self.rows.inputs @ s for x, s in zip((u, v, a), inputs))
         value += self.rows.constants[:, None]
         if not np.isfinite(value).all():
-            raise self.stop("A504", "the motion grew beyond all numbers")
+            raise self.stop("A504", "the response overflowed: the motion grows without bound")
         return SampledMotion(self.dt, u, v, a), SampledRows(t, value, rate, second)
 
     def _advance(self, end: float, first: bool) -> None:

@@ -278,7 +278,7 @@ class Buffers(NamedTuple):
     time : ndarray, shape (n_samples,)
     works : ndarray, shape (n_samples, 3)
         Input, loss in the structure's dashpots, loss in the contacts' dashpots.
-    log : ndarray, shape (n_log, LOGGED)
+    log : ndarray, shape (n_log, LOG_COLUMNS)
         Transitions.
     ties : ndarray, shape (n_ties, 3, n_laws)
         For each instant at which laws reach their events together: tangents and dashpots of these laws if

@@ -53,7 +53,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     ------
     Stop
         A reduced system that is not piecewise linear or has rigid contacts, massless DOFs that nothing
-        holds, too many changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
+        holds, too many changes at one instant, too many steps, an overflow of numbers, or an interrupt.
     """
     refuse_rigid(problem, "LAGUERRE")
     if why := not_linear(problem.system):

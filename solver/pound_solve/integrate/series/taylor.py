@@ -309,7 +309,9 @@ class Taylor(KernelEngine):
     def trouble(self, why: int) -> Stop:
         """Return the `Stop` that explains why the kernel has returned early."""
         if why == STEP_TOO_SHORT:
-            return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
+            return self.stop(
+                "A502", f"{self.asking} requires steps shorter than the resolution of the time"
+            )
         if why == UNRESTRAINED:
             return self.stop("A501", self._explain_massless())
         if why == RUNAWAY:
@@ -371,7 +373,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     ------
     Stop
         A reduced system that is not piecewise linear, massless DOFs that cannot be condensed, too many
-        changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
+        changes at one instant, too many steps, an overflow of numbers, or an interrupt.
     """
     if why := not_in_series(problem.system):
         refuse_rigid(problem, "TAYLOR")

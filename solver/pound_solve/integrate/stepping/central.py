@@ -47,7 +47,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     ------
     Stop
         Step above the stability limit, massless DOFs that cannot be condensed,
-        or numbers beyond all bounds.
+        or an overflow of numbers.
     """
     system = problem.system
     refuse_rigid(problem, "CENTRAL")

@@ -133,7 +133,7 @@ class Stepper(KernelEngine):
             count = 2.0 * np.pi * (squared_velocity / squared_acceleration) ** 0.5 / self.dt
             checks.append(_resolved("steps in a period of the motion, about", count))
         if softening := int(self.state.softening):
-            remedy = "a DT that follows how it gives way, or EXACT"
+            remedy = "a DT short enough to follow the softening, or EXACT"
             checks.append(
                 beyond(Subject.STEPS, "steps too long for a softening branch", softening, 0, remedy)
             )
