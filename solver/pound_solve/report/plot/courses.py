@@ -20,6 +20,7 @@ QUANTITY = {
     "drift": ("drift", "drifts"),
     "contact/force": ("contact force", "contacts"),
 }  #: of a history: what its axis says, and what its curves are
+DENSE = 6  #: stored instants from which on a collision is drawn by itself
 
 
 def worst(values: Array, most: int = style.LINES) -> list[int]:
@@ -86,6 +87,13 @@ def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any
         return collisions
     end = np.where(np.isnan(collisions["t_end"]), np.inf, collisions["t_end"])
     return collisions[(collisions["t_start"] <= choice.between[1]) & (end >= choice.between[0])]
+
+
+def hardest(results: Results, name: str, choice: Choice = ALL) -> Any:
+    """Row of a contact's collision with the largest peak force; None if no collision has a force."""
+    collisions = of_contact(results, name, choice)
+    with_force = collisions[np.isfinite(collisions["peak_force"])]
+    return with_force[np.argmax(with_force["peak_force"])] if len(with_force) else None
 
 
 def with_peaks(t: Array, force: Array, collisions: NDArray[Any]) -> tuple[Array, Array]:

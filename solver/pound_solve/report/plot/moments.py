@@ -56,12 +56,7 @@ def force_peak(results: Results, word: str) -> tuple[str, Any]:
         names = labels
     else:
         names = tuple(labels[k] for k in chosen_contacts(results, Choice((word,))))
-    peaks = []
-    for name in names:
-        collisions = courses.of_contact(results, name)
-        with_force = collisions[np.isfinite(collisions["peak_force"])]
-        if len(with_force):
-            peaks.append((name, with_force[int(np.argmax(with_force["peak_force"]))]))
+    peaks = [(name, row) for name in names if (row := courses.hardest(results, name)) is not None]
     if not peaks:
         who = f"contact {word}" if word != LARGEST else "the model"
         raise ChoiceError(f"{who} has no collision with a force: name a time with --time")

@@ -11,7 +11,6 @@ from pound_solve.report.plot.members import chosen_contacts
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
-DENSE = 6  #: stored instants from which on a collision is enlarged
 MARGIN = 0.15  #: time before and after an enlarged collision, as a fraction of its duration
 
 
@@ -26,13 +25,12 @@ def contact_force(results: Results, choice: Choice) -> Any:
     shown = columns[: style.LINES]
     more = f": {len(shown)} of {len(columns)}" if len(shown) < len(columns) else ""
     title = f"Contact forces{more}; rings: peak of each collision"
-    hardest = [_hardest(results, names[k], choice) for k in shown]
-    enlarged = not choice.between and any(hardest)
+    enlarged = {} if choice.between else {k: times for k in shown if (times := _largest(results, names[k]))}
     figure = style.figure(11.0 if enlarged else 9.0, 1.7 * len(shown) + 0.9, title)
     widths = (3.0, 1.0) if enlarged else (1.0,)
     grid = figure.add_gridspec(len(shown), len(widths), width_ratios=widths)
     first = None
-    for n, (k, collision) in enumerate(zip(shown, hardest)):
+    for n, k in enumerate(shown):
         axes = figure.add_subplot(grid[n, 0], sharex=first)
         first = first or axes
         last = n == len(shown) - 1
@@ -44,23 +42,20 @@ def contact_force(results: Results, choice: Choice) -> Any:
         if choice.between:
             axes.set_xlim(*choice.between)
         axes.tick_params(labelbottom=last)
-        if enlarged and collision:
-            _enlarge(style.grid(figure.add_subplot(grid[n, 1]), time), results, k, look, collision)
+        if k in enlarged:
+            _enlarge(style.grid(figure.add_subplot(grid[n, 1]), time), results, k, look, enlarged[k])
     return figure
 
 
-def _hardest(results: Results, name: str, choice: Choice) -> tuple[float, float] | None:
-    """Start and end of the collision with the largest force of a contact; None without one that has ended,
-    or with too few stored instants.
+def _largest(results: Results, name: str) -> tuple[float, float] | None:
+    """Start and end of the collision with the largest force of a contact; None if there is none, or it has
+    not ended, or too few instants of it are stored.
     """
-    t = results.course("contact/force")[0]
-    collisions = courses.of_contact(results, name, choice)
-    collisions = collisions[np.isfinite(collisions["peak_force"]) & np.isfinite(collisions["t_end"])]
-    if not len(collisions):
+    row = courses.hardest(results, name)
+    if row is None or np.isnan(row["t_end"]):
         return None
-    row = collisions[np.argmax(collisions["peak_force"])]
-    start, end = float(row["t_start"]), float(row["t_end"])
-    return (start, end) if ((t >= start) & (t <= end)).sum() >= DENSE else None
+    t, start, end = results.course("contact/force")[0], float(row["t_start"]), float(row["t_end"])
+    return (start, end) if ((t >= start) & (t <= end)).sum() >= courses.DENSE else None
 
 
 def _enlarge(
@@ -80,10 +75,9 @@ def _caption(results: Results, name: str, choice: Choice) -> str:
     """Text on a contact's number of collisions and its largest force."""
     collisions, units = courses.of_contact(results, name, choice), results.units
     times = {0: "not closed", 1: "closed once"}.get(len(collisions), f"closed {len(collisions)} times")
-    peaks = collisions[np.isfinite(collisions["peak_force"])]
-    if not len(peaks):
+    top = courses.hardest(results, name, choice)
+    if top is None:
         return f"{name}: {times}" + (", instantaneous impacts (bars)" if len(collisions) else "")
-    top = peaks[np.argmax(peaks["peak_force"])]
     return (
         f"{name}: {times}, largest force {top['peak_force']:.5g} {units.force} at {top['t_peak']:.6g} "
         f"{units.time}"

@@ -12,7 +12,6 @@ from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 MOST = 16  #: panels
-DENSE = 6  #: stored instants of a collision that a line joins
 
 
 def contacts(results: Results, choice: Choice) -> Any:
@@ -42,7 +41,7 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     axes.plot(x, y, ".", color=style.RED, markersize=3)
     for collision in courses.of_contact(results, name, choice):
         closed = (t >= collision["t_start"]) & ~(t > collision["t_end"])
-        if closed.sum() >= DENSE:
+        if closed.sum() >= courses.DENSE:
             # a dashpot's force appears at touch, and a pull ends at parting: the line closes at both
             along, up = -gap[closed], np.concatenate([[0.0], force[closed], [0.0]])
             axes.plot(np.pad(along, 1, "edge"), up, color=style.RED, linestyle="-", linewidth=0.8)
