@@ -58,7 +58,8 @@ def test_every_picture_is_drawn_and_repeats(
 ) -> None:
     names = plot.possible(results)
     assert {"frame", "histories", "energy", "contacts", "collisions"} <= set(names)
-    names = [name for name in names if name not in ("loops", "hinges", "diagrams")][:count]  # springs alone
+    names = [name for name in names if name not in ("loads", "loops", "hinges", "diagrams")]
+    names = names[:count]  # springs alone, without loads
     first, left_out = plot.draw(results, names, tmp_path / "a", ending)
     again, _ = plot.draw(results, names, tmp_path / "b", ending)
     assert len(first) == len(names) and not left_out
@@ -73,7 +74,8 @@ def test_the_frame_has_all_nodes_and_contacts(results: Results) -> None:
     nodes = results.table("nodes")
     assert {str(n) for n in nodes["node"]} <= texts
     contacts = [e for e in results.table("elements") if e["kind"] == "CONTACT"]
-    assert {str(e["name"] or e["element"]) for e in contacts} <= texts
+    gaps = results.table("contact_laws")["gap"]
+    assert {f"{e['name'] or e['element']}\ngap {gap:.4g} m" for e, gap in zip(contacts, gaps)} <= texts
 
 
 def test_histories_are_those_of_the_file(results: Results) -> None:
@@ -194,7 +196,7 @@ def test_of_a_run_that_stopped_at_its_start_all_is_drawn_and_exported_that_is_th
     assert main(["plot", file]) == 0
     out, err = capsys.readouterr()
     assert out.splitlines() == [str(tmp_path / f"alone_{name}.svg") for name in ("summary", "frame")]
-    told = "pound-solve: left out, nothing to draw: deformed, histories, "
+    told = "pound-solve: left out, nothing to draw: loads (no static loads); deformed, histories, "
     assert err.startswith(told) and "(no history)" in err and len(err.splitlines()) == 1
     assert main(["plot", file, "energy"]) == 2  # nothing at all
     assert "energy (no history)" in capsys.readouterr().err

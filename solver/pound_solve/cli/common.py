@@ -26,6 +26,11 @@ def complain(text: str, status: int = FILES) -> int:
 def add_deck(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
     """Add the deck, its parameters and the folders of records."""
     parser.add_argument("deck", nargs=nargs, help="input deck")
+    add_deck_options(parser)
+
+
+def add_deck_options(parser: argparse.ArgumentParser) -> None:
+    """Add the parameters of a deck and the folders of records."""
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
     )

@@ -94,8 +94,9 @@ def ground(request: Request, deck: ReadDeck | None = None) -> Ground:
     return Ground(model, tuple(motions), tuple(unsuppressed(remarks, model.meant)), deck.files)
 
 
-def prepare(request: Request) -> Prepared:
-    """Read a deck and its records, and assemble the structure.
+def prepare(request: Request, at_rest: bool = False) -> Prepared:
+    """Read a deck and its records, and assemble the structure; `at_rest` leaves out motions and histories,
+    so that no record is needed.
 
     Raises
     ------
@@ -105,11 +106,18 @@ def prepare(request: Request) -> Prepared:
         The deck cannot be read.
     """
     deck = read(request)
+    model = _at_rest(deck.model) if deck.model and at_rest else deck.model
     try:
-        ready = assembled(request, deck.model, deck.diagnostics, deck.files)
+        ready = assembled(request, model, deck.diagnostics, deck.files)
     except DeckError as err:
         raise DeckError(deck.moved(err.diagnostics, request.deck), deck.files, err.later) from None
     return replace(ready, warnings=tuple(deck.moved(ready.warnings, request.deck)))
+
+
+def _at_rest(model: Model) -> Model:
+    """Return the model without its motions, its time-dependent forces and its histories."""
+    analyses = tuple(card for card in model.analyses if card.spec.name != "HISTORY")
+    return replace(model, equake=(), forces=(), analyses=analyses)
 
 
 def assembled(

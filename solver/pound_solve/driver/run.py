@@ -6,6 +6,7 @@ import shutil
 import tempfile
 import time
 import weakref
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -36,6 +37,7 @@ __all__ = (
     "prepare",
     "report_of",
     "solve",
+    "structure_in_temporary_folder",
     "writer_of",
 )
 
@@ -81,9 +83,30 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
 
 def in_temporary_folder(request: Request) -> Results:
     """Run a deck in a folder that is removed with the results; see `execute`."""
+    return _in_temporary_folder(lambda folder: execute(replace(request, out=folder))[1])
+
+
+def structure_in_temporary_folder(request: Request) -> Results:
+    """Store the tables of a deck's structure, without an analysis or a record, in a folder that is removed
+    with the results; see `execute`.
+    """
+    ready = prepare(request, at_rest=True)
+
+    def stored(folder: Path) -> Results:
+        path = folder / request.path(".h5").name
+        with writer_of(ready, path) as writer:
+            AnalysisSequence(ready, request, writer, None, 0.0).store_input()
+            writer.finish("done")
+        return Results.open(path)
+
+    return _in_temporary_folder(stored)
+
+
+def _in_temporary_folder(make: Callable[[Path], Results]) -> Results:
+    """Results that a function makes in a folder, which is removed with them."""
     folder = Path(tempfile.mkdtemp(prefix="pound-solve-"))
     try:
-        results = execute(replace(request, out=folder))[1]
+        results = make(folder)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

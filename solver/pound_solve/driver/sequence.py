@@ -148,7 +148,7 @@ class AnalysisSequence:
         """Run one analysis after the other; return the reason of a stop, or an empty text."""
         doing = "static analysis"
         try:
-            self._input()
+            self.store_input()
             state = self._static()
             for name, analysis in (
                 ("MODAL", self._modal),
@@ -179,7 +179,8 @@ class AnalysisSequence:
     def _write(self, stage: Stage) -> None:
         self.writer.tables(stage, self.record)
 
-    def _input(self) -> None:
+    def store_input(self) -> None:
+        """Store the texts of the deck and the tables of its structure."""
         model = self.record.model
         for name, text in model.files.items():
             self.writer.text(Path(name).name, text)

@@ -1,9 +1,11 @@
-"""``pound-solve plot``: draw pictures of a results file."""
+"""``pound-solve plot``: draw pictures of a run, of several runs over each other, or of a deck."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,15 +16,20 @@ if TYPE_CHECKING:
     from pound_solve.report.plot import Choice
     from pound_solve.results import Results
 
-SUMMARY = "draw pictures of a results file (needs matplotlib: the extra plot)"
+SUMMARY = "draw pictures of a run, of several runs over each other, or of a deck (needs the extra plot)"
+OF_A_DECK = ("frame", "loads")  #: pictures that need no run
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("results", nargs="?", help="results file (.h5); none: list the pictures")
-    text = "its name (default: all that the file has data for, but the animation)"
-    parser.add_argument("pictures", nargs="*", metavar="PICTURE", help=text)
-    parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
+    text = "results file (.h5), or a deck, which is drawn without a run; none: list the pictures"
+    parser.add_argument("file", nargs="?", metavar="FILE", help=text)
+    text = (
+        "further results files, drawn over the first, and names of pictures (default: all that there are "
+        "data for, but the animation)"
+    )
+    parser.add_argument("words", nargs="*", metavar="FILE|PICTURE", help=text)
+    parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the first file's)")
     text = "format (default: svg; of the animation html)"
     parser.add_argument("--as", dest="ending", choices=(*IMAGE_FORMATS, *ANIMATION_FORMATS), help=text)
     parser.add_argument(
@@ -39,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--style", type=Path, metavar="FILE", help="style sheet of matplotlib, laid over the program's"
     )
+    common.add_deck_options(parser)
 
 
 def _time(word: str) -> float:
@@ -50,13 +58,16 @@ def _time(word: str) -> float:
 def execute(args: argparse.Namespace) -> int:
     """Draw the pictures; print their paths and the names of those left out."""
     from pound_deck.files import opened
+    from pound_solve.driver.reading import is_deck
     from pound_solve.report import plot
-    from pound_solve.results import Results
 
-    if args.results is None:
+    if args.file is None:
         for picture in plot.PICTURES.values():
             print(f"{picture.name:<14} {picture.shows}")
         return common.DONE
+    args.pictures = [word for word in args.words if word in plot.PICTURES or not _is_file(word)]
+    args.files = [args.file, *(word for word in args.words if word not in args.pictures)]
+    args.decks = [file for file in args.files if is_deck(file)]
     between = tuple(args.between) if args.between else None
     choice = plot.Choice(tuple(args.member), args.time, args.at_peak, between, args.style)
     if wrong := _wrong(args, choice):
@@ -64,19 +75,46 @@ def execute(args: argparse.Namespace) -> int:
     if args.style:
         opened(args.style).close()  # a pipe is refused before the work
     try:
-        with Results.open(args.results) as results:
-            return _draw(results, args, choice)
+        with ExitStack() as stack:
+            runs = [stack.enter_context(_opened(file, args)) for file in args.files]
+            return _draw(runs, args, choice)
     except ImportError:
         return common.complain('pictures need matplotlib: pip install "pound-solve[plot]"', common.MISTAKES)
+
+
+def _is_file(word: str) -> bool:
+    """Whether a word names a file rather than a picture."""
+    return Path(word).suffix != "" or Path(word).is_file()
+
+
+def _opened(file: str, args: argparse.Namespace) -> Results:
+    """Results of a file, or the structure of a deck."""
+    from pound_solve.driver.request import Request
+    from pound_solve.driver.run import structure_in_temporary_folder
+    from pound_solve.results import Results
+
+    if file not in args.decks:
+        return Results.open(file)
+    return structure_in_temporary_folder(
+        Request(file, common.parameters(args.set), records=tuple(args.records))
+    )
 
 
 def _wrong(args: argparse.Namespace, choice: Choice) -> str:
     """Message on a mistake in the arguments; empty without one."""
     from pound_solve.report.plot import PICTURES
 
+    if args.decks and len(args.files) > 1:
+        return f"{args.decks[0]} is a deck: runs are drawn over each other from their results files (.h5)"
+    if (args.set or args.records) and not args.decks:
+        return f"--set and --records belong to a deck, and {args.file} is none"
     for name in args.pictures:
         if name not in PICTURES:
             return f"there is no picture {name}: choose from {', '.join(PICTURES)}"
+        fits = _fitting(args)
+        if name not in fits:
+            shows = "a run, and this is a deck" if args.decks else "one run"
+            return f"the picture {name} shows {shows}: choose from {', '.join(fits)}"
         if args.ending and args.ending not in PICTURES[name].endings:
             return f"the picture {name} is written as {', '.join(PICTURES[name].endings)}"
     if choice.between and not choice.between[0] < choice.between[1]:
@@ -91,25 +129,37 @@ def _wrong(args: argparse.Namespace, choice: Choice) -> str:
     return ""
 
 
-def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
+def _fitting(args: argparse.Namespace) -> list[str]:
+    """Names of the pictures of a deck, of one run, or of several."""
+    from pound_solve.report.plot import PICTURES
+
+    if args.decks:
+        return list(OF_A_DECK)
+    return [name for name, picture in PICTURES.items() if len(args.files) == 1 or picture.overlay]
+
+
+def _draw(runs: Sequence[Results], args: argparse.Namespace, choice: Choice) -> int:
     """Draw the named pictures, or all that can be drawn in this format."""
     from pound_solve.report import plot
 
-    folder: Path = args.out or results.path.parent
-    held = {*results.tables, *results.histories}
+    folder: Path = args.out or Path(args.file).parent
+    files = " and ".join(args.files)
+    lack, holds = ("lacks", "holds") if len(runs) == 1 else ("lack", "hold")
+    possible = plot.possible(runs, args.ending or IMAGE_FORMATS[0])
     for name in args.pictures:
-        if not held >= set(needs := plot.PICTURES[name].needs):
-            text = f"{args.results} lacks what the picture {name} needs: {', '.join(needs)}"
+        if name not in plot.possible(runs, plot.PICTURES[name].endings[0]):
+            needs = ", ".join(plot.PICTURES[name].needs)
+            text = f"{files} {lack} what the picture {name} needs: {needs}"
             return common.complain(text, common.MISTAKES)
-    names = args.pictures or plot.possible(results, args.ending or IMAGE_FORMATS[0])
+    names = args.pictures or [name for name in possible if name in _fitting(args)]
     if not names:
-        return common.complain(f"{args.results} holds nothing that a picture shows", common.MISTAKES)
+        return common.complain(f"{files} {holds} nothing that a picture shows", common.MISTAKES)
     drawn: list[Path] = []
     left_out: dict[str, list[str]] = {}
     for name in names:
         moves = plot.PICTURES[name].write is not None
         ending = args.ending or (ANIMATION_FORMATS if moves else IMAGE_FORMATS)[0]
-        more, less = plot.draw(results, [name], folder, ending, choice)
+        more, less = plot.draw(runs, [name], folder, ending, choice)
         drawn += more
         for what, pictures in less.items():
             left_out.setdefault(what, []).extend(pictures)

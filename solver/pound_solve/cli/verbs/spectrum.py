@@ -50,12 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write the spectra as CSV")
     text = f"draw the spectra into a file, ending in {', '.join(IMAGE_FORMATS)}"
     parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
-    )
-    parser.add_argument(
-        "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
-    )
+    common.add_deck_options(parser)
 
 
 def _periods(word: str) -> list[float]:

@@ -20,6 +20,7 @@ APART = 0.03  #: distance of neighbours in pictures without displacements, likew
 PLATE = 0.012  #: half the length of the plate at the end of a contact's reach, likewise
 WALL = 0.035  #: half the length of a wall, and about its distance, as a fraction of that size
 HATCHES = 6
+INWARDS = 0.07  #: of a hinge from the end of its member, as a fraction of its length
 SLENDER = 0.15  #: least half of a picture's side, as a fraction of that size
 NOWHERE = np.zeros(2)
 UNDISPLACED: Mapping[int, Array] = MappingProxyType({})  #: no displacements
@@ -190,6 +191,17 @@ class DrawnStructure:
             if not ticks or x - ticks[-1][0] > least:
                 ticks.append((x, true))
         axes.set_xticks([x for x, _ in ticks], [f"{true:g}" for _, true in ticks])
+
+    def component(self, element: int, component: str) -> Array:
+        """Place at which a spring or hinge is drawn [L]: near its end of the member, or in the middle."""
+        (e,) = self.elements[self.elements["element"] == element]
+        i = self.place[int(e["i"])]
+        if not e["j"]:
+            return i
+        j = self.place[int(e["j"])]
+        fraction = {"I": INWARDS, "J": 1.0 - INWARDS}.get(component.split()[-1], 0.5)
+        at: Array = i + fraction * (j - i)
+        return at
 
     def shape(self) -> tuple[float, float]:
         """Width and height of a picture of it, in inches."""

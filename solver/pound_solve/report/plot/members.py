@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -260,11 +260,19 @@ def _blocks(results: Results) -> dict[str, tuple[float, float]]:
 
 
 def _point_loads(results: Results) -> dict[int, list[tuple[float, Array]]]:
-    """Places and forces of the point loads of every member, parsed from the texts of the table."""
+    """Places and forces of the point loads of every member."""
     loads: dict[int, list[tuple[float, Array]]] = {}
-    for row in results.table("member_loads") if "member_loads" in results.tables else ():
-        load: dict[str, Any] = dict(re.findall(r"(\w+) ([-+.\deE]+)", str(row["load"])))
-        force = np.array([float(load.get("PX", 0.0)), float(load.get("PY", 0.0))])
+    for element, load in member_loads(results):
+        force = np.array([load.get("PX", 0.0), load.get("PY", 0.0)])
         if force.any():
-            loads.setdefault(int(row["element"]), []).append((float(load["AT"]), force))
+            loads.setdefault(element, []).append((load["AT"], force))
     return loads
+
+
+def member_loads(results: Results) -> Iterator[tuple[int, dict[str, float]]]:
+    """Element and values (``WX``, ``WY``, ``PX``, ``PY``, ``AT``) of every member load, parsed from the
+    texts of the table.
+    """
+    for row in results.table("member_loads") if "member_loads" in results.tables else ():
+        values = re.findall(r"(\w+) ([-+.\deE]+)", str(row["load"]))
+        yield int(row["element"]), {name: float(value) for name, value in values}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -119,6 +119,8 @@ class Picture:
         Formats of its file.
     write : callable, optional
         Writes the file of a picture that moves.
+    overlay : callable, optional
+        Makes the figure of several runs drawn over each other.  A run may lack some of what is drawn.
     """
 
     name: str
@@ -129,3 +131,4 @@ class Picture:
     options: tuple[str, ...] = ()
     endings: tuple[str, ...] = IMAGE_FORMATS
     write: Callable[[Results, Choice, Path], None] | None = None
+    overlay: Callable[[Sequence[Results], Choice], Any] | None = None

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from pound_solve.report.plot import courses, style
+from pound_solve.report.plot.overlay import TimePanel, over_time, units_of_largest
 from pound_solve.report.plot.schema import ALL, Choice, Nothing, Picture
 from pound_solve.results import Results
 
@@ -27,6 +29,13 @@ def base_shear(results: Results, choice: Choice) -> Any:
         first = first or axes
         panel(axes, results, quantity, choice, n == len(shown) - 1)
     return figure
+
+
+def overlay(runs: Sequence[Results], choice: Choice) -> Any:
+    """Draw the shear of one building in each panel, with a curve for each run."""
+    units = units_of_largest(runs, "building/base", ending=" shear X")
+    panels = [TimePanel("building/base", label, "base shear", unit) for label, unit in units.items()]
+    return over_time(runs, panels, choice)
 
 
 def moves(results: Results, quantity: str = "shear X") -> bool:
@@ -88,5 +97,6 @@ SPEC = Picture(
     shows="base shear and overturning moment of every building over time, their largest values marked",
     needs=("building/base", "base_envelope"),
     draw=base_shear,
+    overlay=overlay,
     options=("between",),
 )

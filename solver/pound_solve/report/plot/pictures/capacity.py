@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from pound_solve.report.plot import labels, style
 from pound_solve.report.plot.geometry import contact_name
+from pound_solve.report.plot.overlay import curves
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
@@ -19,6 +21,19 @@ def capacity(results: Results, choice: Choice) -> Any:
     """Draw the curve on a page of its own."""
     figure = style.figure(8.5, 5.0, "Capacity curve")
     curve(figure.add_subplot(), results)
+    return figure
+
+
+def overlay(runs: Sequence[Results], choice: Choice) -> Any:
+    """Draw the curves of several pushovers, without their events."""
+    figure = style.figure(8.5, 5.0, "Capacity curves")
+    axes, units = figure.add_subplot(), runs[0].units
+    style.grid(axes, f"displacement of the control node [{units.length}]", f"base shear [{units.force}]")
+    for run, look in curves(runs):
+        if run.holds("capacity_curve"):
+            table = run.table("capacity_curve")
+            axes.plot(table["displacement"], table["base_shear"], **look)
+    style.legend_below(figure, [axes])
     return figure
 
 
@@ -83,4 +98,5 @@ SPEC = Picture(
     shows="base shear over the displacement of a pushover, with first yields and contacts that close",
     needs=("capacity_curve", "pushover", "elements"),
     draw=capacity,
+    overlay=overlay,
 )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from pound_solve.report.plot import courses, style
 from pound_solve.report.plot.members import chosen_contacts
+from pound_solve.report.plot.overlay import TimePanel, over_time, units_of_largest
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
@@ -45,6 +47,13 @@ def contact_force(results: Results, choice: Choice) -> Any:
         if k in enlarged:
             _enlarge(style.grid(figure.add_subplot(grid[n, 1]), time), results, k, look, enlarged[k])
     return figure
+
+
+def overlay(runs: Sequence[Results], choice: Choice) -> Any:
+    """Draw the force of one contact in each panel, with a curve for each run."""
+    units = units_of_largest(runs, "contact/force")
+    panels = [TimePanel("contact/force", label, "force", unit) for label, unit in units.items()]
+    return over_time(runs, panels, choice, "Contact forces")
 
 
 def _largest(results: Results, name: str) -> tuple[float, float] | None:
@@ -90,5 +99,6 @@ SPEC = Picture(
     shows="the force of each contact over time, with the true peak of each collision",
     needs=("contact/force",),
     draw=contact_force,
+    overlay=overlay,
     options=("member", "between"),
 )

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
 from pound_solve.report.plot.geometry import DrawnStructure, apart
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
@@ -24,7 +23,6 @@ DUCTILITY = (
     (1.0, "1 to 2"),
     (-math.inf, "not yielded"),
 )
-INWARDS = 0.07  #: of a hinge from the end of its member, as a fraction of its length
 
 
 def hinges(results: Results, choice: Choice) -> Any:
@@ -58,7 +56,7 @@ def panel(
     s.draw_supports(axes)
     worst: dict[tuple[float, float], float] = {}
     for row in rows[np.isfinite(rows[column])]:
-        at = place(s, int(row["element"]), str(row["component"]))
+        at = s.component(int(row["element"]), str(row["component"]))
         key = (float(at[0]), float(at[1]))
         worst[key] = max(worst.get(key, -math.inf), float(row[column]))
     for n, (_, word) in enumerate(reversed(classes)):
@@ -74,18 +72,6 @@ def state(value: float, classes: tuple[tuple[float, str], ...]) -> str:
     """Word for a value: that of the highest limit that it reaches, or for ductility exceeds."""
     reached = (word for least, word in classes if value > least or (value == least and classes is STATES))
     return next(reached, classes[-1][1])
-
-
-def place(s: DrawnStructure, element: int, component: str) -> Array:
-    """Place at which a spring or hinge is drawn [L]: near its end of the member, or in the middle."""
-    (e,) = s.elements[s.elements["element"] == element]
-    i = s.place[int(e["i"])]
-    if not e["j"]:
-        return i
-    j = s.place[int(e["j"])]
-    fraction = {"I": INWARDS, "J": 1.0 - INWARDS}.get(component.split()[-1], 0.5)
-    at: Array = i + fraction * (j - i)
-    return at
 
 
 SPEC = Picture(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
 from pound_solve.report.plot.geometry import DrawnStructure
+from pound_solve.report.plot.overlay import curves
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
@@ -20,49 +22,84 @@ PROFILES = {
     "floor acceleration": ("total floor acceleration", "L/T^2", 1.0),
 }
 
+SIDES = "lines: to the right; dashes: to the left"
+
 
 def storeys(results: Results, choice: Choice) -> Any:
     """Draw a row of three profiles for each building, to one scale."""
-    names = list(dict.fromkeys(results.table("storey_envelope")["building"].tolist()))
+    names = buildings(results)
     figure = style.figure(9.5, 2.9 * len(names) + 0.5, results.title)
+    for axes, name, quantity in _grid(figure, names):
+        panel(axes, results, [name], quantity)
+    figure.axes[2].set_title(SIDES, loc="right")
+    return figure
+
+
+def overlay(runs: Sequence[Results], choice: Choice) -> Any:
+    """Draw the same rows with a colour for each run."""
+    drawn = [(run, look, buildings(run)) for run, look in curves(runs) if run.holds("storey_envelope")]
+    names = list(dict.fromkeys(name for _, _, there in drawn for name in there))
+    figure = style.figure(9.5, 2.9 * len(names) + 0.9)
+    for axes, name, quantity in _grid(figure, names):
+        label_axes(axes, runs[0], quantity)
+        for run, look, there in drawn:
+            if name in there:
+                profile(axes, run, name, quantity, look)
+    figure.axes[2].set_title(SIDES, loc="right")
+    style.legend_below(figure, figure.axes)
+    return figure
+
+
+def buildings(results: Results) -> list[str]:
+    """Names of the buildings that have storeys."""
+    return list(dict.fromkeys(results.table("storey_envelope")["building"].tolist()))
+
+
+def _grid(figure: Any, names: Sequence[str]) -> Iterator[tuple[Any, str, str]]:
+    """Axes of each building and quantity, with one scale for each quantity."""
     first: dict[str, Any] = {}
     for row, name in enumerate(names):
         for n, quantity in enumerate(PROFILES):
-            axes = figure.add_subplot(
-                len(names), 3, 3 * row + n + 1, sharex=first.get(quantity), sharey=first.get("any")
-            )
+            shared = {"sharex": first.get(quantity), "sharey": first.get("any")}
+            axes = figure.add_subplot(len(names), len(PROFILES), len(PROFILES) * row + n + 1, **shared)
             first.setdefault(quantity, axes)
             first.setdefault("any", axes)
-            panel(axes, results, [name], quantity)
+            yield axes, name, quantity
             if n == 0:
                 axes.set_title(name, loc="left")
-    figure.axes[2].set_title("lines: to the right; dashes: to the left", loc="right")
-    return figure
 
 
 def panel(axes: Any, results: Results, names: list[str], quantity: str) -> None:
     """Draw one profile of some buildings: lines for the largest values, dashes for the smallest."""
-    table = results.table("storey_envelope")
-    words, dimension, factor = PROFILES[quantity]
+    label_axes(axes, results, quantity)
+    for n, name in enumerate(names):
+        look = {"color": style.stroke(n)["color"], "linewidth": 1.2, "label": style.short(name)}
+        profile(axes, results, name, quantity, look)
+
+
+def label_axes(axes: Any, results: Results, quantity: str) -> None:
+    """Name the axes of one profile."""
+    words, dimension, _ = PROFILES[quantity]
     unit = dimension if dimension == "%" else results.units.text(dimension)
     style.grid(axes, f"{words} [{unit}]", f"height [{results.units.length}]")
     axes.axvline(0.0, color="0.3", linewidth=0.8)
-    for n, name in enumerate(names):
-        storeys = table[table["building"] == name]
-        high, low = extremes(results, name, quantity)
-        look = {"color": style.stroke(n)["color"], "linewidth": 1.2}
-        for values, dashes in ((high, "-"), (low, "--")):
-            label = style.short(name) if dashes == "-" else None
-            if quantity == "floor acceleration":
-                at = [_base(storeys), *storeys["level"]]
-                base = base_acceleration(results, name)
-                shown = [base[0] if dashes == "-" else base[1], *values]
-                axes.plot(shown, at, dashes, marker=".", **look, label=label)
-            else:
-                steps = np.column_stack([storeys["level"] - storeys["height"], storeys["level"]]).ravel()
-                axes.plot(factor * np.repeat(values, 2), steps, dashes, **look, label=label)
     axes.margins(x=0.06, y=0.03)
     axes.locator_params(axis="x", nbins=6)
+
+
+def profile(axes: Any, results: Results, name: str, quantity: str, look: Mapping[str, Any]) -> None:
+    """Draw one profile of one building."""
+    table, factor = results.table("storey_envelope"), PROFILES[quantity][2]
+    storeys = table[table["building"] == name]
+    sides: tuple[dict[str, str | None], ...] = ({"linestyle": "-"}, {"linestyle": "--", "label": None})
+    values_of_sides, bases = extremes(results, name, quantity), base_acceleration(results, name)
+    for values, base, dashes in zip(values_of_sides, bases, sides):
+        if quantity == "floor acceleration":
+            at = [_base(storeys), *storeys["level"]]
+            axes.plot([base, *values], at, **{**look, **dashes, "marker": "."})
+        else:
+            steps = np.column_stack([storeys["level"] - storeys["height"], storeys["level"]]).ravel()
+            axes.plot(factor * np.repeat(values, 2), steps, **{**look, **dashes, "marker": ""})
 
 
 def _base(rows: NDArray[Any]) -> float:
@@ -93,4 +130,5 @@ SPEC = Picture(
     shows="drift ratio, shear and floor acceleration over the height of each building, to both sides",
     needs=("storey_envelope", "storey_extremes", "buildings", "node_envelope", "nodes", "elements"),
     draw=storeys,
+    overlay=overlay,
 )  # fmt: skip
