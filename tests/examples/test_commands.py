@@ -190,10 +190,10 @@ def checked() -> Callable[[run.Request], run.Prepared]:
     """Prepare a deck, each with the same values once."""
     ready: dict[str, run.Prepared] = {}
 
-    def once(request: run.Request) -> run.Prepared:
-        key = repr(replace(request, out=None))
+    def once(request: run.Request, at_rest: bool = False) -> run.Prepared:
+        key = repr((replace(request, out=None), at_rest))
         if key not in ready:
-            ready[key] = prepare(request)
+            ready[key] = prepare(request, at_rest)
         return ready[key]
 
     return once

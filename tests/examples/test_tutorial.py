@@ -170,13 +170,16 @@ def test_the_numbers_in_the_prose():
 
 def test_sections_and_tables_have_the_numbers_that_the_tutorial_gives():
     page = (MANUAL / "tutorial.md").read_text("utf-8")
-    heads = dict(re.findall(r"^### (\d+) (\w+)", page, re.MULTILINE))
-    titles = {str(n): heading for n, (heading, _) in enumerate(SECTIONS, 1)}
-    assert len(heads) >= 7 and all(titles[n].upper().startswith(word.upper()) for n, word in heads.items())
-    tables = {
-        f"{n}.{k}": TABLES[name].title
-        for n, (_, names) in enumerate(SECTIONS, 1)
-        for k, name in enumerate(names, 1)
+    section_of = {
+        t.title.upper(): heading for heading, names in SECTIONS for t in map(TABLES.get, names) if t
     }
+    parts = re.split(r"^### (\d+) (\w+).*$", page.split("\n## 5 ")[0], flags=re.MULTILINE)[1:]
+    heads = list(zip(parts[::3], parts[1::3], parts[2::3]))
+    shown = {}
+    for number, word, text in heads:
+        for at, title in re.findall(r"^(\d+\.\d+)  ([A-Z].*)$", text, re.MULTILINE):
+            assert at.startswith(f"{number}.") and section_of[title].startswith(word)
+            shown[at] = title
+    assert len(heads) >= 7 and {at.split(".")[0] for at in shown} == {number for number, _, _ in heads}
     named = re.findall(r'Table (\d+\.\d+), "([^"]+)"', page)
-    assert named and all(tables[number] == title for number, title in named)
+    assert named and all(shown[number] == title.upper() for number, title in named)

@@ -332,12 +332,20 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         ("902", 2, 9101.2, 5.1182, 0.00071, 71.2, 0.81, -0.00071, 0.0091),
         ("903", 0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.00213, 0.0),
     ),
+    "building_summary": (
+        ("A", 3, 0.9242, 84.9, 826.0, 1256.96, 4.866, 1.5217, 1.1262, 1, 1.842),
+        ("building 2", 2, math.nan, math.nan, 506.2, 969.329, 3.85, 1.9149, 0.7459, 2, 8.606),
+    ),
+    "struck_members": (
+        ("901", 11, "J", "A, column 1 head", 4.21348, 331.45, 348.75, 4.2171, 150.57, 4.58, 320.0),
+        ("901", 12, "I", "", 4.21348, math.nan, 92.5, 4.552, 192.89, 4.06, math.nan),
+    ),
     "overview": (
+        ("deck", "two buildings.inp"),
         ("structure", "18 nodes, 22 elements, 36 unknowns"),
         ("analyses", "STATIC, HISTORY"),
-        ("longest period of building 1", "0.9242 s"),
         ("contact law", "KELVIN_VOIGT, 5e+05 kN/m, restitution 0.65"),
-        ("largest drift ratio", "1.13 %, B2 storey 1"),
+        ("largest storey drift ratio", "1.13 %, B2 storey 1"),
     ),
     "storey_envelope": (
         ("A", 1, 3.5, 3.5, 42.1, 0.00745, 2.726, 0.0002, 1256.96, 4.866, 9671.99, 2.948, 3.251, 1.988),
@@ -348,7 +356,19 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         ("R404", "model.inp:44", "the peak is 4.1 g"),
     ),
     "worst_hinges": (
-        (11, "hinge I", "TAKEDA", 11.22, 8.31, 0.0217, 3, 20.91, 0.853, "beyond repair"),
-        (12, "X", "BILINEAR", 2.1, math.nan, math.nan, 1, 3.2, math.nan, ""),
+        (
+            11,
+            "hinge I",
+            "A, column 1 foot",
+            "TAKEDA",
+            11.22,
+            8.31,
+            0.0217,
+            3,
+            20.91,
+            0.853,
+            "beyond repair",
+        ),
+        (12, "X", "", "BILINEAR", 2.1, math.nan, math.nan, 1, 3.2, math.nan, ""),
     ),
 }

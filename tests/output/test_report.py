@@ -93,9 +93,9 @@ def test_missing_and_empty_tables_are_left_out(only: Callable[..., str]) -> None
     text = only(modes=sample.rows()["modes"], reactions=[], checks=sample.rows()["checks"])
     assert re.findall(r"^\d+(?:\.\d+)?  [A-Z].*$", text, re.MULTILINE) == [
         "1  SUMMARY",
-        "1.5  CHECKS OF THIS RUN",
-        "8  FREE VIBRATION",
-        "8.1  NATURAL MODES",
+        "1.1  CHECKS OF THIS RUN",
+        "2  FREE VIBRATION",
+        "2.1  NATURAL MODES",
     ]
     assert "Forces of the supports" not in text
 

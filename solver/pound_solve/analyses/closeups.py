@@ -175,6 +175,12 @@ class Closeups:
         )
         return joined_peaks([peaks.at(~inner), between])
 
+    def nearest(self, t: float) -> Motion | None:
+        """Return the kept instant nearest to a time; None if none is kept."""
+        kept = [*self._instants, *(peaks.motion for peaks in self._peaks)]
+        near = [_at(m, np.array([np.argmin(np.abs(m.t - t))])) for m in kept if len(m.t)]
+        return min(near, key=lambda motion: abs(float(motion.t[0]) - t), default=None)
+
     def blocks(self) -> Iterator[Motion]:
         """Yield the kept instants and peaks, in order of time."""
         kept = list(self._instants)

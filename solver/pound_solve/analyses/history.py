@@ -30,6 +30,7 @@ from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
 from pound_solve.structure.reduction import ReducedSystem
+from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
 
 RESIDUAL = "largest energy residual over the largest energy"  #: name of this check
@@ -111,6 +112,15 @@ class HistoryOutput(Protocol):
 
     def progress(self, t: float, end: float, doing: str) -> None:
         """Receive the time reached, the end time, and the reason for a pause in progress, if any."""
+
+
+class StoreyDrift(NamedTuple):
+    """Largest absolute drift ratio of a storey of a building, and its time [T]."""
+
+    building: str
+    storey: int
+    ratio: float
+    t: float
 
 
 @dataclass(frozen=True)
@@ -241,13 +251,25 @@ class HistoryResult:
         ]
 
     def storey_drift_ratios(self) -> list[tuple[str, float]]:
-        """Return the known `drift_ratios` of storeys.  Bearings are excluded: they are much lower than a
-        storey and may move by more than their height.
-        """
-        heights = list(drift_heights(self.system.structure.model))
-        storeys = [float(h) for b in self.items.buildings for h in np.diff(b.levels)]
-        least = BEARING * max((h for h in (*heights, *storeys) if h == h), default=0.0)
+        """Return the known `drift_ratios` of storeys, without those of bearings."""
+        heights, least = drift_heights(self.system.structure.model), self._lowest_storey
         return [drift for drift, h in zip(self.drift_ratios(), heights) if h >= least]
+
+    def storey_drifts(self) -> list[StoreyDrift]:
+        """Return the largest drift ratio of every storey of the buildings, without those of bearings."""
+        largest = self.recorder.envelopes.sums["drift"].largest()
+        return [
+            StoreyDrift(b.name, n, ratio, t)
+            for (b, n), (ratio, t) in zip(storeys(self.items.buildings), largest)
+            if b.levels[n] - b.levels[n - 1] >= self._lowest_storey
+        ]
+
+    @property
+    def _lowest_storey(self) -> float:
+        """Least height of a storey [L].  Bearings are much lower and may move by more than their height."""
+        heights = list(drift_heights(self.system.structure.model))
+        heights += [float(h) for b in self.items.buildings for h in np.diff(b.levels)]
+        return BEARING * max((h for h in heights if h == h), default=0.0)
 
     @property
     def items(self) -> RecordedItems:

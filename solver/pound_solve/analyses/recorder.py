@@ -388,14 +388,24 @@ class HistoryRecorder:
         """Yield the close-ups of collisions, in order of time, without energies and with forces of contacts
         only.
         """
+        return map(self._sampled, self.envelopes.closeups.blocks())
+
+    def closeup_at(self, t: float) -> SampleBlock | None:
+        """Return the instant of the close-ups that is nearest to a time; None without close-ups."""
+        nearest = self.envelopes.closeups.nearest(t)
+        return None if nearest is None else self._sampled(nearest)
+
+    def _sampled(self, motion: Motion) -> SampleBlock:
+        """Return the values at the instants of a motion, without energies and with forces of contacts
+        only.
+        """
         system = self.items.system
-        for motion in self.envelopes.closeups.blocks():
-            s = system.excitation.values(motion.t).T
-            d = system.law_rows @ motion.u + system.law_inputs @ s
-            force = np.zeros((len(d), len(motion.t)))
-            force[self.enveloped_laws] = motion.law_forces
-            values = self.envelopes.values(motion)
-            yield SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))
+        s = system.excitation.values(motion.t).T
+        d = system.law_rows @ motion.u + system.law_inputs @ s
+        force = np.zeros((len(d), len(motion.t)))
+        force[self.enveloped_laws] = motion.law_forces
+        values = self.envelopes.values(motion)
+        return SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))
 
     def extremes(self) -> tuple[Array, list[SampleBlock]]:
         """Return the bounds of the intervals reached completely or partly, shape (n + 1,), and the smallest

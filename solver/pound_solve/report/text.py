@@ -1,7 +1,7 @@
 """The plain-text report: a view of the tables in a results file.
 
-ASCII, at most 132 columns, every table under a fixed number; nothing but the last section depends on the
-machine, the day or the host, so two reports of one deck compare line by line.
+ASCII, at most 132 columns, sections and tables numbered as they are printed; nothing but the last section
+depends on the machine, the day or the host, so two reports of one deck compare line by line.
 """
 
 from __future__ import annotations
@@ -63,17 +63,21 @@ def render(results: Results, *, limit: int | None = None, only: Collection[str] 
     """
     lines = [*_banner(results), *_warning(results)]
     present = set(results.tables) if only is None else set(results.tables) & set(only)
-    for number, (heading, names) in enumerate(SECTIONS, 1):
-        blocks = [
-            [f"{number}.{place}  {TABLES[name].title.upper()}", "", *body, "", ""]
-            for place, name in enumerate(names, 1)
+    number = 0
+    for heading, names in SECTIONS:
+        printed = {
+            name: body
+            for name in names
             if name in present and (body := _block(results, TABLES[name], limit))
-        ]
-        if blocks:
-            lines += [f"{number}  {heading.upper()}", "=" * WIDTH, ""]
-            if "options" in names:
-                lines += [_INDENT + "An asterisk (*) marks a default value.", ""]
-            lines += [line for block in blocks for line in block]
+        }
+        if not printed:
+            continue
+        number += 1
+        lines += [f"{number}  {heading.upper()}", "=" * WIDTH, ""]
+        if "options" in names:
+            lines += [_INDENT + "An asterisk (*) marks a default value.", ""]
+        for place, (name, body) in enumerate(printed.items(), 1):
+            lines += [f"{number}.{place}  {TABLES[name].title.upper()}", "", *body, "", ""]
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
 
 

@@ -46,16 +46,15 @@ def page(results: Results, *, limit: int | None = None, only: Collection[str] | 
     """
     library = _library()
     present = set(results.tables) if only is None else set(results.tables) & set(only)
-    sections = []
-    for number, (heading, names) in enumerate(SECTIONS, 1):
-        body = "".join(
-            line
-            for place, name in enumerate(names, 1)
-            if name in present
-            for line in _table(results, TABLES[name], f"{number}.{place}", limit)
-        )
-        if body:
-            sections.append(_PageSection(f"s{number}", f"{number} {heading}", body))
+    sections = list[_PageSection]()
+    for heading, names in SECTIONS:
+        number, tables = len(sections) + 1, list[str]()
+        for name in names:
+            place = f"{number}.{len(tables) + 1}"
+            if name in present and (lines := "".join(_table(results, TABLES[name], place, limit))):
+                tables.append(lines)
+        if tables:
+            sections.append(_PageSection(f"s{number}", f"{number} {heading}", "".join(tables)))
     drawn = pictures(results) if only is None else []
     if drawn:  # after the summary
         figures = "".join(_figure(f"p{k}", picture) for k, picture in enumerate(drawn, 1))

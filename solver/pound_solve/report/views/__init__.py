@@ -30,7 +30,7 @@ SHAPED: Final[Mapping[str, View]] = MappingProxyType(
 ECHO: Final[Mapping[str, View]] = MappingProxyType(
     {
         **{name: partial(echo.ranges, name) for name in ("nodes", "elements")},
-        **{name: partial(echo.equal, name) for name in ("masses", "loads", "member_loads")},
+        **{name: partial(echo.equal, name) for name in ("masses", "springs", "loads", "member_loads")},
         "properties": echo.properties,
     }
 )

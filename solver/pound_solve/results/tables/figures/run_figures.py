@@ -18,6 +18,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """Times of this run, and versions."""
     from pound_solve.numerics.providers import provider  # which reading a report does not need
 
+    yield "date", time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
     yield "solve seconds", f"{run.solve_seconds:.4f}"
     yield "solve seconds, CPU", f"{run.cpu_seconds:.4f}"
     yield "total seconds", f"{time.perf_counter() - run.began:.4f}"

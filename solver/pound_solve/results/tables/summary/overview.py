@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pound_solve.check import Subject, looked
@@ -22,6 +23,7 @@ FEW = 2  #: most kinds of damping or of contacts listed one by one
 def rows(run: RunRecord) -> Iterator[Row]:
     """Rows on the model and its analyses, and on the largest values of the response."""
     model = run.model
+    yield "deck", Path(next(iter(model.files), "")).name
     size = f"{len(model.nodes)} nodes, {len(model.elements)} elements, {run.structure.n_free} unknowns"
     yield "structure", size
     yield "analyses", ", ".join(card.spec.name for card in model.analyses)
@@ -29,24 +31,11 @@ def rows(run: RunRecord) -> Iterator[Row]:
         yield "ground motion", ground_motion(run, motion)
     if run.warnings:
         yield "warnings about the input", f"{len(run.warnings)}, see there"
-    yield from periods(run)
     yield "damping", damping(run)
     if any(s.role.collides for s in run.structure.laws):
         yield "contact law", contact_law(run)
     if run.responded:
         yield from response(run)
-
-
-def periods(run: RunRecord) -> Iterator[Row]:
-    """The longest period of each building, where there was a modal analysis."""
-    modal = getattr(run, "modal", None)
-    if modal is None:
-        return
-    longest = {s.building: s.mode for s in reversed(modal.shares) if s.kinetic > 50.0}
-    period = {mode.number: mode.period for mode in modal.modes}
-    for building, mode in sorted(longest.items()):
-        if math.isfinite(period[mode]):
-            yield f"longest period of {building}", f"{period[mode]:.4g} {run.model.units.time}"
 
 
 def damping(run: RunRecord) -> str:
@@ -57,14 +46,15 @@ def damping(run: RunRecord) -> str:
 
 
 def contact_law(run: RunRecord) -> str:
-    """Text on the laws of the contacts with their stiffness and restitution."""
+    """Text on the laws of the contacts with their stiffness, restitution and gap."""
     kinds, units = dict[str, None](), run.model.units
     for s in run.structure.laws:
         if s.role.collides:
             k, e = s.facts["k"], s.facts["e_given"]
             stiff = math.isfinite(k) and k > 0.0  # a rigid contact has none that is finite
             stiffness = f", {k:.5g} {units.text(s.facts['k_unit'])}" if stiff else ""
-            kinds[f"{s.rule}{stiffness}" + ("" if math.isnan(e) else f", restitution {e:.3g}")] = None
+            restitution = "" if math.isnan(e) else f", restitution {e:.3g}"
+            kinds[f"{s.rule}{stiffness}{restitution}, gap {s.gap:.4g} {units.length}"] = None
     return _few(list(kinds), "kinds")
 
 
@@ -82,27 +72,34 @@ def ground_motion(run: RunRecord, motion: GroundMotion) -> str:
     misfit = ""
     if "misfit" in info:
         misfit = f"; its spectrum misses the given one by {100 * info['misfit']:.2g} % at most"
-    return f"{name}: peak {info['pga']:.4g} {units.text('L/T^2')}, {share:.3g} of gravity{misfit}"
+    peak = f"peak {info['pga']:.4g} {units.text('L/T^2')}, {share:.3g} of gravity"
+    return f"{name}: {peak}{_within(run, motion)}{misfit}"
+
+
+def _within(run: RunRecord, motion: GroundMotion) -> str:
+    """Words on the peak of a motion within the history, if that ends before the peak of the whole."""
+    end = max((card["T"] for card in run.model.analyses if card.spec.name == "HISTORY"), default=math.inf)
+    a = motion.acceleration
+    if not a.start < end < motion.info["t_pga"]:
+        return ""
+    peak, unit = abs(a.slice(a.start, end).peak()[1]), run.model.units
+    return f" (within the {end:.6g} {unit.time} of the history {peak:.4g} {unit.text('L/T^2')})"
 
 
 def response(run: RunRecord) -> Iterator[Row]:
     """The largest values of a history."""
-    from pound_solve.structure.storeys import storeys  # not needed to read a report
-
     history, units = run.history, run.model.units
     figures = history.returned.figures
     yield "method", str(figures.get("method", ""))
     yield "error of the method", error_of(history.returned)
     yield "end of the history", f"{history.recorder.reached:.6g} {units.time}"
-    if drifts := history.storey_drift_ratios():
+    if storeys := history.storey_drifts():
+        worst = max(storeys, key=lambda d: d.ratio)
+        where = f"{worst.building} storey {worst.storey}"
+        yield "largest storey drift ratio", f"{100.0 * worst.ratio:.3g} %, {where}"
+    elif drifts := history.storey_drift_ratios():
         name, ratio = max(drifts, key=lambda drift: drift[1])
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"
-    elif history.items.buildings:
-        seen = [ratio for ratio, _ in history.recorder.envelopes.sums["drift"].largest()]
-        at = max(range(len(seen)), key=seen.__getitem__, default=None)
-        if at is not None:
-            building, storey = list(storeys(history.items.buildings))[at]
-            yield "largest storey drift ratio", f"{100.0 * seen[at]:.3g} %, {building.name} storey {storey}"
     if history.items.contacts:
         yield "collisions", _collisions(run)
     ductile = [(r.ductility, r.spring) for r in history.springs if not math.isnan(r.ductility)]

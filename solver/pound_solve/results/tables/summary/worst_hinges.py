@@ -22,6 +22,8 @@ def rows(run: RunRecord) -> list[Row] | None:
     """Rows of the springs and members of the largest damage, or of the largest ductility where the deck
     gives no ultimate one; of a member, that of its worse end.
     """
+    from pound_solve.structure.locations import member_end  # not needed to read a report
+
     members: dict[tuple[int, str], list[SpringResponse]] = {}
     for r in run.history.springs:
         kind = "hinge" if _end(r) else r.spring.component
@@ -31,12 +33,16 @@ def rows(run: RunRecord) -> list[Row] | None:
         id(w): [r.ductility for r in ends if _end(r) != _end(w)] for w, ends in zip(worst, members.values())
     }
     yielded = sorted((r for r in worst if r.ductility > 1.0), key=_rank, reverse=True)
-    return [_row(r, max(other[id(r)], default=math.nan)) for r in yielded[:MOST]] or None
+    buildings = run.history.items.buildings
+    places = [member_end(run.model, buildings, r.spring.element, _end(r)) for r in yielded[:MOST]]
+    return [
+        _row(r, max(other[id(r)], default=math.nan), place) for r, place in zip(yielded, places)
+    ] or None
 
 
-def _row(r: SpringResponse, other: float) -> Row:
+def _row(r: SpringResponse, other: float, place: str) -> Row:
     s, index = r.spring, r.damage.total if r.damage else math.nan
-    values = s.element, s.component, s.rule, r.ductility, other, r.rotation, r.yields, r.loss
+    values = s.element, s.component, place, s.rule, r.ductility, other, r.rotation, r.yields, r.loss
     return *values, index, _state(r, index)
 
 
@@ -67,6 +73,7 @@ TABLE = Table(
     columns=(
         ELEMENT,
         Column("component", "comp.", doc="as in the spring envelopes"),
+        Column("location", "place", doc="building, column of a storey or beam of a floor, and its end"),
         Column("rule", doc="hysteresis rule"),
         Column("ductility", "ductility", "-", "short", doc="largest absolute deformation over yield"),
         Column(
