@@ -386,7 +386,8 @@ def test_histories_may_be_packed_or_left_out(tmp_path):
     deck = write(tmp_path, motion=QUAKE.format(a=3))
     found = {}
     for word in ("YES", "PACKED", "NO"):
-        own = tmp_path / f"{word}.inp"
+        own = tmp_path / word / "model.inp"
+        own.parent.mkdir()
         own.write_text(f"{deck.read_text()} HISTORIES={word}\n".replace("0.001\n HIST", "0.001 HIST"))
         found[word] = pound_solve.run(own)
     whole, packed, none = found.values()
