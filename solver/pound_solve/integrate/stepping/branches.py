@@ -16,7 +16,12 @@ from pound_solve.integrate.kernels.laws import (
 from pound_solve.integrate.kernels.recording import log_transition, store_motion, track_peaks
 from pound_solve.integrate.kernels.state import WHOLE, Scheme, Simulation
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
-from pound_solve.integrate.stepping.factor import invalidate_factor, is_valid_factor, update_factor
+from pound_solve.integrate.stepping.factor import (
+    invalidate_factor,
+    is_valid_factor,
+    tangent_change,
+    update_factor,
+)
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.loading.excitation import CLOCK_ROUNDING
 
@@ -39,7 +44,7 @@ def change_branch(
         run.lost_force = i
     if definition.curved[i]:
         linearise_law(laws, rules, i, d, v)
-    change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (tangent.stiffness[i] - k)
+    change = tangent_change(scheme, h, tangent.stiffness[i] - k, tangent.damping[i] - c)
     if not linear.explicit and change != 0.0:
         run.updates += 1
         if not is_valid_factor(run) or not update_factor(sim, i, change, WHOLE):

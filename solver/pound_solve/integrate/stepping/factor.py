@@ -18,6 +18,13 @@ def factorise_step(sim: Simulation, scheme: Scheme, h: float, factor: int) -> in
     return factorise_effective_mass(sim, on_mass, scheme.gamma * h, scheme.beta * h * h, factor)
 
 
+def tangent_change(scheme: Scheme, h: float, stiffness: float, damping: float) -> float:
+    """Return the factor of ``b b^T`` in the change of A as the tangent of a law changes by a `stiffness` and
+    a `damping`.
+    """
+    return scheme.gamma * h * damping + scheme.beta * h * h * stiffness
+
+
 def invalidate_factor(run: Run) -> None:
     """Mark the factor of the nominal step as invalid, so that A is factorised again before its next use."""
     run.updates = MAX_UPDATES + 1

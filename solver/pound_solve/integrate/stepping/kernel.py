@@ -47,6 +47,7 @@ from pound_solve.integrate.stepping.factor import (
     factorise_step,
     invalidate_factor,
     is_valid_factor,
+    tangent_change,
     update_factor,
 )
 from pound_solve.integrate.stepping.parts import step_in_parts
@@ -111,9 +112,7 @@ def drive_laws(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float) 
         if not changed and abs(tangent.offset[i] - f0) <= EVENT_TOLERANCE * abs(f0):
             continue
         outcome = SOLVE_AGAIN
-        change = scheme.gamma * h * (tangent.damping[i] - c) + scheme.beta * h * h * (
-            tangent.stiffness[i] - k
-        )
+        change = tangent_change(scheme, h, tangent.stiffness[i] - k, tangent.damping[i] - c)
         if change != 0.0 and not sim.linear.explicit:
             run.updates += 1
             if not update_factor(sim, i, change, WHOLE):

@@ -23,7 +23,12 @@ from pound_solve.integrate.kernels.laws import (
 )
 from pound_solve.integrate.kernels.products import copy, row_product
 from pound_solve.integrate.kernels.state import WHOLE, Scheme, Simulation
-from pound_solve.integrate.stepping.factor import factorise_step, invalidate_factor, update_factor
+from pound_solve.integrate.stepping.factor import (
+    factorise_step,
+    invalidate_factor,
+    tangent_change,
+    update_factor,
+)
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.ldl import solve as solve_factored
 
@@ -82,7 +87,7 @@ def correct_curved(
         size = max(abs(force), abs(k * laws.largest.deformation[i]), 1e-300)
         if abs(force - guess) > worst * size:
             worst, law = abs(force - guess) / size, i
-        change = beta_h2 * (k - tangent.stiffness[i]) + gamma_h * (damp - tangent.damping[i])
+        change = tangent_change(scheme, h, k - tangent.stiffness[i], damp - tangent.damping[i])
         tangent.stiffness[i], tangent.damping[i], tangent.offset[i] = k, damp, force - k * d - damp * v
         sim.run.updates += 1
         if sim.linear.explicit or update_factor(sim, i, change, factor):
