@@ -205,7 +205,7 @@ class KernelEngine(ABC):
         self.recorder.between(Course(Motion(times, u, v, a, law_forces), lengths, None))
 
     def _fetch_samples(self) -> None:
-        buffers, kept, back = self.buffers, self.state.n_samples, np.argsort(self.order)
+        buffers, kept, back = self.buffers, self.state.n_samples, self.inverse_order
         if not kept:
             return
         motions = buffers.displacement, buffers.velocity, buffers.acceleration

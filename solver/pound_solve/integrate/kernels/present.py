@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import log_transition
@@ -25,7 +23,7 @@ class KernelPresent:
     def __init__(self, engine: KernelEngine) -> None:
         self.engine, self.system, self.tracker = engine, engine.system, engine.tracker
         self.t = float(engine.state.time)
-        back, now = np.argsort(engine.order), engine.step.now
+        back, now = engine.inverse_order, engine.step.now
         self.u, self.v = now.displacement[back], now.velocity[back]
         self._branches = [s.branch(engine.law_state(i)) for i, s in enumerate(engine.law_springs)]
 

@@ -161,7 +161,7 @@ class Taylor(KernelEngine):
         is_smooth = np.array([s.law.rule.smooth_curve is not None for s in self.law_springs], bool)
         enveloped = self.inverse_order[np.flatnonzero(self.recorder.enveloped_unknowns)]
         modal = modal_tables.allocate(
-            system, laws.tangent.stiffness, monitored, self._intervals(), np.argsort(o), enveloped
+            system, laws.tangent.stiffness, monitored, self._intervals(), self.inverse_order, enveloped
         )
         kept = n_coefs if tolerance is None else single_pole.LAST_TERM + 1
         return state.Series(
