@@ -19,7 +19,7 @@ def factorise_step(sim: Simulation, scheme: Scheme, h: float, factor: int) -> in
 
 
 def tangent_change(scheme: Scheme, h: float, stiffness: float, damping: float) -> float:
-    """Return the factor of ``b b^T`` in the change of A as the tangent of a law changes by a `stiffness` and
+    """Return what multiplies ``b b^T`` in the change of A if a law's tangent changes by a `stiffness` and
     a `damping`.
     """
     return scheme.gamma * h * damping + scheme.beta * h * h * stiffness
