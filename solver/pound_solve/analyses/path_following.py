@@ -48,12 +48,21 @@ from pound_solve.structure.structure import Structure
 RATE_ROUNDING = 1e-12  #: fraction of its terms below which a rate is rounding error
 #: rounding error of rates as a fraction of the fastest rate, scaled by roots of stiffness
 SOLUTION_ROUNDING = 1e-14
-FORCE_JUMP = 1e-12  #: fraction of its terms above which a change of force is a jump
 EVENT_REACHED = 1e-13  #: fraction of its terms below which an event is reached
+#: fraction of its terms above which a force has jumped at an event, and is released; above `EVENT_REACHED`,
+#: to which the place of the event is known
+RELEASED_FORCE = 1e-12
 JUST_CLOSED = 1e-6  #: fraction of its final stiffness below which a curved contact has only just closed
 INCREMENTS = 20  #: smallest number of increments to the first mark with curved laws
 #: Newton iterations for one point; the error in a contact with force overlap^n shrinks by 1 - 1/n at each
 ITERATIONS = 80
+BALANCED = 1e-15  #: residual, as a fraction of the forces, below which Newton's iteration ends
+#: the same if the iteration no longer makes it smaller than `STALLED` of the last one
+NEARLY_BALANCED, STALLED = 1e-11, 0.25
+#: increment, as a fraction of the longest one, at which the path ends if Newton's method fails on it
+SHORTEST_INCREMENT = 1e-9
+BRACKETED = 1e-12  #: fraction of an increment to which an event on it is bracketed
+NEAREST_TO_END = 0.01  #: distance of a false position from the ends of its bracket, lest it creep along one
 MAX_CHANGES = 10_000
 MAX_RETURNS = 5  #: largest number of returns of all laws to the same branches at one point
 
@@ -235,7 +244,7 @@ class EquilibriumPath:
         released = force - law.force(self.states[i], d)[0]
         if law.rigid:  # it opens when its force is zero
             self.constraints = self._closed()
-        elif abs(released) > FORCE_JUMP * (
+        elif abs(released) > RELEASED_FORCE * (
             abs(force) + abs(law.p[K]) * float(self._deformation_terms(self.u)[i])
         ):
             self._released = self._released + released * self.rows[i]
@@ -409,7 +418,7 @@ class EquilibriumPath:
             raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
         while (end_point := self._equilibrium(span, du, factor_rate, marks)) is None:
             span = self._next_increment = 0.5 * span
-            if span < 1e-9 * self._longest_increment:
+            if span < SHORTEST_INCREMENT * self._longest_increment:
                 # load control has none; displacement control may have one
                 code = "A501" if self.control is None else "A507"
                 raise InstabilityError("no equilibrium was found further on: the strength is used up", code)
@@ -420,10 +429,10 @@ class EquilibriumPath:
             self._move(*end)
             return None
         low, high, tries = 0.0, span, 0
-        while high - low > 1e-12 * span:
+        while high - low > BRACKETED * span:
             # false position and bisection alternate: the first is fast, the second robust
             shares = [start[j] / (start[j] - values[j]) for j in crossed]
-            share = min(max(min(shares), 0.01), 0.99) if tries % 2 == 0 else 0.5
+            share = min(max(min(shares), NEAREST_TO_END), 1.0 - NEAREST_TO_END) if tries % 2 == 0 else 0.5
             tries += 1
             middle = low + share * (high - low)
             there = self._equilibrium(middle, du, factor_rate, marks)
@@ -474,7 +483,7 @@ class EquilibriumPath:
             if not np.isfinite(error):
                 return None
             try:
-                if error <= 1e-15 or 0.25 * last <= error <= 1e-11:
+                if error <= BALANCED or STALLED * last <= error <= NEARLY_BALANCED:
                     return (u, factor), self._values(u, factor, marks)
                 stiffness = self._stiffnesses(self.deformations(u, factor))
                 u_change, factor_change = self._linear(u, stiffness, -residual, 0.0)

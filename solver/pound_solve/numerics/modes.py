@@ -27,6 +27,22 @@ from pound_solve.numerics.types import Array, Flags
 MAX_REPEATS = 8  #: largest number of repetitions of the search for missed modes
 TINY_PIVOT = 1e-15  #: smallest pivot of a matrix with unit diagonal; it prevents zero pivots
 EXTRA_MODES = 4  #: modes beyond those requested, to find a gap after them
+WORTH_LANCZOS = 5  #: unknowns with mass per mode from which on the Lanczos method is used
+
+# of a stiffness with unit diagonal: smallest values that count, by how they are computed
+NEGATIVE = 1e-10  #: eigenvalue or pivot below minus this is negative, not zero with rounding errors
+SAFE_PIVOT = 1e-7  #: pivots above this show without pivoting that there is no mechanism
+PIVOT_ROUNDING = 1e-15  #: pivots with pivoting, times the size (10 at least), below which they are zero
+
+#: eigenvalue of a mass matrix with unit diagonal, times the size, below which a direction has no mass
+NO_MASS = 1e-13
+INVERSE_ITERATIONS = 20  #: to a motion with negative stiffness, from any vector
+LARGEST = 1e-9  #: components that differ from the largest by less are equally large
+SHIFT = 1e-8  #: stiffness at the masses that makes rigid-body modes slow modes
+RIGID_BODY = 1e-6  #: fraction of this shift below which a squared frequency is zero
+SAME_FREQUENCY = 1e-9  #: fraction of the squared highest frequency to which it is bracketed
+LOST_DIGITS = 1e-5  #: fraction of the largest value below which values are refined: five digits are lost
+ONLY_ROUNDING = 1e-14  #: fraction of the largest refined 1 / omega^2 below which others are rounding errors
 
 
 @dataclass(frozen=True)
@@ -101,7 +117,7 @@ class Held:
             if lacking:
                 self._values, self._vectors = np.linalg.eigh(k)
                 self.slack = self._vectors[:, :lacking]
-                self.negative = self._vectors[:, 0] if self._values[0] < -1e-10 else None
+                self.negative = self._vectors[:, 0] if self._values[0] < -NEGATIVE else None
             return
         n = k.shape[0]
         try:
@@ -110,14 +126,15 @@ class Held:
         except np.linalg.LinAlgError:
             tiny = TINY_PIVOT * matrices.selection(n, np.arange(n))
             pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY_PIVOT * max(n, 10)
-        weak = np.flatnonzero((pivots < least) & (pivots > -1e-10))
+        weak = np.flatnonzero((pivots < least) & (pivots > -NEGATIVE))
         if len(weak):  # K does not resist the motion due to the release of a restraint
             self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
             self.slack = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
         assert self._factor is not None
         if self._factor.negative:
             x = _generic(k.shape[0])
-            for _ in range(20):  # a pivot near zero, as in a structure that has just collapsed
+            # a pivot near zero, as in a structure that has just collapsed
+            for _ in range(INVERSE_ITERATIONS):
                 x = self._factor.solve(x / np.linalg.norm(x))
             self.negative = x
 
@@ -146,13 +163,13 @@ def deficiency(k: Array) -> int:
     Without pivoting, rounding errors may grow as n^3.
     """
     try:
-        if np.diag(np.linalg.cholesky(k)).min(initial=1.0) ** 2 > 1e-7:
+        if np.diag(np.linalg.cholesky(k)).min(initial=1.0) ** 2 > SAFE_PIVOT:
             return 0
     except np.linalg.LinAlgError:
         pass
     from scipy.linalg.lapack import dpstrf  # with pivoting; slow to import and rarely needed
 
-    return len(k) - int(dpstrf(k, tol=1e-15 * max(len(k), 10))[2])
+    return len(k) - int(dpstrf(k, tol=PIVOT_ROUNDING * max(len(k), 10))[2])
 
 
 def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
@@ -206,7 +223,7 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
     if (
         not isinstance(k, np.ndarray)
         and count is not None
-        and 5 * (count + EXTRA_MODES) < (~massless(m)).sum()
+        and WORTH_LANCZOS * (count + EXTRA_MODES) < (~massless(m)).sum()
     ):
         few = _slowest(k, m, count)
         if few is not None:
@@ -221,19 +238,19 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
         # the others are massless, too
         root = 1.0 / np.sqrt(np.diag(mm))
         share, basis = np.linalg.eigh(root[:, None] * mm * root)
-        if share[0] < 1e-13 * len(share):
+        if share[0] < NO_MASS * len(share):
             stationary = root[:, None] * basis
-            t = t @ stationary @ condense(stationary.T @ kk @ stationary, share < 1e-13 * len(share))
+            t = t @ stationary @ condense(stationary.T @ kk @ stationary, share < NO_MASS * len(share))
             kk, mm = t.T @ (k @ t), t.T @ (m @ t)
     values, shapes = _eigen(kk, mm)
     return Modes(np.sqrt(values), _signed(t @ shapes))
 
 
 def _signed(shapes: Array) -> Array:
-    """Return the shapes with reproducible signs: the first component that is the largest to 1e-9 is
+    """Return the shapes with reproducible signs: the first component that is the largest to `LARGEST` is
     positive.
     """
-    big = np.abs(shapes) > (1 - 1e-9) * np.abs(shapes).max(axis=0)
+    big = np.abs(shapes) > (1 - LARGEST) * np.abs(shapes).max(axis=0)
     return np.asarray(shapes * np.sign(shapes[np.argmax(big, axis=0), np.arange(shapes.shape[1])]))
 
 
@@ -251,7 +268,7 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
         if Factor(k).negative:
             raise np.linalg.LinAlgError("negative stiffness")
     except np.linalg.LinAlgError:  # rigid bodies become slow modes through a small stiffness at the masses
-        shift = 1e-8 / float(diagonal(m).max())
+        shift = SHIFT / float(diagonal(m).max())
     factor = Factor(k + shift * m)
     if factor.negative:
         raise np.linalg.LinAlgError("negative stiffness")
@@ -284,7 +301,7 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     else:
         return None
     values, shapes = np.maximum(values[:count], 0.0), shapes[:, :count]
-    values[values < 1e-6 * shift] = 0.0
+    values[values < RIGID_BODY * shift] = 0.0
     full = np.zeros((n, count))
     full[at] = size[:, None] * shapes
     return Modes(np.sqrt(values), _signed(full))
@@ -301,7 +318,7 @@ def fastest(k: Matrix, m: Matrix) -> float:
     high = 2.0 * low
     while low < high and not _above(k, m, high):
         low, high = high, 2.0 * high
-    while high - low > 1e-9 * high:
+    while high - low > SAME_FREQUENCY * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if _above(k, m, middle) else (middle, high)
     return float(np.sqrt(high))
@@ -339,7 +356,7 @@ def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
     scaled = size[:, None] * k * size
     rigid = np.arange(len(k)) < deficiency(scaled)  # computed as +-1e-16 of the largest value
     values = np.where(rigid, 0.0, np.maximum(values, 0.0))
-    low = values < 1e-5 * values[-1]
+    low = values < LOST_DIGITS * values[-1]
     if low.any() and not rigid.any():
         # values far below the largest have lost digits: one step of inverse iteration refines them
         push = m @ shapes[:, low]
@@ -350,6 +367,6 @@ def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
         lower = np.linalg.inv(np.linalg.cholesky(0.5 * (work + work.T)))
         squares, y = np.linalg.eigh(lower @ energy @ lower.T)  # of 1 / omega^2
         squares, y = squares[::-1], lower.T @ y[:, ::-1]
-        if squares[-1] > 1e-14 * squares[0]:  # otherwise some of them contain only rounding errors
+        if squares[-1] > ONLY_ROUNDING * squares[0]:
             values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
     return values, shapes
