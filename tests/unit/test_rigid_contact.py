@@ -13,9 +13,9 @@ from decks import scene_of, structure_of
 from pound_solve.catalog import catalog
 from pound_solve.integrate.closed_form.decomposition import make_propagator
 from pound_solve.integrate.propagators.state_space import held_space, state_space
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.rigid.instants import NO_REBOUND, REBOUND_ROUNDING
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError

@@ -16,8 +16,7 @@ from pound_solve.assess.stability.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject, beyond, looked
 from pound_solve.cli.main import main
-from pound_solve.integrate.events import within_step
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE, MOVING_ALIKE
 
 pytestmark = pytest.mark.full
 
@@ -223,7 +222,7 @@ def test_other_masses_show_a_touch_that_steps_take_for_rounding(monkeypatch):
         return RIGHT_RUN if "NEWMARK" in method else RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
 
     judge.judge(run, case, "TAYLOR")
-    assert asked == [judge.BLIND] and 5.0 * within_step.MOVING_ALIKE * EVENT_TOLERANCE < judge.BLIND < 1e-6
+    assert asked == [judge.BLIND] and 5.0 * MOVING_ALIKE * EVENT_TOLERANCE < judge.BLIND < 1e-6
 
 
 def test_masses_are_nudged_by_their_share():

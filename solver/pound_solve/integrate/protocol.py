@@ -9,6 +9,7 @@ from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 import numpy as np
 
 from pound_solve.check import Check, Subject, at_most, beyond, looked
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import K, State
 from pound_solve.numerics.matrices import used_rows
@@ -18,9 +19,6 @@ from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
-#: fraction of its largest value up to which an event function counts as not above zero
-EVENT_TOLERANCE = 1e-12
-SAME_INSTANT = 1e-13  #: fraction of the time within which two events are at one instant
 BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
 MAX_BETWEEN = 0.1  #: limit of that fraction; a sine with seven steps in its period reaches it
 MAX_ROUNDING = 1e-2  #: fraction of a spring's largest force that may be rounding

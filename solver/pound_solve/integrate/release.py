@@ -18,6 +18,7 @@ from typing import Protocol
 import numpy as np
 
 from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW, Stop
+from pound_solve.integrate.tolerances import LOST_FORCE
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch, EventFunction
 from pound_solve.numerics import polynomial
@@ -27,7 +28,6 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 AT_REST = 1e-9  #: fraction of the largest change of a deformation below which a law counts as at rest
-FORCE_JUMP = 1e-9  #: fraction of a force's terms above which a change of branch has made it jump
 PATH_COMPLETE = 1e-13  #: fraction of the largest deformation below which a motion counts as zero
 JOINT_ROUNDING = 1e-14  #: rounding of the sum of the forces at a joint, as a fraction of these
 
@@ -74,7 +74,7 @@ def force_jumps(before: Branch, after: Branch, d: float) -> bool:
     ends = [abs(e.constant / e.d_factor) for e in before.events if e.d_factor != 0.0]
     reach = max(abs(d), *ends, 0.0)
     terms = sum(abs(b.stiffness * reach) + abs(b.force0) for b in (before, after))
-    return abs(before.force(d, 0.0) - after.force(d, 0.0)) > FORCE_JUMP * terms
+    return abs(before.force(d, 0.0) - after.force(d, 0.0)) > LOST_FORCE * terms
 
 
 def fraction_to_event(event: EventFunction, d: float, move: float) -> float:

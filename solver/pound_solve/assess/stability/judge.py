@@ -40,8 +40,8 @@ from pound_solve.assess.stability.scenes import cases
 from pound_solve.assess.stability.scenes.case import STEP, STOREY, StabilityCase, every
 from pound_solve.catalog import catalog
 from pound_solve.check import Subject
-from pound_solve.integrate.events.within_step import MOVING_ALIKE, REVERSE_RATE
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.events.within_step import REVERSE_RATE
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE, MOVING_ALIKE
 from pound_solve.numerics.types import Array, Flags
 
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding

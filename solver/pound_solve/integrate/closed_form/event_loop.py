@@ -23,6 +23,7 @@ from pound_solve.integrate.protocol import (
     light,
 )
 from pound_solve.integrate.release import force_jumps, release
+from pound_solve.integrate.tolerances import NEAR_EVENT
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.integrate.uniqueness import Uniqueness
 from pound_solve.laws.automaton import Branch, State
@@ -162,7 +163,7 @@ class EventDrivenRun(ABC):
 
     def _branch_begun(self, law: int, d: float, v: float, turns: bool) -> int:
         """Return the branch at whose start the law is, while it reverses (`turns`) or rests; -1 if none."""
-        from pound_solve.integrate.kernels.ties import NEAR_EVENT, STATIONARY_RATE, event_near  # as above
+        from pound_solve.integrate.kernels.ties import STATIONARY_RATE, event_near  # as above
 
         state, largest = self.states[law], self.largest[:, law].tolist()
         entered = abs(d - state[1]) <= NEAR_EVENT * largest[0]

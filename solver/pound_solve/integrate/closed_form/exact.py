@@ -41,9 +41,7 @@ from pound_solve.integrate.events.functions import EventFunctions, GridEvent, mo
 from pound_solve.integrate.propagators.series import SeriesPropagator
 from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
-    EVENT_TOLERANCE,
     INTERRUPTED,
-    SAME_INSTANT,
     Outcome,
     Problem,
     Recorder,
@@ -57,6 +55,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.rigid.contacts import MasslessContact, linear_forces
 from pound_solve.integrate.rigid.instants import RigidInstants
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE, SAME_INSTANT
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision
 
@@ -64,6 +63,9 @@ MAX_PIECES = 2000  #: largest number of windows within one interval of the excit
 MAX_WINDOWS = 10000  #: largest number of windows shorter than an interval in the rest of a run: minutes
 #: number of such windows without an event between them, after which the total number is predicted
 WINDOWS_BEFORE_FORECAST = 16
+#: fractions of the time, which is rounded to 1e-16 of it: a shorter window does not advance the clock, and
+#: a nearer goal has been reached.  Both are shorter than an instant (`SAME_INSTANT`)
+NO_ADVANCE, AT_GOAL = 1e-15, 1e-14
 MAX_DEFERRED = 256  #: largest number of deferred work entries
 DEFECTIVE_MODES = "modes are nearly parallel: digits are lost"
 
@@ -139,7 +141,7 @@ class Exact(EventDrivenRun):
     def _advance(self, cursor: int) -> int:
         """Advance by a window up to the next goals, or to an event; return the new cursor."""
         goal = float(self.goals[cursor])
-        if goal - self.t <= 1e-14 * max(1.0, self.t):  # an event coincides with the goal
+        if goal - self.t <= AT_GOAL * max(1.0, self.t):  # an event coincides with the goal
             self.t = goal
             if self.is_output[cursor]:
                 self._sample_now()
@@ -266,7 +268,7 @@ class Exact(EventDrivenRun):
         slow = left < 0
         if self.unbroken >= WINDOWS_BEFORE_FORECAST:
             slow |= rest > (left + 1) * length or self.goals[-1] - self.t > MAX_WINDOWS * length
-        if slow or length < 1e-15 * max(1.0, self.t):
+        if slow or length < NO_ADVANCE * max(1.0, self.t):
             raise self.stop(
                 "A503",
                 f"the fastest mode, {self.subsystems.spectral_radius:.3g} rad per unit of time, is too "

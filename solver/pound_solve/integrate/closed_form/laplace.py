@@ -49,8 +49,8 @@ from pound_solve.integrate.rigid.contacts import linear_forces
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 
-TRANSFORM_TOLERANCE = 1e-10  #: like that of `integrate.protocol`; the transforms have ten digits
-SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: fraction of the time within which two events count as simultaneous
+TRANSFORM_TOLERANCE = 1e-10  #: in place of `EVENT_TOLERANCE`: the transforms have ten digits
+SAME_INSTANT_OF_TRANSFORMS = 1e-12  #: in place of `SAME_INSTANT`
 MAX_NUMBERS = 6e7  #: largest number of complex values in all stored dynamic stiffnesses: 1 GB
 
 

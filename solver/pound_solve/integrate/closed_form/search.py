@@ -20,7 +20,7 @@ from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, RowFunctions
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.types import Array, Flags
 

@@ -13,12 +13,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.cubic import cubic_peak
 from pound_solve.numerics.types import Array, Flags
 
 SHALLOW = 1e-9  #: fraction of its steepest slope below which a function that starts at zero may fall first
+MAX_HALVINGS = 60  #: of a cell, to a time after its start; a shorter time would be lost in rounding
+MAX_ROOT_TRIALS = 200  #: bisection alone needs 60; slow steps of Newton's method come on top
+ROOT_ROUNDING = 4e-16  #: fraction of the time to which a root is found: two units in the last place
+MAX_PEAK_TRIALS = 60  #: trials by regula falsi
+#: residual slope of a peak, as a fraction of the slopes at the ends of its bracket: it changes the peak by
+#: the square of this, 1e-16 of its height
+PEAK_SLOPE = 1e-8
+PEAK_BRACKETED = 1e-9  #: fraction of the time to which a peak is bracketed, where the slope does not vanish
+#: fraction of its rise above both ends of the cell by which an extreme may exceed that of the cubic: on a
+#: grid as fine as this, cubics are more accurate
+CUBIC_ERROR = 0.02
 #: value and slope of function n in some segment and cell at time t
 Evaluate = Callable[[int, int, int, float], tuple[float, float]]
 ValueAndSlope = Callable[[float], tuple[float, float]]  #: of one function in one cell
@@ -179,7 +190,7 @@ def _dip(function: ValueAndSlope, start: float, high: float) -> float:
     zero; `start` if it does not fall.
     """
     width = high - start
-    for _ in range(60):
+    for _ in range(MAX_HALVINGS):
         width *= 0.5
         if function(start + width)[0] < 0.0:
             return start + width
@@ -189,7 +200,7 @@ def _dip(function: ValueAndSlope, start: float, high: float) -> float:
 def _root(function: ValueAndSlope, low: float, high: float) -> float:
     """Return the root of a function that rises through zero in (low, high), by Newton with a bracket."""
     x, last = 0.5 * (low + high), np.inf
-    for _ in range(200):
+    for _ in range(MAX_ROOT_TRIALS):
         g, slope = function(x)
         if g == 0.0:
             return x
@@ -200,7 +211,7 @@ def _root(function: ValueAndSlope, low: float, high: float) -> float:
         new = x - g / slope if slope > 0.0 else 0.5 * (low + high)
         if not low < new < high or abs(new - x) > 0.5 * last:  # outside, or Newton stalls: halve
             new = 0.5 * (low + high)
-        if abs(new - x) <= 4e-16 * high or new in (low, high):
+        if abs(new - x) <= ROOT_ROUNDING * high or new in (low, high):
             return new
         last, x = abs(new - x), new
     return x
@@ -211,14 +222,12 @@ def stationary_point(
 ) -> float:
     """Return the zero of a slope that falls through zero in (low, high), by the Illinois form of regula
     falsi.
-
-    A residual slope of 1e-8 of those at the ends changes the peak by 1e-16 of its height: this is enough.
     """
     side, x, steep = 0, low, s_low - s_high
-    for _ in range(60):
+    for _ in range(MAX_PEAK_TRIALS):
         x = (s_low * high - s_high * low) / (s_low - s_high)
         s = slope(x)
-        if abs(s) < 1e-8 * steep or high - low < 1e-9 * high:
+        if abs(s) < PEAK_SLOPE * steep or high - low < PEAK_BRACKETED * high:
             break
         if s > 0:
             low, s_low = x, s
@@ -291,7 +300,7 @@ def _count_extreme(peak: Peak, t0: float, function: ValueAndSlope, low: Ends, hi
     f_low, f_high, s_low, s_high = (sign * float(x) for x in (low[1], high[1], low[2], high[2]))
     # only an extreme whose cubic comes near the peak is refined
     top = cubic_peak(f_low, f_high, s_low, s_high, high[0] - low[0])[1]
-    if top + 0.02 * (top - max(f_low, f_high)) <= best:
+    if top + CUBIC_ERROR * (top - max(f_low, f_high)) <= best:
         return
 
     def slope(x: float) -> float:

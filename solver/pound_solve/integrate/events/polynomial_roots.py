@@ -24,6 +24,11 @@ from pound_solve.numerics.types import Array
 
 MAX_HALVINGS = 44  #: halvings of a cell, at most
 COEFFICIENT_ROUNDING = 1e-15  #: fraction of the sum of the coefficients that is rounding
+MAX_ROOT_TRIALS = 200  #: bisection alone needs 60; slow steps of Newton's method come on top
+MAX_SUMMIT_TRIALS = 100  #: the same; bisection alone needs 30
+ROOT_ROUNDING = 2e-16  #: fraction of its place to which a root is found: the last digit
+#: fraction of its place to which a maximum is found: it needs half as many digits as its value
+SUMMIT_ROUNDING = 1e-10
 #: the work array has the polynomial in row 0 and a stack of cells in the other rows, the last of which is
 #: examined; the columns after a cell's coefficients are its start and its width
 POLYNOMIAL, CELLS = range(2)
@@ -125,7 +130,7 @@ def find_zero(p: Array, degree: int, low: float, high: float) -> float:
     method with a bracket.
     """
     at, last = 0.5 * (low + high), np.inf
-    for _ in range(200):
+    for _ in range(MAX_ROOT_TRIALS):
         g, rate = value(p, degree, at), slopes(p, degree, at)[0]
         if g == 0.0:
             return at
@@ -137,7 +142,7 @@ def find_zero(p: Array, degree: int, low: float, high: float) -> float:
         if not low < new < high or abs(new - at) > 0.5 * last:
             new = 0.5 * (low + high)
         last = abs(new - at)
-        if last <= 2e-16 * high or new in (low, high):
+        if last <= ROOT_ROUNDING * high or new in (low, high):
             return new
         at = new
     return at
@@ -146,7 +151,7 @@ def find_zero(p: Array, degree: int, low: float, high: float) -> float:
 def find_summit(p: Array, degree: int, low: float, high: float) -> float:
     """Return where the slope of the polynomial falls through zero between `low` and `high`."""
     at, last = 0.5 * (low + high), np.inf
-    for _ in range(100):
+    for _ in range(MAX_SUMMIT_TRIALS):
         rate, bend = slopes(p, degree, at)
         if rate > 0.0:
             low = at
@@ -156,7 +161,7 @@ def find_summit(p: Array, degree: int, low: float, high: float) -> float:
         if not low < new < high or abs(new - at) > 0.5 * last:
             new = 0.5 * (low + high)
         last = abs(new - at)
-        if last <= 1e-10 * high:  # a maximum needs half as many digits as its value
+        if last <= SUMMIT_ROUNDING * high:
             return new
         at = new
     return at

@@ -8,12 +8,9 @@ from pound_solve.integrate.events.protocol import CONTACT_SAMPLES, LocatedEvent,
 from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Step
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE, MOVING_ALIKE
 from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 
-#: `EVENT_TOLERANCE` times this is the fraction of their displacements within which bodies that move alike
-#: stay together in steps; each of their events is met to `EVENT_TOLERANCE`
-MOVING_ALIKE = 1e3
 SLOPE_ROUNDING = 1e-9  #: fraction of its terms below which a slope is rounding
 #: fraction of its largest rate that a law must reach in the other direction to count as reversed
 REVERSE_RATE = 1e-6

@@ -10,7 +10,8 @@ import numpy as np
 from pound_solve.integrate.kernels import law_state, state
 from pound_solve.integrate.kernels.sparse import Product, Rows
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import EVENT_TOLERANCE, MonitoredOutputs, Start
+from pound_solve.integrate.protocol import MonitoredOutputs, Start
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import TrackedExtremes
 from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES

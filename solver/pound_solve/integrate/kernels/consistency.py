@@ -26,13 +26,11 @@ from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import multiply, row_product
 from pound_solve.integrate.kernels.sparse import Rows
 from pound_solve.integrate.kernels.state import C_ROW, K_ROW, MASS, MASSLESS, LinearSystem, Simulation
+from pound_solve.integrate.tolerances import LOST_FORCE_OF_STEPS, NEARLY_MET
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
 
-#: fraction of its largest value within which an event is accepted if it cannot be met more accurately
-NEARLY_MET = 1e-6
-FORCE_JUMP = 10.0 * NEARLY_MET  #: fraction of a law's forces above which a jump at an event is a lost force
 DELAY = 1e-8  #: e as a fraction of the longest C / K among massless unknowns
 
 
@@ -56,7 +54,7 @@ def loses_force(
         return False
     largest, now, after = laws.largest.deformation[i], laws.tangent.stiffness[i], laws.tangent.offset[i]
     size = (abs(stiffness) + abs(now)) * largest + abs(offset) + abs(after)
-    lost = abs((stiffness - now) * d + offset - after) > FORCE_JUMP * size
+    lost = abs((stiffness - now) * d + offset - after) > LOST_FORCE_OF_STEPS * size
     return lost and touches_massless(linear, definition.rows, i)
 
 

@@ -12,7 +12,7 @@ from pound_solve.integrate.kernels.law_state import (
     LawTangent,
 )
 from pound_solve.integrate.kernels.products import row_product
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.laws.automaton import (
     CONTACT_CLOSES,
     CONTACT_OPENS,

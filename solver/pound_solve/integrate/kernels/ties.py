@@ -23,10 +23,9 @@ from pound_solve.integrate.kernels.state import (
     LinearSystem,
     Simulation,
 )
+from pound_solve.integrate.tolerances import NEAR_EVENT
 from pound_solve.laws.functions import RuleFunctions
 
-#: fraction of its largest terms within which an event function is at an event of the same instant
-NEAR_EVENT = 1e-9
 STATIONARY_RATE = 1e-4  #: fraction of its largest rate up to which a law counts as at rest
 
 

@@ -7,8 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from pound_solve.integrate.protocol import EVENT_TOLERANCE, Stop
+from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.rigid.contacts import ACCELERATION_ROUNDING, RigidContacts
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial

@@ -15,7 +15,7 @@ from pound_solve.integrate.kernels.state import (
     Simulation,
 )
 from pound_solve.integrate.kernels.ties import event_before_slack, note_rests, note_ties
-from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW, SAME_INSTANT
+from pound_solve.integrate.protocol import MAX_CHANGES, MAX_CHANGES_PER_LAW
 from pound_solve.integrate.series.expansion import begin_series, next_term
 from pound_solve.integrate.series.forces import refresh_branch_series, update_branch_forces
 from pound_solve.integrate.series.friction import touch_event
@@ -26,6 +26,7 @@ from pound_solve.integrate.series.smooth import linearise_smooth
 from pound_solve.integrate.series.springs import add_up, deformation_term
 from pound_solve.integrate.series.state import Extent, Series
 from pound_solve.integrate.series.tracking import event_of
+from pound_solve.integrate.tolerances import SAME_INSTANT
 from pound_solve.laws.functions import RuleFunctions
 
 AHEAD = 1e-3  #: fraction of a step in which laws are searched for events at the instant of another event

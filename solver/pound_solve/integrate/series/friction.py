@@ -15,11 +15,11 @@ from pound_solve.integrate.kernels.allocation import inverse_index
 from pound_solve.integrate.kernels.law_state import Laws, LawState
 from pound_solve.integrate.kernels.laws import curved_force, linear_force
 from pound_solve.integrate.kernels.products import add_row
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.force_events import LIFT
 from pound_solve.integrate.series.power_contacts import PRESSED
 from pound_solve.integrate.series.springs import deformation_term
 from pound_solve.integrate.series.state import Extent, Friction, Series
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.laws.automaton import CONTACT_CLOSES, CONTACT_OPENS, NORMAL_FORCE, NORMAL_FORCE_RATE
 from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS
 from pound_solve.laws.functions import RuleFunctions

@@ -55,6 +55,7 @@ from pound_solve.integrate.series.smooth import shorten_for_power_change
 from pound_solve.integrate.series.state import Extent, Series, StepControl
 from pound_solve.integrate.series.tracking import first_event, track_laws, track_outputs
 from pound_solve.integrate.series.works import add_works
+from pound_solve.integrate.tolerances import STEP_ROUNDING
 from pound_solve.laws.functions import RuleFunctions
 
 MIN_SHORTENING = 1.0 / 16.0  #: smallest factor of the length of a step that is tried again
@@ -119,7 +120,7 @@ def step_length(control: StepControl, t: float, goal: float) -> float:
     vanishes in the rounding of the time.
     """
     left = goal - t
-    h: float = left / np.ceil(max(left / control.next_length, 1.0) * (1.0 - 1e-9))
+    h: float = left / np.ceil(max(left / control.next_length, 1.0) * (1.0 - STEP_ROUNDING))
     if h == left:
         return h
     # the step equals the advance of the rounded clock, except at time 0, where the clock resolves any step

@@ -31,10 +31,10 @@ from pound_solve.integrate.kernels.law_state import Laws, LawTangent
 from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import add_row, row_product
 from pound_solve.integrate.kernels.state import LinearSystem, Step
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.smooth import Q, dashpot_remainder
 from pound_solve.integrate.series.springs import deformation_term, load_term
 from pound_solve.integrate.series.state import Massless, Series
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.numerics.ldl import factor
 from pound_solve.numerics.matrices import (
     Matrix,

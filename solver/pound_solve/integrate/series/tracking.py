@@ -9,7 +9,6 @@ from pound_solve.integrate.events.protocol import LocatedEvent, earlier, no_even
 from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.products import row_product
 from pound_solve.integrate.kernels.state import Simulation, Step
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.series.force_events import PARTS, PRESSES_AGAIN, RELEASES, TOUCHES
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
@@ -26,6 +25,7 @@ from pound_solve.integrate.series.power_dampers import turn_event
 from pound_solve.integrate.series.rigid import is_closed
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Extent, Series
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.laws.automaton import GAP
 
 

@@ -40,7 +40,6 @@ from pound_solve.integrate.kernels.state import (
     Step,
     piece_of,
 )
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import resume_after_jump
 from pound_solve.integrate.stepping.factor import (
@@ -52,6 +51,7 @@ from pound_solve.integrate.stepping.factor import (
 )
 from pound_solve.integrate.stepping.parts import step_in_parts
 from pound_solve.integrate.stepping.step import try_step
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.types import Array, Index
 

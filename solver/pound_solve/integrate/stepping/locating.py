@@ -8,7 +8,6 @@ import numpy as np
 
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
-from pound_solve.integrate.kernels.consistency import NEARLY_MET
 from pound_solve.integrate.kernels.state import (
     DONE,
     NOT_CONVERGED,
@@ -18,13 +17,12 @@ from pound_solve.integrate.kernels.state import (
     Scheme,
     Simulation,
 )
-from pound_solve.integrate.protocol import EVENT_TOLERANCE
 from pound_solve.integrate.stepping.factor import factorise_step
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
+from pound_solve.integrate.tolerances import EVENT_TOLERANCE, NEARLY_MET, SAME_INSTANT_OF_STEP
 from pound_solve.laws.functions import RuleFunctions
 from pound_solve.numerics.cubic import next_trial
 
-SAME_INSTANT_OF_STEP = 1e-9  #: fraction of a step within which two events are at one instant
 GO_ON, MET, NONE = range(3)
 MAX_TRIALS = 100  #: trials of one search
 MAX_INTERPOLATIONS = 12  #: trials by interpolation; bisection follows

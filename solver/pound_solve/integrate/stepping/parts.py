@@ -23,8 +23,9 @@ from pound_solve.integrate.kernels.state import (
 from pound_solve.integrate.stepping.acceptance import accept_trial
 from pound_solve.integrate.stepping.branches import change_branches
 from pound_solve.integrate.stepping.factor import factorise_step, invalidate_factor
-from pound_solve.integrate.stepping.locating import SAME_INSTANT_OF_STEP, locate_event
+from pound_solve.integrate.stepping.locating import locate_event
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
+from pound_solve.integrate.tolerances import SAME_INSTANT_OF_STEP
 from pound_solve.laws.functions import RuleFunctions
 
 MAX_HALVINGS = 25
@@ -32,7 +33,8 @@ MAX_PARTS, MAX_PARTS_PER_LAW = (
     100,
     8,
 )  #: parts of a step that may end at one instant: in all, and more per law
-#: shortest part, as a fraction of the step, used while laws alternate between branches
+#: shortest part, as a fraction of the step, used while laws alternate between branches; longer than an
+#: instant (`SAME_INSTANT_OF_STEP`), so that the time advances
 SHORTEST_PART = 3e-8
 
 

@@ -37,6 +37,7 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.release import release
 from pound_solve.integrate.stepping import kernel
 from pound_solve.integrate.stepping.factor import invalidate_factor
+from pound_solve.integrate.tolerances import STEP_ROUNDING
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
 
@@ -53,7 +54,6 @@ COMMON = (
 
 #: fewest steps in a period or a collision; the error of peaks is then a few per cent
 STEPS_OF_PERIOD = 10
-STEP_ROUNDING = 1e-9  #: fraction of a step by which lengths may differ by rounding
 MOTION_ROUNDING = 1e-9  #: fraction of the energy below which a motion is rounding
 
 
