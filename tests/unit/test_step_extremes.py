@@ -21,7 +21,7 @@ def steps(degree: int, rng: np.random.Generator) -> StepCourse:
     coefs[np.arange(degree + 1) > used[:, None, None] + np.zeros((1, SIZE + LAWS, 1), int)] = 0.0
     nothing = np.zeros((1, 0, 0))
     shown = EnvelopeBuffers(
-        is_needed=np.array([True]),
+        is_needed=True,
         unknowns=np.arange(SIZE),
         laws=np.arange(LAWS),
         kept=np.array([STEPS, 0]),

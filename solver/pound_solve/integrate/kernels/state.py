@@ -186,7 +186,7 @@ class Corotational(NamedTuple):
     product : ndarray, shape (most touched, 6)
         Scratch.
     largest : ndarray, shape (1,)
-        Largest force so far.
+        Largest force so far: a cell that kernels write.
     """
 
     parameters: Array

@@ -183,7 +183,7 @@ class IntervalCourse:
     def _motion(self, intervals: Index, places: Array, parts: Sequence[Array]) -> Motion:
         """Return the motion from the rows of all parts."""
         envelope, modal = self.envelope, self.modal
-        t = envelope.start[intervals, None] + places * modal.length[0]
+        t = envelope.start[intervals, None] + places * modal.length
         u, v, a = motions = np.zeros((3, self.size, t.size))
         forces = np.repeat(envelope.constant_forces[intervals].T, t.shape[1], axis=1)
         for b, (moved, (_, q, _, seen)) in enumerate(zip(parts, modal.counts.tolist())):
@@ -206,4 +206,4 @@ class IntervalCourse:
             at = (cell[:, None] + shares) / self.cells
             return self._motion(intervals, at, [self._at(b, intervals, at) for b in parts])
 
-        return Course(motion, np.full(count * self.cells, float(self.modal.length[0]) / self.cells), within)
+        return Course(motion, np.full(count * self.cells, self.modal.length / self.cells), within)

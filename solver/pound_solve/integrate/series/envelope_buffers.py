@@ -25,7 +25,7 @@ def allocate(unknowns: Index, laws: Index, modal: Modal, n_coefs: int) -> Envelo
     intervals = MAX_HELD // max(3 * modal.x.shape[1] * len(unknowns), 2 * b * size, 1)
     s, i = (int(np.clip(x, MIN_KEPT, MAX_KEPT)) for x in (steps, intervals))
     return EnvelopeBuffers(
-        is_needed=np.array([len(unknowns) + len(laws) > 0]),
+        is_needed=len(unknowns) + len(laws) > 0,
         unknowns=unknowns,
         laws=laws,
         kept=np.zeros(2, np.int64),
@@ -49,7 +49,7 @@ def keep_step(laws: Laws, series: Series, extent: Extent) -> None:
     """Store the series of a step.  Call this while the laws are still as at its start."""
     t, h, degree, end = extent
     envelope = series.envelope
-    if not envelope.is_needed[0]:
+    if not envelope.is_needed:
         return
     at, n = envelope.kept[STEPS], len(envelope.unknowns)
     for i in range(n):
@@ -79,7 +79,7 @@ def has_room(envelope: EnvelopeBuffers) -> bool:
 def keep_interval(tangent: LawTangent, series: Series, t: float) -> None:
     """Store the modes at the start of an interval, the time `t`."""
     envelope, modal = series.envelope, series.modal
-    if not envelope.is_needed[0]:
+    if not envelope.is_needed:
         return
     at = envelope.kept[INTERVALS]
     for b in range(len(modal.counts)):

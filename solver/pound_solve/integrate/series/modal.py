@@ -55,7 +55,7 @@ def refresh_modes(laws: Laws, series: Series) -> None:
     """Check whether the modes are valid on the present branches, and compute their static positions."""
     modal = series.modal
     modal.is_valid[0] = 0
-    if modal.length[0] == 0.0:
+    if modal.length == 0.0:
         return
     for i in range(len(laws.definition.rule)):
         if laws.tangent.stiffness[i] != modal.stiffness[i] or laws.tangent.damping[i] != 0.0:
@@ -224,7 +224,7 @@ def is_quiet(laws: Laws, series: Series, n_inputs: int, t: float) -> bool:
     """Return whether no law can leave its branch within the interval that starts at the time `t`."""
     modal = series.modal
     cells = len(modal.values) - 1
-    h = modal.length[0] / cells
+    h = modal.length / cells
     for cell in range(cells):
         for i in range(len(laws.definition.rule)):
             if may_change(laws.events, modal, cell, i):
@@ -247,7 +247,7 @@ def update_peaks_at_cell_ends(
     """
     cells = len(modal.values) - 1
     for end in range(cells + 1):
-        when = t + end * modal.length[0] / cells
+        when = t + end * modal.length / cells
         update_extreme(laws, step, -1, at, k * modal.values[end, i] + constant, when)
 
 
@@ -257,7 +257,7 @@ def update_peaks(sim: Simulation, series: Series, n_inputs: int, t: float) -> bo
     tangent = laws.tangent
     modal, n_laws, outputs = series.modal, len(laws.definition.rule), len(sim.linear.monitored_constants)
     cells, extremes = len(modal.values) - 1, step.extremes
-    h = modal.length[0] / cells
+    h = modal.length / cells
     for i in range(n_laws):
         k, offset = tangent.stiffness[i], tangent.offset[i]
         update_peaks_at_cell_ends(laws, step, modal, i, outputs + i, 1.0, 0.0, t)
@@ -324,7 +324,7 @@ def advance_in_modes(sim: Simulation, series: Series, piece: Piece, goal: float)
     modal, n_inputs = series.modal, series.inputs.shape[1]
     if run.branches_changed or not modal.is_valid[0]:
         return False
-    h = modal.length[0]
+    h = modal.length
     if abs(goal - run.time - h) > SAME_LENGTH * h:
         return False
     if not modal.is_present[0]:

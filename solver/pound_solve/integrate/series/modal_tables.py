@@ -187,7 +187,7 @@ def allocate(
     cells = max(MIN_CELLS, int(np.ceil(fastest * length / MAX_RADIANS)))
     places = 2 * cells + 1
     modal = Modal(
-        length=np.array([length if parts else 0.0]),
+        length=length if parts else 0.0,
         is_present=np.zeros(1, np.int64),
         is_valid=np.zeros(1, np.int64),
         stiffness=stiffness,

@@ -44,6 +44,7 @@ class AssembledSprings(NamedTuple):
     dashpots : ndarray, shape (n_laws,)
         Laws with a dashpot, the first `n_dashpots`.
     n_dashpots : ndarray, shape (1,)
+        A cell that kernels write.
     """
 
     row: Positions
@@ -94,7 +95,7 @@ class Massless(NamedTuple):
     inverse_pivots : ndarray, shape (2, n_massless)
         One over their pivots.
     failed_pivot : ndarray, shape (1,)
-        Pivot by which the last factorisation failed.
+        Pivot by which the last factorisation failed: a cell that kernels write.
     matrix : ndarray, shape (n_entries,)
         Scratch, as the others.
     row, right_side : ndarray, shape (n_massless,)
@@ -141,6 +142,7 @@ class Rigid(NamedTuple):
     closed : ndarray, shape (n_rigid,)
         The closed contacts, in the first `n_closed` places.
     n_closed : ndarray, shape (1,)
+        A cell, which is written as contacts close and part.
     is_closed : ndarray, shape (n_rigid,)
     inverse : ndarray, shape (n_rigid, n_rigid)
         Inverse of G over the closed contacts `closed`.
@@ -329,12 +331,12 @@ class Modal(NamedTuple):
 
     Attributes
     ----------
-    length : ndarray, shape (1,)
+    length : float
         Length of the interval; 0 where there are no tables.
     is_present : ndarray, shape (1,)
-        Whether the present motion is in `modes`.
+        Whether the present motion is in `modes`: a cell that kernels write.
     is_valid : ndarray, shape (1,)
-        Whether the laws are on branches as stiff as those of the tables.
+        Whether the laws are on branches as stiff as those of the tables: a cell that kernels write.
     stiffness : ndarray, shape (n_laws,)
         Stiffness of the laws in the tables.
     counts : ndarray, shape (n_parts, 4)
@@ -377,7 +379,7 @@ class Modal(NamedTuple):
         (n_cells + 1, n_all_followed), and their distance from chords.
     """
 
-    length: Array
+    length: float
     is_present: Index
     is_valid: Index
     stiffness: Array
@@ -414,7 +416,7 @@ class EnvelopeBuffers(NamedTuple):
 
     Attributes
     ----------
-    is_needed : ndarray, shape (1,)
+    is_needed : bool
         Whether the envelopes need any motion.
     unknowns, laws : ndarray
         Unknowns, by their indices in the order of elimination, and laws.
@@ -434,7 +436,7 @@ class EnvelopeBuffers(NamedTuple):
         Times.
     """
 
-    is_needed: Flags
+    is_needed: bool
     unknowns: Index
     laws: Index
     kept: Index
