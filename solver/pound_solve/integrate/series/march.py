@@ -127,6 +127,30 @@ def step_length(control: StepControl, t: float, goal: float) -> float:
     return t + h - t if goal + h > goal else 0.0
 
 
+def expand_step(sim: Simulation, series: Series, piece: Piece, h: float) -> tuple[int, float]:
+    """Expand the series of a step of length `h`; return its degree, and the fraction of the step in which
+    it holds.
+    """
+    if is_laguerre(series):
+        return expand_laguerre(sim, series, piece, h)
+    return expand_series(sim, series, piece, h)
+
+
+def smallest_part(series: Series) -> float:
+    """Return the smallest fraction of a step that is accepted; an implicit step is taken as a whole."""
+    return 1.0 if is_laguerre(series) else MIN_PART
+
+
+def choose_next_length(series: Series, extent: Extent, fit: float) -> None:
+    """Choose the length of the next step after one whose series holds up to the fraction `fit`."""
+    control = series.control
+    # terms that were not needed make room for a longer step
+    room = 1.0 if is_laguerre(series) else MAX_DEGREE / extent.degree
+    # a step that an event cuts is no reason to forget a longer length, a truncated one is
+    remembered = control.next_length if extent.end == 1.0 else 0.0
+    control.next_length = max(extent.h * min(fit * room, MAX_GROWTH), remembered)
+
+
 def shorten_step(control: StepControl, h: float, fit: float) -> None:
     """Choose a step shorter by at least a tenth after a rejected one.  With less, the equal parts of the
     remaining time would be as long as before.
@@ -159,14 +183,18 @@ def complete_step(
 def answer_event(
     sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, extent: Extent, event: LocatedEvent
 ) -> int:
-    """Carry out an event at the present time; `extent` is where its step was searched for events.
+    """Count and carry out an event at the present time; its step was searched for events up to `extent`.
 
     Returns
     -------
     int
         DONE, or what is wrong.
     """
-    laws, control, kind = sim.laws, series.control, event.event_index
+    laws, run, control, kind = sim.laws, sim.run, series.control, event.event_index
+    count_instant(run, extent.h)
+    if run.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule):
+        run.changed_law = event.law
+        return CHATTER
     if kind == LIFT:
         r = series.friction.index_of[event.law]
         series.friction.pressing[r] = not series.friction.pressing[r]
@@ -175,13 +203,13 @@ def answer_event(
         shorten_for_power_change(laws.now, series.smooth, control, event.law)
         return DONE
     if kind == CROSSES_LINEAR_RANGE:
-        sim.run.branches_changed = 1
+        run.branches_changed = 1
         return DONE
     if kind < 0:
         change_phase(laws, series.power_contacts, control, event.law, kind)
         return DONE
     if series.rigid.index_of[event.law] >= 0:
-        sim.run.changed_law = event.law
+        run.changed_law = event.law
         return RIGID_EVENT
     change_branches(sim, rules, series, extent, event)
     return settle_state(sim, rules, series, piece)
@@ -212,25 +240,16 @@ def step_to_goal(
             why = settle_state(sim, rules, series, piece)
             if why != DONE:
                 return why
-        if is_laguerre(series):
-            degree, fit = expand_laguerre(sim, series, piece, h)
-            least, room = 1.0, 1.0
-        else:
-            degree, fit = expand_series(sim, series, piece, h)
-            # terms that were not needed make room for a longer step
-            least, room = MIN_PART, MAX_DEGREE / degree
-        if not fit >= least:  # far too large terms are no information on the motion
+        degree, fit = expand_step(sim, series, piece, h)
+        if not fit >= smallest_part(series):  # far too large terms are no information on the motion
             shorten_step(control, h, fit)
             pause -= 1  # or a run that shortens its steps without end could not be interrupted
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
             return STEP_TOO_SHORT
-        whole = end == 1.0 and h == goal - t
-        # a step that an event cuts is no reason to forget a longer length, a truncated one is
-        remembered = control.next_length if end == 1.0 else 0.0
-        control.next_length = max(h * min(fit * room, MAX_GROWTH), remembered)
         searched = Extent(t, h, degree, end)
+        choose_next_length(series, searched, fit)
         update_displacement_scale(laws, series, searched)
         event = first_event(laws, series, searched)
         at = event.time
@@ -240,15 +259,12 @@ def step_to_goal(
             continue
         complete_step(sim, rules, series, piece, Extent(t, h, degree, at))
         if event.law < 0:
+            whole = end == 1.0 and h == goal - t
             if not whole:
                 control.shortest_length = min(control.shortest_length, at * h)
             run.time = goal if whole else t + at * h
             continue
         run.time = t + at * h
-        count_instant(run, h)
-        if run.changes_at_instant > MAX_CHANGES + MAX_CHANGES_PER_LAW * len(laws.definition.rule):
-            run.changed_law = event.law
-            return CHATTER
         why = answer_event(sim, rules, series, piece, searched, event)
         if why != DONE:
             return why
