@@ -8,6 +8,7 @@ import numpy as np
 
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, time_of_event, value_at_start
+from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.state import (
     DONE,
     NOT_CONVERGED,
@@ -16,6 +17,7 @@ from pound_solve.integrate.kernels.state import (
     Piece,
     Scheme,
     Simulation,
+    Step,
 )
 from pound_solve.integrate.stepping.factor import factorise_step
 from pound_solve.integrate.stepping.step import restore_start_tangents, try_step
@@ -50,6 +52,12 @@ def narrowed_bracket(b: Bracket, tau: float, g: float, passed: bool) -> Bracket:
     if passed:
         return Bracket(b.low, tau, b.high, b.g_low, g, b.g_high)
     return Bracket(tau, b.high, b.low, g, b.g_high, b.g_low)
+
+
+def bracket_for(b: Bracket, laws: Laws, step: Step, law: int, index: int) -> Bracket:
+    """Return the same bracket for another event: that with `index` of `law`."""
+    at_start = value_at_start(laws, step, law, index) if b.low == 0.0 else np.nan
+    return Bracket(b.low, b.high, b.third, at_start, np.nan, b.g_third)
 
 
 def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
@@ -98,6 +106,16 @@ def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) ->
                 events.pending[i], first = e, at
 
 
+def try_part(sim: Simulation, rules: RuleFunctions, scheme: Scheme, piece: Piece, length: float) -> int:
+    """Try the part of the step that ends after `length`; return DONE, SINGULAR or NOT_CONVERGED."""
+    bad = factorise_step(sim, scheme, length, PART)
+    if bad >= 0:
+        sim.run.failed_unknown = bad
+        return SINGULAR
+    end = sim.run.time - piece.begin + length
+    return DONE if try_step(sim, rules, scheme, piece.coefs, end, length, PART) else NOT_CONVERGED
+
+
 def locate_event(
     sim: Simulation,
     rules: RuleFunctions,
@@ -124,7 +142,7 @@ def locate_event(
         Law -1 if no event is met after all.  Its time is the length that was tried last, or 0 if the event
         is met at once.  Other events at this instant are marked, see `mark_others`.
     """
-    laws, step, begin = sim.laws, sim.step, sim.run.time - piece.begin
+    laws, step = sim.laws, sim.step
     law, index, tau = event.law, event.event_index, event.time
     g = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])[0]
     b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
@@ -139,13 +157,10 @@ def locate_event(
             tau = b.high
         elif trial > MAX_INTERPOLATIONS or bisects:
             tau = 0.5 * (b.low + b.high)
-        bad = factorise_step(sim, scheme, tau, PART)
-        if bad >= 0:
-            sim.run.failed_unknown = bad
-            return SINGULAR, event
-        if not try_step(sim, rules, scheme, piece.coefs, begin + tau, tau, PART):
-            if last:
-                return NOT_CONVERGED, event
+        why = try_part(sim, rules, scheme, piece, tau)
+        if why == SINGULAR or (why == NOT_CONVERGED and last):
+            return why, event
+        if why == NOT_CONVERGED:
             # a solution exists at `high`: the next trial is nearer to it
             restore_start_tangents(sim, rules)
             b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
@@ -155,8 +170,7 @@ def locate_event(
         passed = first.law >= 0
         if passed and (first.law != law or first.event_index != index):
             law, index = first.law, first.event_index
-            at_start = value_at_start(laws, step, law, index) if b.low == 0.0 else np.nan
-            b = Bracket(b.low, b.high, b.third, at_start, np.nan, b.g_third)
+            b = bracket_for(b, laws, step, law, index)
         g, size = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])
         ends = search_verdict(b, g, size, tau, first.time, passed, last, h)
         if ends != GO_ON:
