@@ -11,6 +11,8 @@ changes first, as it would with a small mass at the joint.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from pound_solve.integrate.kernels.consistency import loses_force, touches_massless
@@ -27,6 +29,35 @@ from pound_solve.integrate.tolerances import NEAR_EVENT
 from pound_solve.laws.functions import RuleFunctions
 
 STATIONARY_RATE = 1e-4  #: fraction of its largest rate up to which a law counts as at rest
+
+
+class AfterEvent(NamedTuple):
+    """What a law would be after an event: its branch, tangent, and whether it would lose a force that holds
+    an unknown without mass.
+    """
+
+    branch: int
+    stiffness: float
+    offset: float
+    loses_force: bool
+
+
+def probe_event(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, event: int) -> AfterEvent:
+    """Return what law `i` would be after an event at the present instant.  The law is changed for this and
+    then restored, so it must not be curved: the tangent of its branch replaces the present one.
+    """
+    tangent, d = laws.tangent, laws.now.deformation[i]
+    k, f0 = tangent.stiffness[i], tangent.offset[i]
+    save_state(laws, i)
+    leave_branch(laws, rules, i, event, d, laws.now.rate[i])
+    after = AfterEvent(
+        laws.state.branch[i],
+        tangent.stiffness[i],
+        tangent.offset[i],
+        loses_force(linear, laws, i, k, f0, d),
+    )
+    restore_state(laws, rules, i)
+    return after
 
 
 def event_near(a: float, b: float, c: float, d: float, largest: float) -> bool:
@@ -64,16 +95,11 @@ def becomes_slack(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int
     """Return whether a law that holds an unknown without mass has neither stiffness nor force after an
     event, and loses no force by it.
     """
-    definition, tangent = laws.definition, laws.tangent
-    d, v, k, f0 = laws.now.deformation[i], laws.now.rate[i], tangent.stiffness[i], tangent.offset[i]
+    definition = laws.definition
     if definition.contact[i] or definition.curved[i] or not touches_massless(linear, definition.rows, i):
         return False
-    save_state(laws, i)
-    leave_branch(laws, rules, i, event, d, v)
-    no_force = tangent.stiffness[i] == 0.0 and tangent.offset[i] == 0.0
-    slack = no_force and not loses_force(linear, laws, i, k, f0, d)
-    restore_state(laws, rules, i)
-    return slack
+    after = probe_event(linear, laws, rules, i, event)
+    return after.stiffness == 0.0 and after.offset == 0.0 and not after.loses_force
 
 
 def event_before_slack(sim: Simulation, rules: RuleFunctions, law: int, event: int) -> tuple[int, int]:
@@ -108,11 +134,7 @@ def branch_begun(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int,
         return -1
     for e in range(laws.events.n_events[i]):
         if event_near(coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2], d, largest):
-            save_state(laws, i)
-            leave_branch(laws, rules, i, e, d, v)
-            branch: int = state.branch[i]
-            restore_state(laws, rules, i)
-            return branch
+            return probe_event(linear, laws, rules, i, e).branch
     return state.branch[i] if entered else -1
 
 
@@ -157,16 +179,13 @@ def note_ties(sim: Simulation, rules: RuleFunctions, law: int, stiffness: float,
         e = arriving_event(linear, laws, i) if i != law else -1
         if e < 0:
             continue
-        d, v, k, f0 = laws.now.deformation[i], rate[i], tangent.stiffness[i], tangent.offset[i]
-        save_state(laws, i)
-        leave_branch(laws, rules, i, e, d, v)
-        if lost_force and loses_force(linear, laws, i, k, f0, d):
-            row[TIE_STIFFNESS, i], row[TIE_DAMPING, i], row[TIE_RATE, i] = -np.inf, laws.state.branch[i], v
+        k, after = tangent.stiffness[i], probe_event(linear, laws, rules, i, e)
+        if lost_force and after.loses_force:
+            row[TIE_STIFFNESS, i], row[TIE_DAMPING, i], row[TIE_RATE, i] = -np.inf, after.branch, rate[i]
             count += 1
-        elif not lost_force and tangent.stiffness[i] < k:
-            row[TIE_STIFFNESS, i], row[TIE_RATE, i] = tangent.stiffness[i], v
+        elif not lost_force and after.stiffness < k:
+            row[TIE_STIFFNESS, i], row[TIE_RATE, i] = after.stiffness, rate[i]
             count += 1
-        restore_state(laws, rules, i)
     if count > 0:
         row[TIE_RATE, law] = rate[law]
         buffers.tie_time[run.n_ties] = run.time
