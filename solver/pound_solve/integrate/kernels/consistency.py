@@ -59,7 +59,10 @@ def loses_force(
 
 
 def slowest_decay(sim: Simulation) -> float:
-    """Return the longest ratio of dashpot to stiffness of a massless unknown, from the diagonals [T]."""
+    """Return the longest ratio of dashpot to stiffness of a massless unknown, from the diagonals [T].
+
+    It fills the first two rows of `Step.scratch`.
+    """
     linear, laws, step = sim.linear, sim.laws, sim.step
     rows = laws.definition.rows
     stiffness, damping, slowest = step.scratch[0], step.scratch[1], 0.0
@@ -81,7 +84,8 @@ def slowest_decay(sim: Simulation) -> float:
 
 
 def factorise_massless(sim: Simulation, quantities: Array) -> float:
-    """Factorise ``K + C / e`` over the massless unknowns, with the members at the given quantities.
+    """Factorise ``K + C / e`` over the massless unknowns, with the members at the given quantities; fill
+    the first two rows of `Step.scratch` (see `slowest_decay`).
 
     Returns
     -------
@@ -184,9 +188,9 @@ def jump_massless_rates(sim: Simulation) -> None:
     """Set the velocities of massless unknowns for the present branches (see the module docstring)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
+    rate = factorise_massless(sim, sim.members.now.quantities)  # before the scratch rows are filled here
     now, change, force = step.now, step.scratch[0], step.scratch[1]
     size, damping_force = step.scratch[2], step.scratch[3]
-    rate = factorise_massless(sim, sim.members.now.quantities)
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
         force[i] = now.load[i] - force[i] - now.damping_force[i]

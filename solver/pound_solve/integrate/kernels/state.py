@@ -244,6 +244,7 @@ class Step(NamedTuple):
     marked : ndarray, shape (n,)
         Which unknowns are held by a law that has left its branch at the present instant.
     scratch : ndarray, shape (4, n)
+        Rows that a kernel names and fills as it needs; it loses them where it calls another such kernel.
     row : ndarray, shape (n,)
         Scratch of the factorisation; zero between uses.
     matrix : ndarray, shape (n_entries,)

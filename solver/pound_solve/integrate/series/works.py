@@ -67,7 +67,11 @@ def work_put_in(linear: LinearSystem, series: Series, extent: Extent, n_powers: 
 
 
 def add_works(sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece, extent: Extent) -> None:
-    """Add up the works over a step, all but those of the loads by Gauss's rule."""
+    """Add up the works over a step, all but those of the loads by Gauss's rule.
+
+    It leaves forces, tangents and `laws.trial` of the last Gauss point (see `add_law_losses`), so it comes
+    last of all that reads those at the start of the step.
+    """
     linear, laws, works = sim.linear, sim.laws, sim.works
     begin, degree, h, end = extent.begin - piece.begin, extent.degree, extent.h, extent.end
     moved, trial, damped = len(linear.support_damping) > 0, sim.step.trial, series.damped
