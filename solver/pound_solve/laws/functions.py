@@ -148,7 +148,11 @@ def missing(*_: Any) -> Any:
 
 
 def bound(template: Function, name: str, **values: Any) -> Function:
-    """Copy a function with other values for some globals, which compiled code treats as constants."""
+    """Copy a function with other values for some globals, which compiled code treats as constants.
+
+    A closure would be plainer, but `jit.compiled` finds the functions that a kernel calls among its
+    globals, and numba would make the functions of a closure a part of the key of its cache.
+    """
     copy = FunctionType(template.__code__, {**template.__globals__, **values}, template.__name__)
     copy.__qualname__ = f"{template.__name__}-{name}"  # name of the compiled code in the cache
     return copy
