@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pound_solve.integrate.energy import INPUT
 from pound_solve.integrate.protocol import (
     Course,
     LawValues,
@@ -44,7 +45,7 @@ class ExpandingRecorder:
         u, v, a = self._expanded(t, u, v, a, before=True)
         if not self.condensed.system.total:  # the total form counts the work on all DOFs
             works = works.copy()
-            works[0] += self.condensed.put_in(t, before=True) - self._input_at_start
+            works[INPUT] += self.condensed.put_in(t, before=True) - self._input_at_start
         self.recorder.sample(t, u, v, a, laws, works)
 
     @property

@@ -17,6 +17,9 @@ from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
 
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
+#: places in the works of a sample: the input, and the losses in dashpots of the structure (with those of
+#: springs and dampers) and of contacts
+INPUT, DAMPING, CONTACT = range(3)
 GROWTH = 10.0  #: kinetic energy over the total energy put in, above which the motion grows without bound
 
 
@@ -62,7 +65,7 @@ class EnergyAccumulator:
 
     def advance(self, works: Array) -> None:
         """Advance to later works, shape (n_times, 3); the first row equals the present ones."""
-        self.works.gross_input += float(np.abs(np.diff(works[:, 0])).sum())
+        self.works.gross_input += float(np.abs(np.diff(works[:, INPUT])).sum())
         self.works.input, self.works.damping, self.works.contact = works[-1].tolist()
 
     def runs_away(self, kinetic: float) -> bool:

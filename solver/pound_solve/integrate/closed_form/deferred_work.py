@@ -10,7 +10,7 @@ import numpy as np
 
 from pound_solve.integrate.closed_form.decomposition import JoinedPart
 from pound_solve.integrate.closed_form.dense_output import DenseOutput
-from pound_solve.integrate.energy import EnergyAccumulator
+from pound_solve.integrate.energy import CONTACT, DAMPING, INPUT, EnergyAccumulator
 from pound_solve.numerics.types import Array, Flags
 
 
@@ -71,11 +71,11 @@ class DeferredWork:
             works = part.work.over_intervals(
                 qs.T, gs, lengths, input_coefs, self.constant[part.unknowns], forces
             )
-            new[place + 1, 0] += works.input
-            new[place + 1, 1] += works.damping
+            new[place + 1, INPUT] += works.input
+            new[place + 1, DAMPING] += works.damping
             for law, loss in works.laws:
                 losses[law] = losses.get(law, 0.0) + float(loss.sum())
-                new[place + 1, 2 if self.contact[law] else 1] += loss
+                new[place + 1, CONTACT if self.contact[law] else DAMPING] += loss
         return np.cumsum(new, axis=0), losses
 
     def restart(self, works: Array) -> None:

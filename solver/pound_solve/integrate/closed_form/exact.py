@@ -37,6 +37,7 @@ from pound_solve.integrate.closed_form.search import CERTAIN, Search
 from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.closed_form.windows import Window, Windows
 from pound_solve.integrate.condensed import condensed
+from pound_solve.integrate.energy import CONTACT, DAMPING
 from pound_solve.integrate.events.functions import EventFunctions, GridEvent, monitored_functions
 from pound_solve.integrate.propagators.series import SeriesPropagator
 from pound_solve.integrate.propagators.state_space import Mechanism
@@ -341,7 +342,7 @@ class Exact(EventDrivenRun):
         entry = np.array([work.input, work.damping, 0.0])
         for law, loss in work.laws:
             self.energy.dashpot_losses[law] += loss
-            entry[2 if self.laws[law].role.collides else 1] += loss
+            entry[CONTACT if self.laws[law].role.collides else DAMPING] += loss
         self.work.add(entry)
 
     def outcome(self) -> Outcome:  # noqa: D102

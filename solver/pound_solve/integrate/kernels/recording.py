@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pound_solve.integrate.energy import CONTACT, DAMPING, INPUT
 from pound_solve.integrate.kernels.consistency import make_consistent, touches_massless
 from pound_solve.integrate.kernels.law_state import Laws
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
@@ -135,7 +136,7 @@ def store_sample(sim: Simulation, rules: RuleFunctions, t: float) -> None:
         buffers.stored[at, i] = stored
         buffers.lost[at, i] = lost if abs(lost) > 1e-14 * definition.parameters[i, 0] * size * size else 0.0
     kept = buffers.works[at]
-    kept[0], kept[1], kept[2] = works.input, works.damping, works.contact
+    kept[INPUT], kept[DAMPING], kept[CONTACT] = works.input, works.damping, works.contact
     sim.run.n_samples += 1
 
 

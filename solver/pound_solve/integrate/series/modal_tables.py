@@ -14,7 +14,7 @@ so that every quantity at a place of the interval is a product of a table with :
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,20 @@ MAX_RADIANS = 5.0  #: most radians of the fastest mode in a cell, as in a step b
 MIN_CELLS = 4  #: cells
 START = np.zeros(1)  #: of an interval
 PANEL, POINTS = 8.0, 16  #: radians that Gauss's rule with so many points integrates to rounding
+
+
+class WorkForms(NamedTuple):
+    """Works over an interval on x: the dashpots' loss is ``x^T D x``, the input ``sigma^T P x + w x``.
+
+    Attributes
+    ----------
+    damping, input, constant : ndarray
+        D, P and w.
+    """
+
+    damping: Array
+    input: Array
+    constant: Array
 
 
 class ModalPart:
@@ -98,8 +112,8 @@ class ModalPart:
         return np.concatenate([free.real, -free.imag, first.real, grown.real], axis=2)
 
     @cached_property
-    def works(self) -> tuple[Array, Array, Array]:
-        """Return D, P and w: the dashpots' loss is ``x^T D x``, the input ``sigma^T P x + w x``."""
+    def works(self) -> WorkForms:
+        """Works over the interval."""
         panels = int(np.ceil(np.abs(self.rate).max() * self.length / PANEL))
         points, weights = np.polynomial.legendre.leggauss(POINTS)
         places = ((np.arange(panels)[:, None] + 0.5 + 0.5 * points) / panels).ravel()
@@ -112,7 +126,7 @@ class ModalPart:
         power = shares[:, None, None] * self.table(self.inputs.T @ v, places)
         put = np.vstack([power.sum(axis=0), (places[:, None, None] * power).sum(axis=0)])
         start, end = self.table(self.constant[None] @ self.modes.u_q, np.array([0.0, 1.0]))[:, 0]
-        return lost, put, end - start
+        return WorkForms(lost, put, end - start)
 
 
 #: runs of one structure under several motions share them
@@ -252,8 +266,9 @@ def fill_tables(
     put(out.exponent_per_cell, np.array([rate.real, rate.imag]) * h / cells)
     put(out.amplitude, np.abs(part.rows))
     put(out.rows, part.table(part.rows, START)[0])
-    for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works):
-        put(array, values)
+    put(out.damping_work, part.works.damping)
+    put(out.input_work, part.works.input)
+    put(out.constant_work, part.works.constant)
     put(out.enveloped, seen)
     order = np.argsort(unknowns)
     places = order[np.searchsorted(unknowns, enveloped, sorter=order)]
