@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from pound_solve.integrate.protocol import LawValues, Start
-from pound_solve.laws.automaton import K, State
+from pound_solve.laws.automaton import LOSS_ROUNDING, K, State
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
@@ -104,7 +104,7 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
     lost = done - stored
     beside = [s.branch(x).damping - s.law.branch(x).damping for s, x in zip(system.structure.laws, states)]
     drag = np.array(beside)[:, None] * rate
-    return LawValues(force, stored, np.where(np.abs(lost) > 1e-14 * size, lost, 0.0), drag)
+    return LawValues(force, stored, np.where(np.abs(lost) > LOSS_ROUNDING * size, lost, 0.0), drag)
 
 
 def energies(

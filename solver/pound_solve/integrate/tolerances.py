@@ -34,3 +34,4 @@ LOST_FORCE_OF_STEPS = 10.0 * NEARLY_MET
 SAME_INSTANT = 1e-13  #: fraction of the time within which two events are at one instant
 SAME_INSTANT_OF_STEP = 1e-9  #: the same for steps, as a fraction of the step
 STEP_ROUNDING = 1e-9  #: fraction of a step by which lengths may differ by rounding
+COUNT_ROUNDING = 1e-12  #: fraction of a number of equal parts that is rounding, so that no more are counted

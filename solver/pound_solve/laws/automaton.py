@@ -25,6 +25,7 @@ GAP = 2  #: index of the gap among the parameters of a contact
 RESTITUTION = 1  #: index of the restitution among the parameters of a rigid contact
 PAST = 1e-12  #: the variable of a smooth rule counts as zero up to this fraction of its scale
 AT_END = 1e-9  #: fraction of the deformation by which a law must pass the end of a line to leave it
+LOSS_ROUNDING = 1e-14  #: fraction of the energy k d^2 up to which a loss is rounding, as in an elastic law
 NORMAL_FORCE, NORMAL_FORCE_RATE = 0, 1  #: internal variables of a law with normal-force coupling
 UNCOUPLED = 0  #: branch of such a law while its contact is open
 CONTACT_CLOSES, CONTACT_OPENS = 0, 2  #: events by which such a law follows its contact
@@ -314,7 +315,7 @@ class Law:
         """Return the energy [F L] lost so far by slip or release, excluding dashpots."""
         lost = self.work(state, d) - self.stored(state, d)
         # ignore a loss within the rounding error of d: an elastic law dissipates nothing
-        return lost if abs(lost) > 1e-14 * self.p[K] * max(abs(d), abs(state[1])) ** 2 else 0.0
+        return lost if abs(lost) > LOSS_ROUNDING * self.p[K] * max(abs(d), abs(state[1])) ** 2 else 0.0
 
 
 def consistent(law: Law, state: State, d: float, v: float) -> State:

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+MAX_HALVINGS = 60  #: of the length, to a place where the cubic is below zero
+MAX_TRIALS = 60  #: for a rise: bisection alone needs 50
+RISE_ROUNDING = 1e-15  #: fraction of the length to which a rise is found
+
 
 def next_trial(a: float, b: float, c: float, ga: float, gb: float, gc: float) -> float:
     """Return the next trial for a zero of g between `a` and `b`, where g has opposite signs, by inverse
@@ -48,7 +52,7 @@ def cubic_rise(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
     low, high = 0.0, h
     if g0 >= 0.0:  # it falls from zero first
         at = h
-        for _ in range(60):
+        for _ in range(MAX_HALVINGS):
             at *= 0.5
             if ((a * at + b) * at + s0) * at + g0 < 0.0:
                 low = at
@@ -56,7 +60,7 @@ def cubic_rise(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
     at = 0.5 * (low + high)
     if g0 < 0.0:
         at = h * g0 / (g0 - g1)
-    for _ in range(60):
+    for _ in range(MAX_TRIALS):
         g = ((a * at + b) * at + s0) * at + g0
         if g > 0.0:
             high = at
@@ -66,7 +70,7 @@ def cubic_rise(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
         new = at - g / s if s > 0.0 else -1.0
         if not low < new < high:
             new = 0.5 * (low + high)
-        if abs(new - at) <= 1e-15 * h:
+        if abs(new - at) <= RISE_ROUNDING * h:
             break
         at = new
     return at

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate.closed_form.subsystems import Subsystem, Subsystems
 from pound_solve.integrate.propagators.base import real_parts
+from pound_solve.integrate.tolerances import COUNT_ROUNDING
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
@@ -188,7 +189,7 @@ class DenseOutput:
         n_times) each.
         """
         last, longest = self.locate(end)[0], float(self.lengths.max())
-        count = int(np.ceil(longest / h * (1 - 1e-12)))
+        count = int(np.ceil(longest / h * (1 - COUNT_ROUNDING)))
         h = longest / count
         t = np.tile(h * np.arange(count), (last + 1, 1))
         chosen = np.arange(last + 1)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pound_solve.integrate.closed_form.dense_output import DenseOutput, direct_response
 from pound_solve.integrate.closed_form.subsystems import Subsystem
 from pound_solve.integrate.propagators.base import TAYLOR_TERMS, real_parts, real_rows
+from pound_solve.integrate.tolerances import COUNT_ROUNDING
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 
@@ -92,7 +93,7 @@ class GridSamples:
         """Return all intervals of a window, each as a segment sampled at steps of `h`."""
         interval = np.arange(dense.intervals)
         ends = [(x.states[:, :-1], x.states[:, 1:]) for x in dense.subsystems.present]
-        count = int(np.ceil(dense.lengths.max() / h * (1 - 1e-12)))
+        count = int(np.ceil(dense.lengths.max() / h * (1 - COUNT_ROUNDING)))
         offset = np.zeros(len(interval))
         return cls(dense, interval, offset, dense.lengths, ends, (h, count), second_rates)
 

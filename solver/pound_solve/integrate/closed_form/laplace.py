@@ -46,6 +46,7 @@ from pound_solve.integrate.protocol import (
     rounding_check,
 )
 from pound_solve.integrate.rigid.contacts import linear_forces
+from pound_solve.integrate.tolerances import COUNT_ROUNDING
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 
@@ -117,7 +118,7 @@ class Laplace(EventDrivenRun):
         """
         u, v = self.transform.response(self._stiffness(), self._constant(), self.t, self.u, self.v)
         self.transforms += 1
-        count = min(u.shape[1], int(np.ceil((end - self.t) / self.dt * (1 - 1e-12))) + 1)
+        count = min(u.shape[1], int(np.ceil((end - self.t) / self.dt * (1 - COUNT_ROUNDING))) + 1)
         t = self.dt * np.arange(count)
         u, v = u[:, :count], v[:, :count]
         inputs = [self.system.excitation.values(self.t + t, order).T for order in range(3)]
@@ -182,7 +183,7 @@ class Laplace(EventDrivenRun):
 
     def _show(self, motion: SampledMotion, tau: float) -> None:
         """Pass the motion up to the local time `tau` to the recorder."""
-        begin = np.asarray(motion.h * np.arange(int(np.ceil(tau / motion.h * (1 - 1e-12)))), float)
+        begin = np.asarray(motion.h * np.arange(int(np.ceil(tau / motion.h * (1 - COUNT_ROUNDING)))), float)
         if not len(begin):
             return
         lengths = np.diff(begin, append=tau)

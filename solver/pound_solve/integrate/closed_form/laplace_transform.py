@@ -32,7 +32,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pound_solve.integrate.intervals import SAME_LENGTH
 from pound_solve.integrate.propagators.state_space import StateSpace, state_space
+from pound_solve.loading.excitation import CLOCK_ROUNDING
 from pound_solve.numerics import phi
 from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem
@@ -107,7 +109,7 @@ class LaplaceTransform:
         excitation = self.system.excitation
         transform = np.zeros((len(s), excitation.coefs.shape[2]), complex)
         end = begin + self.points * self.dt
-        first = excitation.piece(begin + 1e-13 * max(1.0, begin))
+        first = excitation.piece(begin + CLOCK_ROUNDING * max(1.0, begin))
         stop = int(np.searchsorted(excitation.breaks[:-1], end))
         left = np.maximum(begin, excitation.breaks[first:stop])
         right = np.minimum(end, excitation.breaks[first + 1 : stop + 1])
@@ -116,7 +118,7 @@ class LaplaceTransform:
             coefs = np.concatenate([excitation.local(first, begin)[None], coefs[1:]])
         # consecutive pieces of equal length differ by a delay and by their coefficients
         width = right - left
-        close = 1e-11 * width[1:] + 4.0 * np.spacing(right[1:])
+        close = SAME_LENGTH * width[1:] + 4.0 * np.spacing(right[1:])
         edges = np.flatnonzero(np.abs(np.diff(width)) > close) + 1
         for run in np.split(np.arange(len(width)), edges):
             if not len(run) or width[run[0]] <= 0.0:
@@ -143,7 +145,7 @@ class LaplaceTransform:
     ) -> list[Array]:
         """Return the derivatives of the displacement at the start, up to order `MAX_DERIVATIVE`."""
         system, excitation = self.system, self.system.excitation
-        coefs = excitation.local(excitation.piece(t + 1e-13 * max(1.0, t)), t)
+        coefs = excitation.local(excitation.piece(t + CLOCK_ROUNDING * max(1.0, t)), t)
         z = x.space.z_u @ u + x.space.z_v @ v
         derivatives, force = [], np.zeros(system.size)
         for j in range(MAX_DERIVATIVE + 1):

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pound_solve.integrate.intervals import SAME_LENGTH
+from pound_solve.integrate.tolerances import COUNT_ROUNDING
 from pound_solve.numerics.types import Array
 
 MAX_POINTS = 4096  #: largest number of points of the fine grid in one window
@@ -66,14 +68,14 @@ class Windows:
         ends = goals[: self._intervals + 1]
         lengths = np.diff(np.append(t, ends))
         # intervals of equal length share their exponentials, regardless of rounding errors of the times
-        close = 1e-11 * lengths + 4.0 * np.spacing(ends)
+        close = SAME_LENGTH * lengths + 4.0 * np.spacing(ends)
         if abs(lengths[-1] - self._usual) > close[-1]:
             self._usual = float(f"{lengths[-1]:.12e}")
         lengths = np.where(np.abs(lengths - self._usual) <= close, self._usual, lengths)
         usual = lengths[min(1, len(lengths) - 1)]
         longest = float(max(lengths[0], usual))
         h = self._step(longest, spectral_radius)
-        per_interval = int(np.ceil(longest / h * (1 - 1e-12)))
+        per_interval = int(np.ceil(longest / h * (1 - COUNT_ROUNDING)))
         if per_interval > MAX_POINTS:
             length = float(min(lengths[0], MAX_POINTS * h))
             return Window(np.array([length]), np.array([t]), h, bool(length == lengths[0]))

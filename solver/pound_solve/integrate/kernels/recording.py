@@ -22,6 +22,7 @@ from pound_solve.integrate.kernels.state import (
     Simulation,
     Step,
 )
+from pound_solve.laws.automaton import LOSS_ROUNDING, K
 from pound_solve.laws.functions import RuleFunctions, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
 
@@ -133,8 +134,9 @@ def store_sample(sim: Simulation, rules: RuleFunctions, t: float) -> None:
         )
         lost = law_work(laws, rules, i, d) - stored
         size = max(abs(d), abs(state.entry_deformation[i]))
+        rounding = LOSS_ROUNDING * definition.parameters[i, K] * size * size
         buffers.stored[at, i] = stored
-        buffers.lost[at, i] = lost if abs(lost) > 1e-14 * definition.parameters[i, 0] * size * size else 0.0
+        buffers.lost[at, i] = lost if abs(lost) > rounding else 0.0
     kept = buffers.works[at]
     kept[INPUT], kept[DAMPING], kept[CONTACT] = works.input, works.damping, works.contact
     sim.run.n_samples += 1

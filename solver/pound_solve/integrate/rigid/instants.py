@@ -12,6 +12,7 @@ from pound_solve.integrate.rigid.contacts import ACCELERATION_ROUNDING, RigidCon
 from pound_solve.integrate.tolerances import EVENT_TOLERANCE
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch
+from pound_solve.loading.excitation import CLOCK_ROUNDING
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
@@ -128,7 +129,8 @@ class RigidInstants:
         """
         x, run, s, closed = self.contacts, self.run, self._inputs(), self._closed()
         d, rates = x.rows @ run.u + x.inputs @ s[0], x.rows @ run.v + x.inputs @ s[1]
-        near = 1e-12 * (run.largest[0, x.laws] + x.gap) + 1e-13 * max(1.0, run.t) * np.abs(rates)
+        near = EVENT_TOLERANCE * (run.largest[0, x.laws] + x.gap)
+        near += CLOCK_ROUNDING * max(1.0, run.t) * np.abs(rates)
         touching = closed | (d >= x.gap - near)
         fastest = run.largest[1, x.laws]
         impulse, lost, after = x.impact(rates, touching, self._slow(s))

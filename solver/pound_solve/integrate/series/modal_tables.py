@@ -30,6 +30,8 @@ from pound_solve.numerics.types import Array, Complex, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_CONDITION = 3e3  #: of its modes
+NOT_HELD = 1e-9  #: fraction of the fastest rate below which a mode is not held
+GROWS = 1e-12  #: fraction of the fastest rate above which a mode that grows does so beyond rounding
 MAX_CELLS = 100_000  #: most cells in an interval: faster modes get no table
 MAX_RADIANS = 5.0  #: most radians of the fastest mode in a cell, as in a step by series
 MIN_CELLS = 4  #: cells
@@ -89,7 +91,7 @@ class ModalPart:
         self.modes = ModalPropagator(state_space(mass, damping, stiffness), inputs)
         self.rate = self.modes.eigenvalues
         size = np.abs(self.rate)
-        loose = size.min() < 1e-9 * size.max() or self.rate.real.max() > 1e-12 * size.max()
+        loose = size.min() < NOT_HELD * size.max() or self.rate.real.max() > GROWS * size.max()
         if loose or self.modes.condition > MAX_CONDITION:
             raise np.linalg.LinAlgError
         unit, none = np.eye(inputs.shape[1]), np.zeros(len(mass))
