@@ -49,5 +49,5 @@ def as_with_numba(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def steps_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep AUTO from EXACT and TAYLOR."""
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "reason_not_linear", lambda system: "steps are asked for")
     monkeypatch.setattr(auto, "has_series", lambda system: False)

@@ -102,17 +102,17 @@ def test_cells_hold_the_polynomial(c: Array, end: float) -> None:
     polynomial_roots.write_in_bernstein_form(p, terms, end)
     polynomial_roots.halve_cell(p, terms, CELLS)
     sigma = np.linspace(0.0, 1.0, 40)
-    slack = 50 * noise(c)
+    tolerance = 50 * noise(c)
     for row, place in ((CELLS, 0.5 * end), (CELLS + 1, 0.0)):
         b, x, w = cell(p, terms, row)
         assert (x, w) == (place, 0.5 * end)
         values = on(c, x + w * sigma)
-        assert np.abs(bernstein(b, sigma) - values).max() <= slack
+        assert np.abs(bernstein(b, sigma) - values).max() <= tolerance
         assert (
-            values.max() <= polynomial_roots.highest_of(p, terms, row) + slack
-            and values.min() >= b.min() - slack
+            values.max() <= polynomial_roots.highest_of(p, terms, row) + tolerance
+            and values.min() >= b.min() - tolerance
         )
-        assert np.abs(b[[0, -1]] - on(c, np.array([x, x + w]))).max() <= slack
+        assert np.abs(b[[0, -1]] - on(c, np.array([x, x + w]))).max() <= tolerance
     assert polynomial_roots.size(p, POLYNOMIAL, terms) == pytest.approx(np.abs(c[1:]).sum(), rel=1e-14)
 
 
@@ -121,10 +121,10 @@ def test_values_and_slopes(c: Array, s: float) -> None:
     p, terms = rows(c)
     first = np.polynomial.polynomial.polyder(c) if terms else np.zeros(1)
     second = np.polynomial.polynomial.polyder(first) if terms > 1 else np.zeros(1)
-    slack = noise(c) * (1 + terms) ** 2
-    assert polynomial_roots.value(p, terms, s) == pytest.approx(float(on(c, s)), abs=slack)
+    tolerance = noise(c) * (1 + terms) ** 2
+    assert polynomial_roots.value(p, terms, s) == pytest.approx(float(on(c, s)), abs=tolerance)
     assert polynomial_roots.slopes(p, terms, s) == pytest.approx(
-        (float(on(first, s)), float(on(second, s))), abs=slack
+        (float(on(first, s)), float(on(second, s))), abs=tolerance
     )
 
 
@@ -179,7 +179,7 @@ def judge(c: Array, end: float, tol: float) -> None:
     """Nothing above `tol` comes before what is found, and there it rises through zero."""
     p, terms = rows(c)
     found = polynomial_roots.first_rise(p, terms, end, tol)
-    slack = noise(c)
+    tolerance = noise(c)
     dense = np.linspace(0.0, end, 4001)
     if found < 0.0:
         assert found == -1.0
@@ -189,14 +189,14 @@ def judge(c: Array, end: float, tol: float) -> None:
         last = dense[dense < found]
     values = on(c, last)
     if c[0] <= 0.0:  # else it comes from above, and must fall first
-        assert values.max(initial=-np.inf) <= tol + slack
+        assert values.max(initial=-np.inf) <= tol + tolerance
     if found > 0.0 and c[0] <= 0.0:
-        assert abs(on(c, found)) <= tol + slack
+        assert abs(on(c, found)) <= tol + tolerance
     if found >= 0.0:  # and it does rise beyond the tolerance, without another return
         beyond = dense[dense > found]
         after = on(c, np.append(beyond, np.linspace(found, min(end, found + 1e-3), 500)))
         fine = np.append(after, on(c, found + (end - found) * np.geomspace(1e-15, 1, 400)))
-        assert fine.max() > tol - slack
+        assert fine.max() > tol - tolerance
 
 
 @settings(max_examples=400)
@@ -306,17 +306,17 @@ def test_a_rise_at_the_start() -> None:
 def test_the_highest_value(c: Array, end: float) -> None:
     p, terms = rows(c)
     high, place = polynomial_roots.highest(p, terms, end, -np.inf)
-    slack = noise(c)
+    tolerance = noise(c)
     dense = np.linspace(0.0, end, 3001)
     slopes = np.roots(np.polynomial.polynomial.polyder(c)[::-1]) if terms < 9 else np.zeros(0)
     flat = slopes.real[(np.abs(slopes.imag) < 1e-7) & (slopes.real > 0) & (slopes.real < end)]
-    assert high >= on(c, np.append(dense, flat)).max() - slack
-    assert 0.0 <= place <= end and high == pytest.approx(float(on(c, place)), abs=slack)
+    assert high >= on(c, np.append(dense, flat)).max() - tolerance
+    assert 0.0 <= place <= end and high == pytest.approx(float(on(c, place)), abs=tolerance)
     # what is known already counts
-    assert polynomial_roots.highest(p, terms, end, high + slack) == (high + slack, -1.0)
-    if slack < 1e-3:
+    assert polynomial_roots.highest(p, terms, end, high + tolerance) == (high + tolerance, -1.0)
+    if tolerance < 1e-3:
         lower = polynomial_roots.highest(p, terms, end, high - 2e-3)
-        assert lower[0] == pytest.approx(high, abs=slack) and lower[1] >= 0.0
+        assert lower[0] == pytest.approx(high, abs=tolerance) and lower[1] >= 0.0
 
 
 def test_an_interval_of_no_length_is_its_start() -> None:

@@ -83,12 +83,12 @@ def test_what_resists_nothing_is_found_and_left_out():
     k = np.block([[one, np.zeros((n, n))], [np.zeros((n, n)), one]])
     root = 1.0 / np.sqrt(np.diag(k))
     k = root[:, None] * k * root
-    held, plain = modes.Held(sparse(k)), modes.Held(k)
-    assert held.negative is None and held.slack.shape == plain.slack.shape == (2 * n, 2)
-    assert np.abs(k @ held.slack).max() < 1e-14
+    held, plain = modes.SingularStiffness(sparse(k)), modes.SingularStiffness(k)
+    assert held.negative is None and held.null_space.shape == plain.null_space.shape == (2 * n, 2)
+    assert np.abs(k @ held.null_space).max() < 1e-14
     push = k @ np.random.default_rng(2).standard_normal(2 * n)
     assert held.solve(push) == pytest.approx(np.linalg.pinv(k) @ push, abs=1e-12)
-    assert modes.Held(sparse(k - 0.1 * np.eye(2 * n))).negative is not None
+    assert modes.SingularStiffness(sparse(k - 0.1 * np.eye(2 * n))).negative is not None
 
 
 def test_slow_modes_of_a_long_chain():

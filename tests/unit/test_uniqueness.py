@@ -74,7 +74,7 @@ def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -
 
 @pytest.mark.full
 def test_auto_tells_it_of_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(auto, "not_linear", lambda system: "barred")
+    monkeypatch.setattr(auto, "reason_not_linear", lambda system: "barred")
     monkeypatch.setattr(auto, "has_series", lambda system: False)
     r = run_text(storeys(), None, "AUTO")
     assert {x["item"]: x["value"] for x in r.tables["run"]}["method"].startswith("NEWMARK")

@@ -47,8 +47,8 @@ def among_equals(t: Array, lengths: Array) -> Flags:
     t, lengths : ndarray, shape (n,)
         Starts of the cells, ascending, and lengths over which the motion from there is smooth [T].
     """
-    slack, width = EQUAL * lengths[:-1], 2 * SAMPLES_BESIDE + 1
-    joined = (np.abs(np.diff(lengths)) <= slack) & (np.abs(np.diff(t) - lengths[:-1]) <= slack)
+    tolerance, width = EQUAL * lengths[:-1], 2 * SAMPLES_BESIDE + 1
+    joined = (np.abs(np.diff(lengths)) <= tolerance) & (np.abs(np.diff(t) - lengths[:-1]) <= tolerance)
     equals = np.zeros(len(t), bool)
     if len(t) > width:  # the sample at the end of the last cell counts too
         runs: Flags = np.all(np.lib.stride_tricks.sliding_window_view(joined, width), axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.numerics.matrices import Matrix, bordered, dense, scaled, used_rows
-from pound_solve.numerics.modes import Held, scaling
+from pound_solve.numerics.modes import SingularStiffness, scaling
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import label
 from pound_solve.structure.structure import Structure
@@ -49,22 +49,22 @@ def solve_under_load(structure: Structure, k: Matrix, load: Array, usual: Array)
     if not len(at):
         return u
     root = _scales(k[np.ix_(at, at)])
-    whole, scaled_load = Held(scaled(k[np.ix_(at, at)], root)), root * load[at]
+    whole, scaled_load = SingularStiffness(scaled(k[np.ix_(at, at)], root)), root * load[at]
     if whole.negative is not None:
         worst = at[_fastest(whole.negative)]
         raise InstabilityError(
             "the stiffness is negative: the structure has collapsed, "
             f"worst at {name_of(structure, int(worst))}"
         )
-    along = whole.slack.T @ scaled_load
+    along = whole.null_space.T @ scaled_load
     size = max(float(np.linalg.norm(scaled_load)), float(np.abs(root * usual[at]).max()))
     if np.any(np.abs(along) > 1e-10 * size):
-        worst = at[_fastest(whole.slack @ along)]
+        worst = at[_fastest(whole.null_space @ along)]
         raise InstabilityError(
             f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
             "(or parts of it are so much stiffer than others that it looks like one: END1, END2 "
             "or SLAVED make parts rigid)",
-            motion=_placed(root * (whole.slack @ along), at, len(load)),
+            motion=_placed(root * (whole.null_space @ along), at, len(load)),
         )
     # an unloaded mechanism (a free diaphragm) stays where it is
     u[at] = root * whole.solve(scaled_load)
@@ -103,12 +103,12 @@ def solve_under_control(
     if p_size == 0.0:
         raise InstabilityError("the pattern loads nothing that can move", "A505")
     # a mechanism that neither the load nor the control moves (a free diaphragm) stays where it is
-    m, slack = len(at), Held(whole).slack
-    idle = slack[
+    m, null_space = len(at), SingularStiffness(whole).null_space
+    idle = null_space[
         :,
-        (np.abs((slack * (whole @ slack)).sum(axis=0)) < 1e-13 * m)
-        & (np.abs(p @ slack) < 1e-10 * p_size)
-        & (np.abs(c @ slack) < 1e-10 * c_size),
+        (np.abs((null_space * (whole @ null_space)).sum(axis=0)) < 1e-13 * m)
+        & (np.abs(p @ null_space) < 1e-10 * p_size)
+        & (np.abs(c @ null_space) < 1e-10 * c_size),
     ]
     x = bordered(
         whole,

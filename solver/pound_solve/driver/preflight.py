@@ -16,7 +16,7 @@ from pound_solve.structure.checks.first_modes import contact_stiffnesses, freque
 from pound_solve.structure.checks.frames import framing_mistakes
 from pound_solve.structure.checks.hinges import facing
 from pound_solve.structure.checks.loads import misloaded, unloaded
-from pound_solve.structure.checks.masses import immovable, massless, roof_without_mass
+from pound_solve.structure.checks.masses import immovable, massless, massless_roof
 from pound_solve.structure.checks.materials import impossible_materials
 from pound_solve.structure.checks.mechanisms import (
     coarse_steps,
@@ -98,7 +98,7 @@ def rounded_up(x: float) -> float:
 FRAME_CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     massless,
     immovable,
-    roof_without_mass,
+    massless_roof,
     unloaded,
     misloaded,
     misshapen,

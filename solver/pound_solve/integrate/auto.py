@@ -40,8 +40,8 @@ from pound_solve.integrate.protocol import (
     Recorder,
     Stop,
     goals,
-    not_in_series,
-    not_linear,
+    reason_not_in_series,
+    reason_not_linear,
     refuse_rigid,
     rigid_contact,
 )
@@ -71,7 +71,7 @@ IMPLICIT = Decision("method", "LAGUERRE", WHY)
 
 def has_series(system: ReducedSystem) -> bool:
     """Return whether TAYLOR is applicable."""
-    return not not_in_series(system) and provider().fast
+    return not reason_not_in_series(system) and provider().fast
 
 
 def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
@@ -180,7 +180,7 @@ def with_rigid_contact(problem: Problem[EnvelopeRecorder], options: Mapping[str,
     """Choose and run the method for a structure with rigid contacts: only EXACT and TAYLOR accept them."""
     system = problem.system
     refuse_rigid(problem, "AUTO")
-    if not_linear(system):
+    if reason_not_linear(system):
         return by_series(problem)
     if not has_series(system):
         system.decisions.append(Decision("method", "EXACT", RIGID))
@@ -199,8 +199,8 @@ def by_choice(problem: Problem[EnvelopeRecorder], options: Mapping[str, Any]) ->
     system = problem.system
     if rigid_contact(system) is not None:
         return with_rigid_contact(problem, options)
-    curved = not_linear(system)
-    series, reason = cost_of_series(problem), not_in_series(system) or curved
+    curved = reason_not_linear(system)
+    series, reason = cost_of_series(problem), reason_not_in_series(system) or curved
     serves = provider().fast and not curved
     implicit = ToleranceRefinement(problem, options, series) if serves else None
     at_once = SERIES_FIRST if implicit is None else max(SERIES_ALWAYS, implicit.cost_ahead())

@@ -52,20 +52,20 @@ def fastest_rate(system: ReducedSystem) -> float:
     r"""Return a bound of the fastest rate that steps of TAYLOR resolve [1/T]: that of the fastest mode with
     all springs elastic and all contacts open (they are closed only briefly), or of the fastest decay.
 
-    The row sums of ``M^-1/2 A M^-1/2`` bound its eigenvalues (Gershgorin).  Unknowns without mass but with
+    The row sums of ``M^-1/2 A M^-1/2`` bound its eigenvalues (Gershgorin).  Massless unknowns with
     dashpots decay at :math:`\lambda \le` the largest eigenvalue of :math:`K x = \lambda C x`.
     """
     laws = system.structure.laws
     elastic = np.array([0.0 if s.role.collides else s.steepest for s in laws], float)
     stiffness = system.stiffness + weighted(system.law_rows, elastic)
     damping = system.damping + weighted(system.law_rows, [s.beta * k for s, k in zip(laws, elastic)])
-    light = massless(system.mass)
-    heavy = np.flatnonzero(~light)
+    is_massless = massless(system.mass)
+    heavy = np.flatnonzero(~is_massless)
     root = 1.0 / np.sqrt(diagonal(system.mass)[heavy])
     omega2, decay = (
         float((root * (abs(a[np.ix_(heavy, heavy)]) @ root)).max(initial=0.0)) for a in (stiffness, damping)
     )
-    damped = np.flatnonzero(light & (diagonal(damping) > 0.0))
+    damped = np.flatnonzero(is_massless & (diagonal(damping) > 0.0))
     if len(damped):
         grid = np.ix_(damped, damped)
         decay = max(decay, fastest_decay(stiffness[grid], damping[grid]))

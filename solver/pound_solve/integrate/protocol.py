@@ -281,7 +281,7 @@ class Stop(Exception):
         self.code, self.t, self.outcome = code, t, outcome
 
 
-def not_linear(system: ReducedSystem) -> str:
+def reason_not_linear(system: ReducedSystem) -> str:
     """Return why a reduced system is not linear between events, as some methods require; empty if it is."""
     if system.structure.corotational:
         return f"members change their stiffness as they move (GEOMETRY {system.structure.model.geometry})"
@@ -294,22 +294,22 @@ def rigid_contact(system: ReducedSystem) -> LawSpring | None:
     return next((s for s in system.structure.laws if s.law.rigid), None)
 
 
-def not_in_series(system: ReducedSystem) -> str:
+def reason_not_in_series(system: ReducedSystem) -> str:
     """Return why the motion of a reduced system has no known power series; empty if it has one."""
     rigid = rigid_contact(system) is not None
     if system.structure.corotational and (rigid or not has_strings(system)):
-        return not_linear(system)
-    if element := light_string(system):
+        return reason_not_linear(system)
+    if element := string_on_massless(system):
         return f"the P-Delta force of element {element} acts on a node without mass"
-    laws, without_mass = system.structure.laws, light(system)
+    laws = system.structure.laws
     pressing = {s.element for s in laws if s.law.rigid}
-    for s, massless_end in zip(laws, without_mass):
+    for s, is_on_massless in zip(laws, laws_on_massless(system)):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
             smooth, rubs = s.law.rule.smooth_curve is not None, s.role is Role.FRICTION
             if s.law.rule.power_law is None and not smooth and not rubs:
                 return law
-            if massless_end and not smooth and s.role is not Role.DAMPER:
+            if is_on_massless and not smooth and s.role is not Role.DAMPER:
                 return f"{law} and meets a node without mass"
             if rubs and s.element in pressing:
                 return f"{law} and rubs where a rigid contact presses"
@@ -321,15 +321,15 @@ def has_strings(system: ReducedSystem) -> bool:
     return bool((system.corotational.p[:, KIND] == STRING).all())
 
 
-def light_string(system: ReducedSystem) -> int:
-    """Return the first member whose string moves an unknown without mass transversely; 0 for none."""
+def string_on_massless(system: ReducedSystem) -> int:
+    """Return the first member whose string moves a massless unknown transversely; 0 for none."""
     members = system.corotational
     across = used_rows(members.rows[ACROSS::QUANTITIES][:, np.flatnonzero(massless(system.mass))])
-    return next((c.element for c, is_light in zip(members.members, across) if is_light), 0)
+    return next((c.element for c, moves_massless in zip(members.members, across) if moves_massless), 0)
 
 
-def light(system: ReducedSystem) -> Flags:
-    """Return which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,).  The force
+def laws_on_massless(system: ReducedSystem) -> Flags:
+    """Return which laws hold a massless unknown, whose velocity may jump, shape (n_laws,).  The force
     of their dashpots is known only after the velocities are made consistent.
     """
     return used_rows(system.law_rows[:, np.flatnonzero(massless(system.mass))])
@@ -337,7 +337,7 @@ def light(system: ReducedSystem) -> Flags:
 
 def without_steps(system: ReducedSystem) -> list[str]:
     """Return the methods without a time step that accept a reduced system."""
-    reasons = {"EXACT": not_linear(system), "TAYLOR": not_in_series(system)}
+    reasons = {"EXACT": reason_not_linear(system), "TAYLOR": reason_not_in_series(system)}
     return [method for method, why in reasons.items() if not why]
 
 
@@ -387,7 +387,9 @@ def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
     contact = f"{rigid.rule} of element {rigid.element}"
     if not (methods := without_steps(system)):
         other = "another GEOMETRY" if system.structure.corotational else "laws that are linear in pieces"
-        reason = f"no method takes a rigid contact, which {contact} is, where {not_in_series(system)}"
+        reason = (
+            f"no method takes a rigid contact, which {contact} is, where {reason_not_in_series(system)}"
+        )
         remedy = f"give the contact a LAW with a stiffness, or choose {other}"
     elif method in ("AUTO", "EXACT", "TAYLOR"):
         return

@@ -1,6 +1,6 @@
-r"""Joints without mass at the instant at which a law loses its force.
+r"""Massless joints at the instant at which a law loses its force.
 
-A law that fails may lose its force suddenly.  Joints without mass and without dashpots (unknowns Z) then
+A law that fails may lose its force suddenly.  Massless joints without dashpots (unknowns Z) then
 move instantly, and other laws there may yield, unload or fail on the way.  The path is found by gradually
 reducing the lost force F of the law, which acts along :math:`b`, while everything else is at rest,
 
@@ -33,7 +33,7 @@ JOINT_ROUNDING = 1e-14  #: rounding of the sum of the forces at a joint, as a fr
 
 
 class JumpingRun(Protocol):
-    """Interface of a run for the release of its joints without mass.
+    """Interface of a run for the release of its massless joints.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ def sizes(system: ReducedSystem, u: Array, force: Array) -> Array:
 
 
 def release(run: JumpingRun, law: int) -> None:
-    """Move joints without mass to their equilibrium without the force that `law` has lost.
+    """Move massless joints to their equilibrium without the force that `law` has lost.
 
     Raises
     ------

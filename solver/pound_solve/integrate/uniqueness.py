@@ -1,6 +1,6 @@
 r"""Uniqueness of the motion when several laws yield or fail at one instant.
 
-The tangent stiffness of the unknowns without mass, which have no inertia, distributes the deformation among
+The tangent stiffness of the massless unknowns, which have no inertia, distributes the deformation among
 laws in series.  The rates are unique if that stiffness is positive definite with the tangents of *all*
 laws that reach the ends of their branches together (Hill's comparison solid).  If it leaves a motion free
 in which some of these laws continue and others reverse, any of them may continue alone, and rounding
@@ -81,8 +81,8 @@ class Uniqueness:
         self.system, self.first, self.elements = system, math.nan, list[int]()
         self._losses: list[tuple[float, int, dict[int, int]]] = []  # instants, laws, the branches of others
         self._straight = not system.structure.corotational
-        self._light = massless(system.mass)
-        self._undamped = self._light & ~used_rows(system.damping)
+        self._is_massless = massless(system.mass)
+        self._undamped = self._is_massless & ~used_rows(system.damping)
         self._k0 = np.array([s.k0 for s in system.structure.laws], float)
         self._known: set[bytes] = set()
 
@@ -115,7 +115,7 @@ class Uniqueness:
         self._known.add(key)
         damped = used_columns(self.system.law_rows[damping != 0.0])
         elements = self._open(self._undamped & ~damped, stiffness, rising, NO_STIFFNESS) or self._open(
-            self._light, stiffness, rising, -NO_STIFFNESS
+            self._is_massless, stiffness, rising, -NO_STIFFNESS
         )
         if elements:
             self.first, self.elements = t, elements

@@ -79,8 +79,8 @@ def softest(a: Matrix) -> tuple[float, Array]:
     if isinstance(a, np.ndarray):
         values, vectors = np.linalg.eigh(a)
         return float(values[0]), vectors[:, 0]
-    slack = Held(a).slack
-    return (0.0, slack[:, 0]) if slack.shape[1] else (1.0, np.zeros(a.shape[0]))
+    null_space = SingularStiffness(a).null_space
+    return (0.0, null_space[:, 0]) if null_space.shape[1] else (1.0, np.zeros(a.shape[0]))
 
 
 def _generic(n: int) -> Array:
@@ -88,7 +88,7 @@ def _generic(n: int) -> Array:
     return np.random.default_rng(0).standard_normal(n)
 
 
-class Held:
+class SingularStiffness:
     """A symmetric stiffness, scaled to unit diagonal, that may be singular or indefinite.
 
     A sparse K that is a mechanism is restrained where its pivots vanish, which makes it regular.  The
@@ -97,7 +97,7 @@ class Held:
 
     Attributes
     ----------
-    slack : ndarray, shape (n, n_slack)
+    null_space : ndarray, shape (n, n_null)
         Motions that K does not resist, orthonormal.
     negative : ndarray, shape (n,), or None
         A motion with negative stiffness, if there is one.
@@ -110,13 +110,13 @@ class Held:
 
     def __init__(self, k: Matrix) -> None:
         self.k, self.negative = k, None
-        self.slack = np.zeros((k.shape[0], 0))
+        self.null_space = np.zeros((k.shape[0], 0))
         self._factor: Factor | None = None
         if isinstance(k, np.ndarray):
             lacking = deficiency(k)
             if lacking:
                 self._values, self._vectors = np.linalg.eigh(k)
-                self.slack = self._vectors[:, :lacking]
+                self.null_space = self._vectors[:, :lacking]
                 self.negative = self._vectors[:, 0] if self._values[0] < -NEGATIVE else None
             return
         n = k.shape[0]
@@ -129,7 +129,7 @@ class Held:
         weak = np.flatnonzero((pivots < least) & (pivots > -NEGATIVE))
         if len(weak):  # K does not resist the motion due to the release of a restraint
             self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
-            self.slack = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
+            self.null_space = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
         assert self._factor is not None
         if self._factor.negative:
             x = _generic(k.shape[0])
@@ -139,19 +139,19 @@ class Held:
             self.negative = x
 
     def solve(self, push: Array) -> Array:
-        """Return the displacements under a load, orthogonal to the slack motions, shape (n,)."""
+        """Return the displacements under a load, orthogonal to `null_space`, shape (n,)."""
         if isinstance(self.k, np.ndarray):
-            if not self.slack.shape[1]:
+            if not self.null_space.shape[1]:
                 return np.asarray(np.linalg.solve(self.k, push))
-            weak = np.arange(len(push)) < self.slack.shape[1]
+            weak = np.arange(len(push)) < self.null_space.shape[1]
             along = np.where(weak, 0.0, self._vectors.T @ push)
             return np.asarray(self._vectors @ (along / np.where(weak, 1.0, self._values)))
         assert self._factor is not None
-        if not self.slack.shape[1]:
+        if not self.null_space.shape[1]:
             return self._factor.solve(push)
-        resisted = push - self.slack @ (self.slack.T @ push)
+        resisted = push - self.null_space @ (self.null_space.T @ push)
         u = self._factor.solve(resisted)
-        return np.asarray(u - self.slack @ (self.slack.T @ u))
+        return np.asarray(u - self.null_space @ (self.null_space.T @ u))
 
 
 def deficiency(k: Array) -> int:
@@ -179,7 +179,7 @@ def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
     """
     at = np.flatnonzero(used_rows(k) & ~massless(m))
     root = 1.0 / np.sqrt(diagonal(m[np.ix_(at, at)]))
-    inertia = Held(scaled(m[np.ix_(at, at)], root))
+    inertia = SingularStiffness(scaled(m[np.ix_(at, at)], root))
     return np.array([x @ inertia.solve(x) for x in ground[:, at] * root])
 
 

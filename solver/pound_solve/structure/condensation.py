@@ -78,14 +78,14 @@ def condense(system: ReducedSystem) -> Condensed:
         dense(a[at, structure.n_free :]) for a in (structure.stiffness, structure.damping)
     )
     applied = system.force_inputs[at]
-    light = massless(system.mass) & ~np.any(system.law_rows != 0.0, axis=0)
+    is_massless = massless(system.mass) & ~np.any(system.law_rows != 0.0, axis=0)
     slave = _condensable(
         np.hstack([system.stiffness, to_supports]),
         np.hstack([system.damping, c_to_supports]),
         np.column_stack([applied, structure.released[at]]),
-        light,
+        is_massless,
     )
-    system.decisions.extend(_decisions(system.dofs, slave, light & ~slave))
+    system.decisions.extend(_decisions(system.dofs, slave, is_massless & ~slave))
     keep, s = np.flatnonzero(~slave), np.flatnonzero(slave)
     n, n_inputs = system.inputs.shape
     expand, constant, follow = np.eye(n)[:, keep], np.zeros(n), np.zeros((n, n_inputs))
@@ -129,7 +129,7 @@ def _massless(count: int) -> str:
     return f"{count} massless degree{'s' * (count != 1)} of freedom"
 
 
-def _condensable(k: Array, c: Array, applied: Array, light: Flags) -> Flags:
+def _condensable(k: Array, c: Array, applied: Array, is_massless: Flags) -> Flags:
     """Which massless DOFs follow the others exactly; the rest are removed one pass at a time.
 
     Parameters
@@ -138,10 +138,10 @@ def _condensable(k: Array, c: Array, applied: Array, light: Flags) -> Flags:
         The columns beyond the unknowns are those of moved supports.
     applied : ndarray, shape (n, n_forces)
         Forces that change in time.
-    light : ndarray of bool, shape (n,)
+    is_massless : ndarray of bool, shape (n,)
         The candidates.
     """
-    none, candidates = np.zeros_like(light), light
+    none, candidates = np.zeros_like(is_massless), is_massless
     while candidates.any():
         s = np.flatnonzero(candidates)
         values = np.linalg.eigvalsh(k[np.ix_(s, s)])
@@ -154,7 +154,7 @@ def _condensable(k: Array, c: Array, applied: Array, light: Flags) -> Flags:
             candidates = undamped
             continue
         # prescribed DOFs are among the others that they follow
-        rest = np.concatenate([np.flatnonzero(~candidates), np.arange(len(light), k.shape[1])])
+        rest = np.concatenate([np.flatnonzero(~candidates), np.arange(len(is_massless), k.shape[1])])
         g = -np.linalg.solve(k[np.ix_(s, s)], k[np.ix_(s, rest)])
         misfit = np.abs(c[np.ix_(s, rest)] + c[np.ix_(s, s)] @ g).max(axis=1, initial=0.0)
         # a dashpot delays the displacements under the applied forces

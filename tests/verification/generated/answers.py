@@ -65,7 +65,7 @@ def answer(deck: Path, records: Path | None, method: str, options: Mapping[str, 
     from pound_solve.integrate import auto
 
     steps = method == STEPS
-    bars = {"not_linear": lambda system: "barred", "has_series": lambda system: False}
+    bars = {"reason_not_linear": lambda system: "barred", "has_series": lambda system: False}
     bar = mock.patch.multiple(auto, **bars) if steps else nullcontext()
     folders = [] if records is None else [records]
     chosen = "AUTO" if steps else method

@@ -20,7 +20,7 @@ from pound_solve.integrate.protocol import (
     Problem,
     Recorder,
     Stop,
-    light,
+    laws_on_massless,
 )
 from pound_solve.integrate.release import force_jumps, release
 from pound_solve.integrate.tolerances import NEAR_EVENT
@@ -71,7 +71,7 @@ class EventDrivenRun(ABC):
         self.energy = EnergyAccumulator(system, start)
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
         self.events = self.changes_at_instant = 0
-        self._massless_laws = light(system)
+        self._on_massless = laws_on_massless(system)
         self.contacts = [i for i, s in enumerate(self.laws) if s.role.collides]
         self.uniqueness = Uniqueness(system)
 
@@ -81,7 +81,7 @@ class EventDrivenRun(ABC):
         self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         self.uniqueness.record_change(self.t, law, self.states[law][0])
-        force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
+        force = self.laws[law].force(self.states[law], d, 0.0 if self._on_massless[law] else v)
         self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.force(law).take(force, self.t)
 
@@ -93,7 +93,7 @@ class EventDrivenRun(ABC):
         self._look_for_rests(law, event_index, d, v)
         before, deformation = self.branches[law], float(d[law])
         self.transition(law, event_index, deformation, float(v[law]))
-        lost_force = self._massless_laws[law] and force_jumps(before, self.branches[law], deformation)
+        lost_force = self._on_massless[law] and force_jumps(before, self.branches[law], deformation)
         if lost_force or self.branches[law].stiffness < before.stiffness:
             self._look_for_ties(law, d, v, lost_force)
         if lost_force:
@@ -122,7 +122,7 @@ class EventDrivenRun(ABC):
         """
         from pound_solve.integrate.kernels.ties import event_arrives  # most decks do not need this import
 
-        for i in np.flatnonzero(self._massless_laws).tolist():
+        for i in np.flatnonzero(self._on_massless).tolist():
             if i == law or self.laws[i].role.collides:
                 continue
             deformation, rate = float(d[i]), float(v[i])
@@ -137,7 +137,7 @@ class EventDrivenRun(ABC):
         otherwise this law and event.
         """
         before, deformation = self.branches[law], float(d[law])
-        if self.laws[law].role.collides or not self._massless_laws[law] or before.stiffness == 0.0:
+        if self.laws[law].role.collides or not self._on_massless[law] or before.stiffness == 0.0:
             return law, event_index
         state = self.laws[law].law.transition(self.states[law], event_index, deformation, float(v[law]))
         after = self.laws[law].branch(state)
@@ -153,9 +153,9 @@ class EventDrivenRun(ABC):
         """
         event = self.branches[law].events[event_index]
         turns = event.d_factor == 0.0 and event.v_factor != 0.0
-        if not turns or self.laws[law].role.collides or not self._massless_laws[law]:
+        if not turns or self.laws[law].role.collides or not self._on_massless[law]:
             return
-        for i in np.flatnonzero(self._massless_laws).tolist():
+        for i in np.flatnonzero(self._on_massless).tolist():
             if not self.laws[i].role.collides:
                 branch = self._branch_begun(i, float(d[i]), float(v[i]), i == law)
                 if branch >= 0:
@@ -180,7 +180,7 @@ class EventDrivenRun(ABC):
         """
         k, c = (np.array([getattr(b, name) for b in self.branches]) for name in ("stiffness", "damping"))
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
-        if self.laws[law].role.collides or not self._massless_laws[law]:
+        if self.laws[law].role.collides or not self._on_massless[law]:
             return
         for i, _, state, after in self._arriving(law, d, v):
             if lost_force and force_jumps(self.branches[i], after, float(d[i])):

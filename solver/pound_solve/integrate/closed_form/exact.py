@@ -48,7 +48,7 @@ from pound_solve.integrate.protocol import (
     Recorder,
     Stop,
     goals,
-    not_linear,
+    reason_not_linear,
     refuse_rigid,
     remedy,
     rounding_check,
@@ -161,7 +161,7 @@ class Exact(EventDrivenRun):
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
             raise self.stop("A504", "the response overflowed: the motion grows without bound")
         overdue = self.search.events.violated(
-            coarse, self.largest, CERTAIN * EVENT_TOLERANCE, self._massless_laws
+            coarse, self.largest, CERTAIN * EVENT_TOLERANCE, self._on_massless
         )
         if overdue is not None:
             law = overdue.law
@@ -393,7 +393,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     CostlyError
         The run exceeds these limits.
     """
-    if why := not_linear(problem.system):
+    if why := reason_not_linear(problem.system):
         refuse_rigid(problem, "EXACT")
         other = "TAYLOR takes it" if "TAYLOR" in without_steps(problem.system) else "AUTO takes steps"
         why = f"EXACT needs linear pieces, and {why}: {other}"

@@ -41,7 +41,7 @@ from pound_solve.integrate.protocol import (
     Problem,
     Recorder,
     Stop,
-    not_linear,
+    reason_not_linear,
     refuse_rigid,
     rounding_check,
 )
@@ -139,7 +139,7 @@ class Laplace(EventDrivenRun):
         earliest = functions.first_event(rows, largest, TRANSFORM_TOLERANCE, self.contacts)
         event = None if earliest is None or earliest.event.time >= span else earliest.event
         certain = CERTAIN * TRANSFORM_TOLERANCE
-        event = functions.violated(rows, self.largest, certain, self._massless_laws) or event
+        event = functions.violated(rows, self.largest, certain, self._on_massless) or event
         tau = span if event is None else event.time
         if first:
             self._sample(self.t, motion.u[:, 0], motion.v[:, 0], motion.a[:, 0], self.energy.array())
@@ -280,7 +280,9 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     """
     refuse_rigid(problem, "LAPLACE")
     system = problem.system
-    if why := not_linear(system) or ("the supports move apart from each other" if system.total else ""):
+    if why := reason_not_linear(system) or (
+        "the supports move apart from each other" if system.total else ""
+    ):
         raise Stop("A505", problem.begin, f"LAPLACE cannot take this: {why}; AUTO can")
     problem = condensed(problem, "LAPLACE")
     refuse_large(problem.system.size, options["POINTS"], problem.begin)

@@ -27,7 +27,7 @@ from pound_solve.integrate.protocol import (
     Problem,
     Recorder,
     Stop,
-    not_linear,
+    reason_not_linear,
 )
 
 EXCITATION_CHANGE = 1e-11  #: relative change of the excitation
@@ -75,7 +75,7 @@ def checks(problem: Problem[EnvelopeRecorder], run: Outcome, watch: Watch, tol: 
         There was an interrupt; the exception contains the outcome of the completed run.
     """
     system = problem.system
-    if run.figures["events"] == 0 and not not_linear(system):
+    if run.figures["events"] == 0 and not reason_not_linear(system):
         return []
     witness = Witness(watch.recorder)
     method = next(entry.decision for entry in reversed(system.decisions) if entry.subject == "method")

@@ -73,14 +73,14 @@ def may_peak(value: Array, slope: Array, curvature: Array, width: Array, peaks: 
     curvature, shape = curvature[:, :, None], value.shape
     may_have_extremum = np.abs(slope[..., :-1] + slope[..., 1:]) <= curvature * width
     known = np.array([[peak.high, peak.low] for peak in peaks])
-    slack = curvature * (width**2 / 8.0)
+    margin = curvature * (width**2 / 8.0)
     flat = value.reshape(len(value), -1)
     high = np.maximum(np.maximum.accumulate(flat, axis=1), known[:, :1]).reshape(shape)[..., 1:]
     low = np.minimum(np.minimum.accumulate(flat, axis=1), known[:, 1:]).reshape(shape)[..., 1:]
-    beyond = (np.maximum(value[..., :-1], value[..., 1:]) + slack > high) | (
-        np.minimum(value[..., :-1], value[..., 1:]) - slack < low
+    beyond = (np.maximum(value[..., :-1], value[..., 1:]) + margin > high) | (
+        np.minimum(value[..., :-1], value[..., 1:]) - margin < low
     )
-    return np.asarray(may_have_extremum & beyond & (slack > 0.0))
+    return np.asarray(may_have_extremum & beyond & (margin > 0.0))
 
 
 def two_extremes(t: Array, value: Array, slope: Array) -> tuple[Flags, Array]:

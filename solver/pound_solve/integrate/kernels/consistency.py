@@ -46,7 +46,7 @@ def touches_massless(linear: LinearSystem, rows: Rows, i: int) -> bool:
 def loses_force(
     linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: float, d: float
 ) -> bool:
-    """Return whether law `i` lost a force that held an unknown without mass when it left a branch with the
+    """Return whether law `i` lost a force that held a massless unknown when it left a branch with the
     given `stiffness` and `offset` at the deformation `d`.
     """
     definition = laws.definition

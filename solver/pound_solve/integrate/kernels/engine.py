@@ -89,11 +89,9 @@ class KernelEngine(ABC):
             unknowns = layout.inverse_order[np.flatnonzero(recorder.enveloped_unknowns)]
             laws = recorder.enveloped_laws
         self.buffers = allocation.buffers(system.size, len(self.law_springs), unknowns, laws)
-        self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
+        run = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         works = self.accumulator.works
-        self.sim = Simulation(
-            self.linear, self.laws, self.members, self.step, self.buffers, works, self.state
-        )
+        self.sim = Simulation(self.linear, self.laws, self.members, self.step, self.buffers, works, run)
         for i in range(len(self.law_springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
         law_kernels.linearise_laws(self.laws, self.rules)
@@ -169,18 +167,18 @@ class KernelEngine(ABC):
         self.fetch_transitions()
         self.fetch_motions()
         self._fetch_samples()
-        if not self.state.n_samples:  # a pending signal is handled at each return of a kernel
-            self.recorder.report_progress(float(self.state.time))
-        self.state.n_samples = self.state.n_motions = 0
+        if not self.sim.run.n_samples:  # a pending signal is handled at each return of a kernel
+            self.recorder.report_progress(float(self.sim.run.time))
+        self.sim.run.n_samples = self.sim.run.n_motions = 0
 
     def fetch_transitions(self) -> None:
         """Fetch the transitions from the buffers, and which laws changed at the same instant."""
-        for k in range(int(self.state.n_ties)):
+        for k in range(int(self.sim.run.n_ties)):
             self.uniqueness.examine_tie(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
-        for t, law, other, branch in self.buffers.rests[: self.state.n_rests].tolist():
+        for t, law, other, branch in self.buffers.rests[: self.sim.run.n_rests].tolist():
             self.uniqueness.record_rest(t, int(law), int(other), int(branch))
-        self.state.n_ties = self.state.n_rests = 0
-        self.latest = self.buffers.log[: self.state.n_transitions].tolist()
+        self.sim.run.n_ties = self.sim.run.n_rests = 0
+        self.latest = self.buffers.log[: self.sim.run.n_transitions].tolist()
         for row in self.latest:
             law, before, after = (int(x) for x in row[: LOG_AFTER + 1])
             branches = self.law_springs[law].law.rule.branches
@@ -188,11 +186,11 @@ class KernelEngine(ABC):
                 self.tracker.open[law].count(*row[LOG_PEAK:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[LOG_TIME:LOG_PEAK])
             self.uniqueness.record_change(row[LOG_TIME], law, after)
-        self.state.n_transitions = 0
+        self.sim.run.n_transitions = 0
 
     def fetch_motions(self) -> None:
         """Pass the motion between the samples from the buffers to the recorder."""
-        buffers, count = self.buffers, self.state.n_motions
+        buffers, count = self.buffers, self.sim.run.n_motions
         if not count:
             return
         # at the end of a step a load has not jumped yet
@@ -205,7 +203,7 @@ class KernelEngine(ABC):
         self.recorder.between(Course(Motion(times, u, v, a, law_forces), lengths, None))
 
     def _fetch_samples(self) -> None:
-        buffers, kept, back = self.buffers, self.state.n_samples, self.inverse_order
+        buffers, kept, back = self.buffers, self.sim.run.n_samples, self.inverse_order
         if not kept:
             return
         motions = buffers.displacement, buffers.velocity, buffers.acceleration
@@ -222,13 +220,13 @@ class KernelEngine(ABC):
             fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
             name = self.system.name(fastest)
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
-            return self.stop("A504", RUNAWAY_TEXT.format(self.state.runaway_energy) + cause)
+            return self.stop("A504", RUNAWAY_TEXT.format(self.sim.run.runaway_energy) + cause)
         if why == SINGULAR:
-            unknown = int(self.order[int(self.state.failed_unknown)])
+            unknown = int(self.order[int(self.sim.run.failed_unknown)])
             return self.stop("A501", self.system.explain_massless(unknown))
-        if why == CHATTER and (snaps := self._without_branch(int(self.state.changed_law))) is not None:
+        if why == CHATTER and (snaps := self._without_branch(int(self.sim.run.changed_law))) is not None:
             return self.stop("A501", self.system.explain_massless(snaps, softens=True))
-        law = int(self.state.failed_law if why == NOT_CONVERGED else self.state.changed_law)
+        law = int(self.sim.run.failed_law if why == NOT_CONVERGED else self.sim.run.changed_law)
         place, last = "the members' turning", ""
         if law >= 0:
             s = self.law_springs[law]
@@ -245,7 +243,7 @@ class KernelEngine(ABC):
         return self.stop("A503", f"{text}; try a DT well below {self.dt:g}{others}")
 
     def _without_branch(self, law: int) -> int | None:
-        """Return an unknown without mass that `law` holds on none of its branches, None if there is none.
+        """Return a massless unknown that `law` holds on none of its branches, None if there is none.
 
         At one instant its rate then has one sign on the softening branch, and the opposite sign on the
         branches to which a rate of that sign leads.
@@ -253,19 +251,19 @@ class KernelEngine(ABC):
         rows, has_mass = self.laws.definition.rows, self.linear.has_mass
         unknowns = rows.columns[rows.pointers[law] : rows.pointers[law + 1]]
         massless = unknowns[~np.asarray(has_mass, bool)[unknowns]]
-        rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.state.time]
+        rates = [row[5] for row in self.latest if row[0] == law and row[3] == self.sim.run.time]
         turns = min(rates, default=0.0) < 0.0 < max(rates, default=0.0)
         return int(self.order[massless[0]]) if turns and len(massless) and self._softens() else None
 
     def _softens(self) -> bool:
-        """Return whether the stiffness of the unknowns without mass is not positive if all laws that change
+        """Return whether the stiffness of the massless unknowns is not positive if all laws that change
         at this instant are on their softest branches.
         """
-        light = np.flatnonzero(massless(self.system.mass))
-        if self.system.structure.corotational or len(light) > MAX_DENSE:
+        massless_unknowns = np.flatnonzero(massless(self.system.mass))
+        if self.system.structure.corotational or len(massless_unknowns) > MAX_DENSE:
             return True  # an examination takes too long
         stiffness = self.laws.tangent.stiffness.copy()
-        changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.state.time}
+        changes = {tuple(map(int, row[:3])) for row in self.latest if row[3] == self.sim.run.time}
         for i in {change[0] for change in changes}:
             law, states = self.law_springs[i].law, [self.law_state(i)]
             d = float(self.laws.now.deformation[i])
@@ -275,8 +273,8 @@ class KernelEngine(ABC):
                 states += [x for x in after if (i, state[0], x[0]) in changes and x[0] not in seen]
             if not law.curved:
                 stiffness[i] = min(law.branch(state).stiffness for state in states)
-        rows = dense(self.system.law_rows[:, light])
-        elastic = dense(self.system.stiffness[np.ix_(light, light)])
+        rows = dense(self.system.law_rows[:, massless_unknowns])
+        elastic = dense(self.system.stiffness[np.ix_(massless_unknowns, massless_unknowns)])
         return bool(np.linalg.eigvalsh(elastic + (rows.T * stiffness) @ rows)[0] <= 0.0)
 
     def outcome(self) -> Outcome:
@@ -300,4 +298,4 @@ class KernelEngine(ABC):
 
     def stop(self, code: str, why: str) -> Stop:
         """Return the exception that ends the run here."""
-        return Stop(code, float(self.state.time), why, self.outcome())
+        return Stop(code, float(self.sim.run.time), why, self.outcome())

@@ -22,7 +22,7 @@ class KernelPresent:
 
     def __init__(self, engine: KernelEngine) -> None:
         self.engine, self.system, self.tracker = engine, engine.system, engine.tracker
-        self.t = float(engine.state.time)
+        self.t = float(engine.sim.run.time)
         back, now = engine.inverse_order, engine.step.now
         self.u, self.v = now.displacement[back], now.velocity[back]
         self._branches = [s.branch(engine.law_state(i)) for i, s in enumerate(engine.law_springs)]
@@ -78,4 +78,4 @@ class KernelPresent:
         inputs = [self.system.excitation.value(self.t, derivative) for derivative in (0, 1)]
         laws.now.deformation[:] = self.system.law_rows @ self.u + self.system.law_inputs @ inputs[0]
         laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs[1]
-        self.engine.state.branches_changed = self.engine.state.massless_factor_stale = 1
+        self.engine.sim.run.branches_changed = self.engine.sim.run.massless_factor_stale = 1

@@ -67,7 +67,7 @@ def tracked_value(sim: Simulation, i: int) -> tuple[float, float]:
     if definition.reports_damping[law] and tangent.damping[law] != 0.0:
         value += tangent.damping[law] * v
         slope += tangent.damping[law] * row_product(rows, law, now.acceleration)
-        # the acceleration of an unknown without mass is a jump of its velocity over the length of a step
+        # the acceleration of a massless unknown is a jump of its velocity over the length of a step
         if touches_massless(linear, rows, law):
             slope = 0.0
     return value, slope

@@ -23,9 +23,9 @@ CHATTER = 3  #: too many changes of branch at one instant
 TOO_MANY_EVENTS = 4  #: more changes of branch in one step than the log has room for
 SINGULAR = 5  #: a matrix is singular
 NOT_CONVERGED = 6  #: Newton's iterations do not converge
-LOST_FORCE = 7  #: a law that holds an unknown without mass has lost its force
+LOST_FORCE = 7  #: a law that holds a massless unknown has lost its force
 STEP_TOO_SHORT = 8  #: the step is lost in the rounding of the time
-UNRESTRAINED = 9  #: nothing holds an unknown without mass
+UNRESTRAINED = 9  #: nothing holds a massless unknown
 RIGID_EVENT = 10  #: a rigid contact strikes or parts
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns
@@ -52,7 +52,7 @@ class Run(Protocol):
     steps: int
     events: int
     changes_at_instant: int  #: transitions at one instant
-    lost_force: int  #: law that held a joint without mass and lost its force, -1 for none
+    lost_force: int  #: law that held a massless joint and lost its force, -1 for none
     branches_passed: int  #: branches left in a step that is not cut at events
     updates: int  #: rank-one updates since the factorisation; above `MAX_UPDATES` if the factor is invalid
     branches_changed: int  #: whether sums, modes and factors over the laws must be recomputed (series)

@@ -4,7 +4,7 @@ If only massless unknowns separate such laws, rounding may decide which of them 
 `integrate.uniqueness`).  A law may also rest at the start of a branch while another one in series yields at
 the same force.  Whether it has yielded is then undecided; this is examined when either law reverses.
 
-One order is decided here.  Laws in series at a joint without mass lose their forces at the same instant.
+One order is decided here.  Laws in series at a massless joint lose their forces at the same instant.
 While one of them is slack, the others do not deform.  Therefore a law whose branch ends at zero force
 changes first, as it would with a small mass at the joint.
 """
@@ -73,7 +73,7 @@ def event_arrives(a: float, b: float, c: float, d: float, v: float, largest: flo
 
 
 def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
-    """Return the event of law `i` that occurs now, if it holds an unknown without mass; else -1."""
+    """Return the event of law `i` that occurs now, if it holds a massless unknown; else -1."""
     definition, coefficients = laws.definition, laws.events.coefficients
     if (
         definition.contact[i]
@@ -92,7 +92,7 @@ def arriving_event(linear: LinearSystem, laws: Laws, i: int) -> int:
 
 
 def becomes_slack(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, event: int) -> bool:
-    """Return whether a law that holds an unknown without mass has neither stiffness nor force after an
+    """Return whether a law that holds a massless unknown has neither stiffness nor force after an
     event, and loses no force by it.
     """
     definition = laws.definition
@@ -118,7 +118,7 @@ def event_before_slack(sim: Simulation, rules: RuleFunctions, law: int, event: i
 
 def branch_begun(linear: LinearSystem, laws: Laws, rules: RuleFunctions, i: int, reverses: bool) -> int:
     """Return the branch at whose start law `i` is, as it `reverses` or else rests; -1 for none, and for
-    laws that hold no unknown without mass.
+    laws that hold no massless unknown.
     """
     definition, coefficients, state = laws.definition, laws.events.coefficients, laws.state
     if (

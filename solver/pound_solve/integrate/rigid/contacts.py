@@ -53,7 +53,7 @@ def linear_forces(branches: Sequence[Branch]) -> LawForces:
 
 
 class MasslessContact(Exception):
-    """A rigid contact on a DOF without mass."""
+    """A rigid contact on a massless DOF."""
 
 
 class RigidContacts:
@@ -74,7 +74,7 @@ class RigidContacts:
     Raises
     ------
     MasslessContact
-        A contact on a DOF without mass.
+        A contact on a massless DOF.
     """
 
     def __init__(self, system: ReducedSystem) -> None:
@@ -82,14 +82,14 @@ class RigidContacts:
         self.system = system
         self.laws = [i for i, s in enumerate(laws) if s.law.rigid]
         self.rows, self.inputs = dense(system.law_rows[self.laws]), system.law_inputs[self.laws]
-        without_mass = massless(system.mass)
-        if (bad := self.rows[:, without_mass].any(axis=1)).any():
+        is_massless = massless(system.mass)
+        if (bad := self.rows[:, is_massless].any(axis=1)).any():
             s = laws[self.laws[int(np.argmax(bad))]]
             raise MasslessContact(
                 f"the rigid contact {s.element} ({s.rule}) touches a degree of freedom without mass, which "
                 "nothing would stop: give it weight"
             )
-        with_mass = np.flatnonzero(~without_mass) if self.laws else np.zeros(0, np.intp)
+        with_mass = np.flatnonzero(~is_massless) if self.laws else np.zeros(0, np.intp)
         mass = system.mass[np.ix_(with_mass, with_mass)]
         self.velocity_change = np.zeros(self.rows.T.shape)
         self.velocity_change[with_mass] = least_squares(mass, self.rows[:, with_mass].T)

@@ -42,7 +42,7 @@ def change_branch(
     note_rests(sim, rules, law, event.event_index)
     leave_branch(laws, rules, law, event.event_index, d, v)
     refresh_branch_series(laws, rules, series, law)
-    # the rate of an unknown without mass jumps, and the force of its dashpot with it
+    # the rate of a massless unknown jumps, and the force of its dashpot with it
     force = law_force(laws, rules, law, d, 0.0 if series.massless.index_of_law[law] >= 0 else v)
     if before != laws.state.branch[law]:
         log_transition(sim, law, before, t, force)
@@ -72,7 +72,7 @@ def change_branches(
     stiffness, offset = laws.tangent.stiffness[event.law], laws.tangent.offset[event.law]
     change_branch(sim, rules, series, now, event)
     note_ties(sim, rules, event.law, stiffness, offset)
-    # if there are unknowns without mass, `settle_state` decides
+    # if there are massless unknowns, `settle_state` decides
     for i in range(len(laws.definition.rule) if len(series.massless.unknown) == 0 else 0):
         if i != event.law and series.rigid.index_of[i] < 0:
             other = event_of(laws, series, ahead, i)
@@ -90,7 +90,7 @@ def count_instant(run: Run, h: float) -> None:
 
 def refresh_branches(sim: Simulation, rules: RuleFunctions, series: Series) -> bool:
     """Update all that depends on the branches after a change: tangents of smooth laws and dampers, sums,
-    modes, factors.  Return False if an unknown without mass is unrestrained (`run.failed_unknown`).
+    modes, factors.  Return False if a massless unknown is unrestrained (`run.failed_unknown`).
     """
     laws, run = sim.laws, sim.run
     massless = series.massless
@@ -108,7 +108,7 @@ def refresh_branches(sim: Simulation, rules: RuleFunctions, series: Series) -> b
 
 
 def settle_state(sim: Simulation, rules: RuleFunctions, series: Series, piece: Piece) -> int:
-    """Make the velocities of unknowns without mass and the forces of closed rigid contacts consistent with
+    """Make the velocities of massless unknowns and the forces of closed rigid contacts consistent with
     the present branches.
 
     These rates jump if a stiffness or a dashpot among them changes.  A law whose rate then changes its sign

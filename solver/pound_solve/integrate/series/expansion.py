@@ -97,7 +97,7 @@ def structural_forces(
     linear: LinearSystem, series: Series, k: int, on_stiffness: float, on_damping: float, out: Array
 ) -> None:
     """Compute negative forces of structure and laws from the coefficients `k`, and of dashpots from the
-    coefficients `k` + 1, times factors.  They are zero for unknowns without mass, which do not need them.
+    coefficients `k` + 1, times factors.  They are zero for massless unknowns, which do not need them.
     """
     c, massless, springs = series.motion, series.massless, series.springs
     if len(massless.unknown):

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.integrate.protocol import Outcome, Problem, Recorder, Stop, not_linear, refuse_rigid
+from pound_solve.integrate.protocol import Outcome, Problem, Recorder, Stop, reason_not_linear, refuse_rigid
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.series.single_pole import LAST_TERM
 from pound_solve.integrate.series.taylor import MAX_STEPS, Taylor
@@ -36,12 +36,12 @@ class Laguerre(Taylor):
         control, shortest = self.control, float(self.control.shortest_length)
         return {
             "method": self.name,
-            "steps": int(self.state.steps - control.n_modal_intervals),
+            "steps": int(self.sim.run.steps - control.n_modal_intervals),
             **({"intervals in modes": in_modes} if (in_modes := int(control.n_modal_intervals)) else {}),
             **({"shortest step": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
             "steps taken again": int(control.n_rejected),
             "factorisations": int(control.n_factorisations),
-            "events": int(self.state.events),
+            "events": int(self.sim.run.events),
         }
 
 
@@ -56,7 +56,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
         holds, too many changes at one instant, too many steps, an overflow of numbers, or an interrupt.
     """
     refuse_rigid(problem, "LAGUERRE")
-    if why := not_linear(problem.system):
+    if why := reason_not_linear(problem.system):
         why_not = f"LAGUERRE needs linear pieces, and {why}: AUTO takes another method"
         raise Stop("A505", problem.begin, why_not)
     contacts, most = RigidContacts(problem.system), min(options.get("STEPS", MAX_STEPS), MAX_STEPS)

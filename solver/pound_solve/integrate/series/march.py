@@ -313,7 +313,7 @@ def store_sample_at_goal(sim: Simulation, rules: RuleFunctions, series: Series, 
 
 
 def massless_load_work(sim: Simulation, series: Series, piece: Piece) -> float:
-    """Return the sum of present load times displacement over the unknowns without mass."""
+    """Return the sum of present load times displacement over the massless unknowns."""
     total, trial = 0.0, sim.step.trial
     evaluate_inputs(piece.coefs, sim.run.time - piece.begin, trial.inputs, trial.input_rates)
     for i in series.massless.unknown:

@@ -1,6 +1,6 @@
-r"""Unknowns without mass in a power series: kernels, and the arrays they work on.
+r"""Massless unknowns in a power series: kernels, and the arrays they work on.
 
-An unknown without mass that a dashpot resists is of order one: its rate follows from the remaining force on
+A massless unknown that a dashpot resists is of order one: its rate follows from the remaining force on
 the dashpot.  One that only springs resist is of order zero: its displacement follows from equilibrium.
 The coefficient k of the first kind follows from the coefficients k - 1 of all unknowns and k of those with
 mass; that of the second kind then follows from the coefficients k of all others:
@@ -59,7 +59,7 @@ PARTICIPATION = 1e-6  #: fraction of the largest component of a motion above whi
 def allocate(
     linear: LinearSystem, stiffness: Matrix, damping: Matrix, law_rows: Matrix, elastic: Array
 ) -> Massless:
-    """Lay out the unknowns without mass.
+    """Lay out the massless unknowns.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def allocate(
 
 
 def form_matrix(tangent: LawTangent, massless: Massless, which: int) -> None:
-    """Fill in C or K (`which`) of the unknowns without mass, with the laws on their present branches."""
+    """Fill in C or K (`which`) of the massless unknowns, with the laws on their present branches."""
     for q in range(len(massless.matrix)):
         massless.matrix[q] = massless.on_pattern[which, q]
     for n in range(len(massless.laws)):
@@ -233,7 +233,7 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> N
 
 
 def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_powers: int) -> None:
-    """Compute the coefficients `k` of the unknowns without mass (see the module docstring).  For `k` > 1
+    """Compute the coefficients `k` of the massless unknowns (see the module docstring).  For `k` > 1
     they must be zero before the call.
     """
     massless, c, x = series.massless, series.motion, series.massless.right_side
@@ -251,7 +251,7 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_pow
 
 
 def joints_jump(laws: Laws, series: Series, n_powers: int) -> bool:
-    """Return whether the laws at joints without mass deform instantly."""
+    """Return whether the laws at massless joints deform instantly."""
     massless, most, far = series.massless, 0.0, 0.0
     for i in massless.laws:
         d = laws.now.deformation[i]

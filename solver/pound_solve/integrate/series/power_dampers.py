@@ -41,9 +41,9 @@ RATE_ROUNDING = 1e-15  #: fraction of the velocities whose difference a rate is
 LIMIT, RATE = 2, 3  #: columns of `PowerDampers.constants`, beside K and N
 
 
-def allocate(viscous: Flags, light: Flags, n_coefs: int) -> PowerDampers:
-    """Allocate the `viscous` laws for series of `n_coefs` coefficients; the laws `light` hold unknowns
-    without mass.
+def allocate(viscous: Flags, on_massless: Flags, n_coefs: int) -> PowerDampers:
+    """Allocate the `viscous` laws for series of `n_coefs` coefficients; the laws `on_massless` hold
+    massless unknowns.
     """
     laws = np.flatnonzero(viscous)
     n = len(laws)
@@ -51,7 +51,7 @@ def allocate(viscous: Flags, light: Flags, n_coefs: int) -> PowerDampers:
         laws=laws,
         index_of=inverse_index(laws, len(viscous)),
         constants=np.zeros((n, 4)),
-        on_massless=np.flatnonzero(light[laws]),
+        on_massless=np.flatnonzero(on_massless[laws]),
         is_series=np.zeros(n, bool),
         rate=np.zeros((n, n_coefs)),
         remainder=np.zeros((n, n_coefs)),
@@ -139,7 +139,7 @@ def add_damper_remainders(
 
 def dampers_valid_up_to(dampers: PowerDampers, degree: int, end: float) -> float:
     """Return the multiple of a step, at most `end`, up to which the dampers' forces are accurate, and the
-    rates of dampers that hold unknowns without mass.
+    rates of dampers that hold massless unknowns.
     """
     for r in range(len(dampers.laws)):
         if dampers.is_series[r]:
@@ -168,7 +168,7 @@ def turn_event(series: Series, degree: int, h: float, first: LocatedEvent, i: in
 
 
 def tangents_settled(laws: Laws, dampers: PowerDampers, velocity: Array) -> bool:
-    """Whether the tangents of the dampers that hold unknowns without mass were taken at the present rates,
+    """Whether the tangents of the dampers that hold massless unknowns were taken at the present rates,
     within the tolerance of Newton's iteration and the rounding of the `velocity` of the unknowns.
     """
     rows = laws.definition.rows

@@ -12,7 +12,7 @@ with the same matrix :math:`S = M + \gamma h C + (\gamma h)^2 K` over the unknow
 .. math:: S\,\delta = M v_n + \gamma h\,(p_n - p_{n+1} - K u_n), \qquad
           u_{n+1} = -\gamma h\,\delta, \quad v_{n+1} = v_n - \delta .
 
-Unknowns without mass are no special case: E leaves out their rates.  The series ends with the term s for
+Massless unknowns are no special case: E leaves out their rates.  The series ends with the term s for
 which :math:`L_s(1/\gamma) = 0`.  The equations of motion are then met at the end of the step, and stiff
 components have decayed there (the method is L-stable).  Within the step the sum is a polynomial in
 :math:`\theta`, a series like TAYLOR's, so events, peaks, works and contacts are treated as in TAYLOR.

@@ -10,7 +10,7 @@ On a branch, and on one side of w = 0, the force therefore has a power series.  
           k\,(1 + b p_0)\,r_k = \sum_{j=1}^{k-1} (k - j)\,p_j\,(a\,d_{k-j} - b\,w_{k-j}) .
 
 The first part is the tangent at the start of the step, a spring like that of any law (see `springs`), also
-for unknowns without mass.  The remainder :math:`q r_k` follows from the motion up to k - 1: a known force.
+for massless unknowns.  The remainder :math:`q r_k` follows from the motion up to k - 1: a known force.
 Dashpots in proportion to the tangent have forces in proportion to the rate of f, so they have a remainder,
 too.  Every step begins with the closed form of the law, so that errors do not accumulate.
 

@@ -61,7 +61,7 @@ class AssembledSprings(NamedTuple):
 
 
 class Massless(NamedTuple):
-    """The unknowns without mass, numbered among themselves, and the laws that hold them.
+    """The massless unknowns, numbered among themselves, and the laws that hold them.
 
     Attributes
     ----------
@@ -70,15 +70,15 @@ class Massless(NamedTuple):
     with_mass : ndarray, shape (n - n_massless,)
         Indices of the unknowns with mass.
     damping, damping_with_mass : Rows
-        Rows of C over all unknowns, for the unknowns without mass and for those with mass.
+        Rows of C over all unknowns, for the massless unknowns and for those with mass.
     laws : ndarray, shape (n_holding,)
-        Laws that hold an unknown without mass, ascending.
+        Laws that hold a massless unknown, ascending.
     index_of_law : ndarray, shape (n_laws,)
         Index of each law in `laws`, -1 for the others.
     rows : Rows
-        Deformations of these laws over the unknowns without mass.
+        Deformations of these laws over the massless unknowns.
     pattern : Pattern
-        Pattern of C and K over the unknowns without mass, laws included.
+        Pattern of C and K over the massless unknowns, laws included.
     column : ndarray, shape (n_entries,)
     on_pattern : ndarray, shape (2, n_entries)
         C and K on the pattern, without those of laws.
@@ -272,7 +272,7 @@ class PowerDampers(NamedTuple):
     constants : ndarray, shape (n_viscous, 4)
         c, with the sign of the rate, and n; rate up to which the force is linear; rate of the tangent.
     on_massless : ndarray
-        Dampers that hold unknowns without mass.
+        Dampers that hold massless unknowns.
     is_series : ndarray, shape (n_viscous,)
         Whether the force is a series.
     rate, remainder, force : ndarray, shape (n_viscous, MAX_DEGREE + 1)

@@ -7,7 +7,7 @@ and friction (`friction`) are separate series, whose coefficients follow likewis
 `expansion.MAX_DEGREE` terms are accurate to rounding: about five radians of the fastest mode that takes
 part.  Within it each event function and each quantity whose peak is kept is a polynomial, whose first rise
 and extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule,
-each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others
+each on its own, so that the balance of energies remains a check.  Massless unknowns follow the others
 (see `massless`).
 
 Elastic motion without contact is advanced in modes, from goal to goal (`modal`).  Otherwise the products
@@ -55,8 +55,8 @@ from pound_solve.integrate.protocol import (
     Recorder,
     Stop,
     goals,
-    not_in_series,
-    not_linear,
+    reason_not_in_series,
+    reason_not_linear,
     refuse_rigid,
     remedy,
     rounding_check,
@@ -121,10 +121,10 @@ class Taylor(KernelEngine):
         solved = Scheme(0.0, 0.0) if tolerance is None else Scheme(1.0, 1.0)  # nothing, or C and K
         super().__init__(problem, solved, length, self.words)
         self.contacts, self.most = contacts, most
-        self.state.branches_changed = 1
+        self.sim.run.branches_changed = 1
         self.control: state.StepControl = record(state.StepControl)
         self.control.next_length, self.control.shortest_length = length, np.inf
-        self.massless = self._without_mass()
+        self.massless = self._allocate_massless()
         self.series = self._allocate(problem.monitored, tolerance)
         for i in self.series.power_contacts.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
@@ -134,8 +134,8 @@ class Taylor(KernelEngine):
         smooth.set_rate_floor(self.laws.largest, self.series.smooth, length)
         self._hold()
 
-    def _without_mass(self) -> state.Massless:
-        """Arrays of the unknowns without mass."""
+    def _allocate_massless(self) -> state.Massless:
+        """Arrays of the massless unknowns."""
         o, system = self.order, self.system
         return massless.allocate(
             self.linear,
@@ -232,23 +232,23 @@ class Taylor(KernelEngine):
         self.advance(march.march, self.series, ahead)
 
     def resume(self, why: int) -> None:
-        """Let rigid contacts strike, close or part, or move joints without mass after a lost force; stop if
+        """Let rigid contacts strike, close or part, or move massless joints after a lost force; stop if
         the run cannot continue.
         """
         if why not in (RIGID_EVENT, LOST_FORCE):
             raise self.trouble(why)
         if why == LOST_FORCE:
             present = Present(self, self.series)
-            release(present, int(self.state.changed_law))
+            release(present, int(self.sim.run.changed_law))
             present.hand_back()
-            self.state.changed_law = -1  # the force is lost: the rest of a jump is rounding
+            self.sim.run.changed_law = -1  # the force is lost: the rest of a jump is rounding
             return
         self._at_instant(self._strike)
-        self.state.events += 1
+        self.sim.run.events += 1
 
     def _strike(self, instants: RigidInstants) -> bool:
         """Let the rigid contact of the event strike, or part."""
-        present, law = instants.run, int(self.state.changed_law)
+        present, law = instants.run, int(self.sim.run.changed_law)
         if present.branches[law].constrains:
             present.transition(
                 law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
@@ -293,7 +293,7 @@ class Taylor(KernelEngine):
     def fetch(self) -> None:
         """Fetch the stored results; stop if steps are too short for the length of the run."""
         super().fetch()
-        done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
+        done, steps = float(self.sim.run.time - self.times[0]), int(self.sim.run.steps)
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"{self.asking} asks for {count} steps (now {self.control.next_length:.3g} long)"
@@ -301,7 +301,7 @@ class Taylor(KernelEngine):
 
     def remedy(self) -> str:
         """Return which methods need not resolve the fastest mode."""
-        linear = not not_linear(self.system)
+        linear = not reason_not_linear(self.system)
         if self.contacts.laws:
             return ", which EXACT need not follow" if linear else ""
         return f", which {'LAGUERRE and ' if linear else ''}NEWMARK need not follow"
@@ -315,17 +315,17 @@ class Taylor(KernelEngine):
         if why == UNRESTRAINED:
             return self.stop("A501", self._explain_massless())
         if why == RUNAWAY:
-            return self.stop("A504", RUNAWAY_TEXT.format(self.state.runaway_energy))
+            return self.stop("A504", RUNAWAY_TEXT.format(self.sim.run.runaway_energy))
         if why == CHATTER:
-            law = int(self.state.changed_law)
+            law = int(self.sim.run.changed_law)
             s, at = self.law_springs[law], self.laws.state.branch[law]
-            what = (int(self.state.changes_at_instant), s.element, s.rule, s.law.rule.branches[at].name)
+            what = (int(self.sim.run.changes_at_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHATTER_TEXT.format(*what, remedy(self.system)))
         return super().trouble(why)
 
     def _explain_massless(self) -> str:
-        """Return which unknown without mass is unrestrained, and why."""
-        fault = int(self.state.failed_unknown)
+        """Return which massless unknown is unrestrained, and why."""
+        fault = int(self.sim.run.failed_unknown)
         name, n = (
             self.system.name(int(self.order[fault])),
             int(np.flatnonzero(self.massless.unknown == fault)[0]),
@@ -340,24 +340,24 @@ class Taylor(KernelEngine):
         return self.system.explain_massless(int(self.order[fault]))
 
     def _softest(self) -> int:
-        """Return the unknown that moves most in the softest motion of unknowns without mass and dashpot."""
-        light = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
-        if len(light) > MAX_DENSE:
-            return int(self.order[int(self.state.failed_unknown)])
-        rows = dense(self.system.law_rows[:, light])
-        stiffness = dense(self.system.stiffness[np.ix_(light, light)])
+        """Return the unknown that moves most in the softest motion of massless unknowns without dashpot."""
+        undamped = self.order[self.massless.unknown[~np.asarray(self.massless.damped, bool)]]
+        if len(undamped) > MAX_DENSE:
+            return int(self.order[int(self.sim.run.failed_unknown)])
+        rows = dense(self.system.law_rows[:, undamped])
+        stiffness = dense(self.system.stiffness[np.ix_(undamped, undamped)])
         shapes = np.linalg.eigh(stiffness + (rows.T * self.laws.tangent.stiffness) @ rows)[1]
-        return int(light[np.argmax(np.abs(shapes[:, 0]))])
+        return int(undamped[np.argmax(np.abs(shapes[:, 0]))])
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
         shortest, in_modes = float(self.control.shortest_length), int(self.control.n_modal_intervals)
         return {
             "method": self.name,
-            "series": int(self.state.steps) - in_modes,
+            "series": int(self.sim.run.steps) - in_modes,
             **({"intervals in modes": in_modes} if in_modes else {}),
             **({"shortest series": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
-            "events": int(self.state.events),
+            "events": int(self.sim.run.events),
         }
 
     def checks(self, peaks: Peaks) -> list[Check]:
@@ -375,7 +375,7 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
         A reduced system that is not piecewise linear, massless DOFs that cannot be condensed, too many
         changes at one instant, too many steps, an overflow of numbers, or an interrupt.
     """
-    if why := not_in_series(problem.system):
+    if why := reason_not_in_series(problem.system):
         refuse_rigid(problem, "TAYLOR")
         raise Stop("A505", problem.begin, f"TAYLOR finds no power series where {why}: AUTO takes steps")
     try:

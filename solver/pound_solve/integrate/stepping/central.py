@@ -51,12 +51,13 @@ def integrate(problem: Problem[Recorder], options: Mapping[str, Any]) -> Outcome
     """
     system = problem.system
     refuse_rigid(problem, "CENTRAL")
-    light = modes.massless(system.mass)
-    if light.any():
+    is_massless = modes.massless(system.mass)
+    if is_massless.any():
         raise Stop(
             "A505",
             0.0,
-            f"CENTRAL needs mass at {system.name(int(np.argmax(light)))}: give it weight, or use NEWMARK",
+            f"CENTRAL needs mass at {system.name(int(np.argmax(is_massless)))}: "
+            "give it weight, or use NEWMARK",
         )
     longest = limit(system, problem.start.u)
     if options["DT"] > longest:

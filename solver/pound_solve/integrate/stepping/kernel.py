@@ -64,7 +64,7 @@ MAX_SOLUTIONS = 50  #: of such a step, before it is cut
 
 def drive_law(sim: Simulation, rules: RuleFunctions, i: int) -> bool:
     """Drive law `i` along a straight path from the start of the step to its end, through all branches on
-    the way.  Return False if it loses a force on the way that holds a joint without mass.
+    the way.  Return False if it loses a force on the way that holds a massless joint.
     """
     laws = sim.laws
     d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
@@ -90,7 +90,7 @@ def drive_laws(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float) 
     -------
     int
         SOLVED if no law has changed branch, SOLVE_AGAIN if one has, CUT if a law loses a force on the way
-        that holds a joint without mass, or FAILED.
+        that holds a massless joint, or FAILED.
     """
     laws, run = sim.laws, sim.run
     tangent = laws.tangent

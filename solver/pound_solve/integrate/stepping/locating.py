@@ -92,7 +92,7 @@ def mark_others(sim: Simulation, event: LocatedEvent, tried: float, h: float) ->
     """Mark in `laws.events.pending` the other laws that pass an event at the instant of the located one.
 
     The part of the step that ends there was tried with length `tried` (NaN if the trial failed) and is not
-    accepted yet.  If rates of unknowns without mass or forces of friction jump there, one law leaves at a
+    accepted yet.  If rates of massless unknowns or forces of friction jump there, one law leaves at a
     time.
     """
     laws = sim.laws

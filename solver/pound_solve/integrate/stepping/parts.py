@@ -150,7 +150,7 @@ def step_in_parts(
 
     A part is halved until Newton's method converges.  After the touch of a curved contact the first part
     is short and the next ones grow, because forces begin there like the fourth root of time.  If a law that
-    holds a joint without mass loses its force, the step stops, and Python moves the joint (see
+    holds a massless joint loses its force, the step stops, and Python moves the joint (see
     `integrate.release`).
     """
     laws, run = sim.laws, sim.run

@@ -101,22 +101,22 @@ class Stepper(KernelEngine):
         self.advance(kernel.advance, self.scheme, ahead, steps, h)
 
     def resume(self, why: int) -> None:
-        """Move the joints without mass that a lost force had held; stop for any other reason."""
+        """Move the massless joints that a lost force had held; stop for any other reason."""
         if why != LOST_FORCE:
             raise self.trouble(why)
         present = KernelPresent(self)
-        release(present, int(self.state.lost_force))
+        release(present, int(self.sim.run.lost_force))
         present.hand_back()
-        self.state.lost_force = -1
-        invalidate_factor(self.state)
+        self.sim.run.lost_force = -1
+        invalidate_factor(self.sim.run)
 
     def figures(self) -> dict[str, Any]:
         """Return the figures of the run for the report."""
         return {
             "method": self.name,
             "time step": f"{self.dt:.6g}",
-            "steps": int(self.state.steps),
-            "events": int(self.state.events),
+            "steps": int(self.sim.run.steps),
+            "events": int(self.sim.run.events),
         }
 
     def checks(self, peaks: Peaks) -> list[Check]:
@@ -132,7 +132,7 @@ class Stepper(KernelEngine):
         if moves and squared_acceleration > 0.0:
             count = 2.0 * np.pi * (squared_velocity / squared_acceleration) ** 0.5 / self.dt
             checks.append(_resolved("steps in a period of the motion, about", count))
-        if softening := int(self.state.softening):
+        if softening := int(self.sim.run.softening):
             remedy = "a DT short enough to follow the softening, or EXACT"
             checks.append(
                 beyond(Subject.STEPS, "steps too long for a softening branch", softening, 0, remedy)

@@ -41,7 +41,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
     return problems
 
 
-def roof_without_mass(structure: Structure) -> list[Diagnostic]:
+def massless_roof(structure: Structure) -> list[Diagnostic]:
     """Report buildings whose highest beams end at nodes without mass while others end at masses."""
     model, problems = structure.model, list[Diagnostic]()
     group, at = places(model)

@@ -34,8 +34,8 @@ def find_mechanisms(
     """Report buildings of members whose nodes can move although the base is held, as with too many pins."""
     problems = list[Diagnostic]()
     for b, part in parts:
-        slack = part.slack()
-        bent = [m for m in slack[:, ~_allowed(structure, slack)].T if not _rigid(structure, b, m)]
+        unresisted = part.unresisted_motions()
+        bent = [m for m in unresisted[:, ~_allowed(structure, unresisted)].T if not _rigid(structure, b, m)]
         problems += [_mechanism(structure, b, motion) for motion in bent[:1]]
     return problems
 
@@ -135,14 +135,14 @@ class BuildingStiffness:
         self.columns = columns[shifts | used_rows(k[columns][:, columns])]
         stiffness = k[self.columns][:, self.columns]
         self.structure, self.factors = structure, modes.scaling(stiffness)
-        self.held = modes.Held(scaled(stiffness, self.factors))
+        self.scaled_stiffness = modes.SingularStiffness(scaled(stiffness, self.factors))
 
-    def slack(self) -> Array:
-        """Motions that the stiffness does not resist, shape (n, n_slack), over all columns."""
-        slack = self.held.slack.copy()
-        slack[abs(slack) < ROUNDING] = 0.0  # otherwise rounding counts as a deformation
-        motions = np.zeros((self.structure.dofs.size, slack.shape[1]))
-        motions[self.columns] = self.factors[:, None] * slack
+    def unresisted_motions(self) -> Array:
+        """Motions that the stiffness does not resist, shape (n, n_motions), over all columns."""
+        unresisted = self.scaled_stiffness.null_space.copy()
+        unresisted[abs(unresisted) < ROUNDING] = 0.0  # otherwise rounding counts as a deformation
+        motions = np.zeros((self.structure.dofs.size, unresisted.shape[1]))
+        motions[self.columns] = self.factors[:, None] * unresisted
         return motions
 
     @cached_property
@@ -167,12 +167,12 @@ class BuildingStiffness:
     @cached_property
     def sag(self) -> Array | None:
         """Displacements of `columns` under its weight along x; None for a mechanism."""
-        if self.held.slack.shape[1] or self.held.negative is not None:
+        if self.scaled_stiffness.null_space.shape[1] or self.scaled_stiffness.negative is not None:
             return None
         with np.errstate(all="ignore"):
             try:
                 push = self.structure.ground[0, self.columns]
-                return np.asarray(self.factors * self.held.solve(self.factors * push))
+                return np.asarray(self.factors * self.scaled_stiffness.solve(self.factors * push))
             except np.linalg.LinAlgError:
                 return None
 
@@ -186,13 +186,13 @@ class BuildingStiffness:
             return float(self.sag @ (matrix[self.columns][:, self.columns] @ self.sag))
 
 
-def _allowed(structure: Structure, slack: Array) -> Flags:
-    """Whether each of the `slack` motions is resisted by dashpots, closed contacts or other laws, or moves
-    no node.
+def _allowed(structure: Structure, unresisted: Array) -> Flags:
+    """Whether each of the motions `unresisted` is resisted by dashpots, closed contacts or other laws, or
+    moves no node.
     """
     shifts = [i for i, (_, d) in enumerate(structure.dofs.free) if d < 2]
-    still = np.abs(slack[shifts]).max(axis=0, initial=0.0) == 0.0
-    return np.asarray(still | resisted(structure, slack, touching=True).any(axis=0))
+    still = np.abs(unresisted[shifts]).max(axis=0, initial=0.0) == 0.0
+    return np.asarray(still | resisted(structure, unresisted, touching=True).any(axis=0))
 
 
 def _rigid(structure: Structure, b: Building, motion: Array) -> bool:

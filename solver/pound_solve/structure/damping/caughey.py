@@ -6,7 +6,7 @@ r"""CAUGHEY: a series with given ratios at as many frequencies, as a constant ma
 The second is a polynomial in :math:`\omega^2` through n points.  It is written in Lagrange's form and
 summed mode by mode, :math:`C = M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`: the coefficients
 :math:`a_b`, which differ by many powers of ten, are never formed, nor are powers of matrices, and
-DOFs without mass, for which the series has no meaning, are not damped (Bernal 1994).
+Massless DOFs, for which the series has no meaning, are not damped (Bernal 1994).
 
 Two terms are Rayleigh damping.  With more terms the ratio oscillates between the points and diverges beyond
 the last, upwards for an even number and downwards for an odd one. A negative ratio of any mode, or anywhere
