@@ -68,10 +68,10 @@ MAX_RETURNS = 5  #: largest number of returns of all laws to the same branches a
 
 
 class Mark(NamedTuple):
-    """A point at which a path is stopped: where ``row . u + share * factor`` rises to `value`."""
+    """A point at which a path is stopped: where ``row . u + on_factor * factor`` rises to `value`."""
 
     row: Array
-    share: float
+    on_factor: float
     value: float
 
 
@@ -284,9 +284,9 @@ class EquilibriumPath:
             self._move(*there[0])
             return None
         du, factor_rate, distance, hit = self._first_ahead(())
-        share = min(distance, 1.0)
-        self._released = (1.0 - share) * self._released
-        self._move(self.u + share * du, self.factor + share * factor_rate)
+        fraction = min(distance, 1.0)
+        self._released = (1.0 - fraction) * self._released
+        self._move(self.u + fraction * du, self.factor + fraction * factor_rate)
         return hit if isinstance(hit, PathEvent) and distance < 1.0 else None
 
     def _first_ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
@@ -301,10 +301,10 @@ class EquilibriumPath:
             return 0.0 * self.u, 0.0, 0.0, event
         distance = np.inf
         hit: PathEvent | int | None = None
-        for j, (row, share, value) in enumerate(marks):
-            slope = float(row @ du) + share * factor_rate
+        for j, (row, on_factor, value) in enumerate(marks):
+            slope = float(row @ du) + on_factor * factor_rate
             if slope > 0.0:
-                at = max((value - float(row @ self.u) - share * self.factor) / slope, 0.0)
+                at = max((value - float(row @ self.u) - on_factor * self.factor) / slope, 0.0)
                 if at < distance:
                     distance, hit = at, j
         if np.isfinite(distance) and not np.isfinite(self._longest_increment):
@@ -431,10 +431,12 @@ class EquilibriumPath:
         low, high, tries = 0.0, span, 0
         while high - low > BRACKETED * span:
             # false position and bisection alternate: the first is fast, the second robust
-            shares = [start[j] / (start[j] - values[j]) for j in crossed]
-            share = min(max(min(shares), NEAREST_TO_END), 1.0 - NEAREST_TO_END) if tries % 2 == 0 else 0.5
+            fractions = [start[j] / (start[j] - values[j]) for j in crossed]
+            fraction = (
+                min(max(min(fractions), NEAREST_TO_END), 1.0 - NEAREST_TO_END) if tries % 2 == 0 else 0.5
+            )
             tries += 1
-            middle = low + share * (high - low)
+            middle = low + fraction * (high - low)
             there = self._equilibrium(middle, du, factor_rate, marks)
             if there is None:
                 break
@@ -455,7 +457,7 @@ class EquilibriumPath:
         """
         now_at, sizes = self._arguments(u, factor)
         _, _, rate, noise = self.rates(u, factor)
-        values = [float(row @ u) + share * factor - value for row, share, value in marks]
+        values = [float(row @ u) + on_factor * factor - value for row, on_factor, value in marks]
         for branch, di, vi, least, size in zip(
             self.branches, now_at.tolist(), rate.tolist(), noise.tolist(), sizes.tolist()
         ):

@@ -240,13 +240,13 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
 
     ends, result = _ends(card, control, start), PushoverResult(card, structure, first=path.load)
     # the stations divide the path to the first end
-    (row, share, value), _ = ends[0]
+    (row, on_factor, value), _ = ends[0]
     begin = float(row @ state.u)
     result.add(here())
     station = 1
     while not result.end:
         part = station / card["STEPS"]
-        at_station = Mark(row, share, begin + part * (value - begin))
+        at_station = Mark(row, on_factor, begin + part * (value - begin))
         try:
             hit = path.step([*(m for m, _ in ends), at_station])
             point = here()

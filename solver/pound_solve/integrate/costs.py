@@ -77,13 +77,13 @@ def fastest_decay(k: Matrix, c: Matrix) -> float:
     """Return the largest eigenvalue of ``K x = lambda C x`` by power iteration, infinite for singular C."""
     try:
         factor = None if isinstance(c, np.ndarray) else Factor(c)
-        rates = np.linalg.solve(c, k) if factor is None else k
+        decay = np.linalg.solve(c, k) if factor is None else k
     except np.linalg.LinAlgError:
         return np.inf
     x, largest = np.cos(np.arange(c.shape[0]) ** 2.0), 0.0
     for _ in range(POWERS):
         x /= np.linalg.norm(x)
-        x = rates @ x if factor is None else factor.solve(k @ x)
+        x = decay @ x if factor is None else factor.solve(k @ x)
         largest = max(largest, float(np.linalg.norm(x)))
     return largest
 

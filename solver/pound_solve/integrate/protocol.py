@@ -387,9 +387,8 @@ def refuse_rigid(problem: Problem[Recorder], method: str) -> None:
     contact = f"{rigid.rule} of element {rigid.element}"
     if not (methods := without_steps(system)):
         other = "another GEOMETRY" if system.structure.corotational else "laws that are linear in pieces"
-        reason = (
-            f"no method takes a rigid contact, which {contact} is, where {reason_not_in_series(system)}"
-        )
+        why = reason_not_in_series(system)
+        reason = f"no method takes a rigid contact, which {contact} is, where {why}"
         remedy = f"give the contact a LAW with a stiffness, or choose {other}"
     elif method in ("AUTO", "EXACT", "TAYLOR"):
         return

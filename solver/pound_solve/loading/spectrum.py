@@ -156,38 +156,38 @@ def _power_of_two(x: Array) -> Array:
 def _peaks(lines: Piecewise, omega: Array, xi: Array, quantities: tuple[int, ...], free: bool) -> Array:
     """Largest absolute values of some of the q_k, shape (n_quantities, n) for n oscillators."""
     omega_d = omega * np.sqrt(1.0 - xi**2)
-    rate = -xi * omega + 1j * omega_d
-    z, width = _states(lines, rate), np.diff(lines.breaks)
+    eigenvalue = -xi * omega + 1j * omega_d
+    z, width = _states(lines, eigenvalue), np.diff(lines.breaks)
     a0, a1 = lines.coefs
-    bend = np.abs(_Swing(z[:-1], a0[:, None], a1[:, None], rate).bend)
+    bend = np.abs(_Swing(z[:-1], a0[:, None], a1[:, None], eigenvalue).bend)
     peaks = np.empty((len(quantities), len(omega)))
     for row, k in zip(peaks, quantities):
-        factor = np.asarray(rate**k / omega_d, complex)
+        factor = np.asarray(eigenvalue**k / omega_d, complex)
         q = np.abs((factor * z).imag)
         row[:] = q.max(axis=0)
         gain = width[:, None] ** 2 / 8.0 * np.abs(factor) * bend
         at, who = np.nonzero(np.maximum(q[:-1], q[1:]) + gain > row)
-        some = _Swing(z[at, who], a0[at], a1[at], rate[who])
+        some = _Swing(z[at, who], a0[at], a1[at], eigenvalue[who])
         mine, between = some.extremes(factor[who], width[at])
         np.maximum.at(row, who[mine], np.abs(between))
         if free:
-            # the first instant at which Im(factor rate z exp(rate s)) is zero
+            # the first instant at which Im(factor eigenvalue z exp(eigenvalue s)) is zero
             swing = factor * z[-1]
-            wait = np.mod(-np.angle(rate * swing), np.pi) / omega_d
-            np.maximum(row, np.abs((swing * np.exp(rate * wait)).imag), out=row)
+            wait = np.mod(-np.angle(eigenvalue * swing), np.pi) / omega_d
+            np.maximum(row, np.abs((swing * np.exp(eigenvalue * wait)).imag), out=row)
     return peaks
 
 
-def _states(lines: Piecewise, rate: Complex) -> Complex:
+def _states(lines: Piecewise, eigenvalue: Complex) -> Complex:
     """State z at every break, shape (n_breaks, n), from rest."""
     # times are sums: equal steps differ by rounding
     mantissa, exponent = np.frexp(np.diff(lines.breaks))
     step, which = np.unique(np.ldexp(np.round(mantissa, EQUAL), exponent), return_inverse=True)
     s = step[:, None]
-    decay, k = np.exp(rate * s), duhamel(rate * s, 1)
+    decay, k = np.exp(eigenvalue * s), duhamel(eigenvalue * s, 1)
     first, second = s * k[0], s**2 * k[1]
     a0, a1 = lines.coefs[:, :, None]
-    z = np.zeros((len(lines.breaks), len(rate)), complex)
+    z = np.zeros((len(lines.breaks), len(eigenvalue)), complex)
     z[1:] = -a0 * first[which] - a1 * second[which]
     for i, w in enumerate(which):
         z[i + 1] += decay[w] * z[i]
@@ -204,26 +204,26 @@ class _Swing(NamedTuple):
     z: Complex
     a0: Array
     a1: Array
-    rate: Complex
+    eigenvalue: Complex
 
     @property
     def bend(self) -> Complex:
         """Second derivative of z at the start."""
-        return self.rate * (self.rate * self.z - self.a0) - self.a1
+        return self.eigenvalue * (self.eigenvalue * self.z - self.a0) - self.a1
 
     def of(self, some: Index) -> _Swing:
         """Some of the oscillators."""
-        return _Swing(self.z[some], self.a0[some], self.a1[some], self.rate[some])
+        return _Swing(self.z[some], self.a0[some], self.a1[some], self.eigenvalue[some])
 
     def state(self, s: Array) -> Complex:
         """State z after the times `s`."""
-        k0, k1 = duhamel(self.rate * s, 1)
-        state: Complex = np.exp(self.rate * s) * self.z - s * (self.a0 * k0 + self.a1 * s * k1)
+        k0, k1 = duhamel(self.eigenvalue * s, 1)
+        state: Complex = np.exp(self.eigenvalue * s) * self.z - s * (self.a0 * k0 + self.a1 * s * k1)
         return state
 
     def slope(self, factor: Complex, s: Array) -> Array:
         """Slope of the quantity after the times `s`."""
-        slope: Array = (factor * (self.rate * self.state(s) - self.a0 - self.a1 * s)).imag
+        slope: Array = (factor * (self.eigenvalue * self.state(s) - self.a0 - self.a1 * s)).imag
         return slope
 
     def extremes(self, factor: Complex, width: Array) -> tuple[Index, Array]:
@@ -237,7 +237,7 @@ class _Swing(NamedTuple):
         """
         first, last = self.slope(factor, np.zeros_like(width)), self.slope(factor, width)
         once = np.flatnonzero(first * last < 0)
-        inflexion = np.mod(-np.angle(factor * self.bend), np.pi) / self.rate.imag
+        inflexion = np.mod(-np.angle(factor * self.bend), np.pi) / self.eigenvalue.imag
         # else one on either side of an inflexion, but for a slope of zero at an end, as at rest
         others = np.flatnonzero((first * last >= 0) & (inflexion < width))
         middle = inflexion[others]
@@ -258,7 +258,7 @@ class _Swing(NamedTuple):
             slope = self.slope(factor, s)
             before = (slope < 0) == rises
             low, high = np.where(before, s, low), np.where(before, high, s)
-            curvature = (bend * np.exp(self.rate * s)).imag
+            curvature = (bend * np.exp(self.eigenvalue * s)).imag
             new = s - slope / np.where(curvature == 0.0, np.inf, curvature)
             new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
             done = np.abs(new - s) <= enough

@@ -13,10 +13,10 @@ def next_trial(a: float, b: float, c: float, ga: float, gb: float, gc: float) ->
     """Return the next trial for a zero of g between `a` and `b`, where g has opposite signs, by inverse
     quadratic interpolation with the earlier trial `c`, or by the secant if `gc` is unknown.
     """
-    share = ga / (ga - gb)
+    fraction = ga / (ga - gb)
     if gc == gc:
-        share = ga / (gb - ga) * gc / (gb - gc) + (c - a) / (b - a) * ga / (gc - ga) * gb / (gc - gb)
-    return a + share * (b - a)
+        fraction = ga / (gb - ga) * gc / (gb - gc) + (c - a) / (b - a) * ga / (gc - ga) * gb / (gc - gb)
+    return a + fraction * (b - a)
 
 
 def cubic_peak(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:

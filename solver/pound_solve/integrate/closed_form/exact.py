@@ -260,15 +260,15 @@ class Exact(EventDrivenRun):
         self.add_works(np.array([put_in, 0.0, lost.sum()]))
         self.energy.dashpot_losses += lost
 
-    def _check_progress(self, length: float, rest: float) -> None:
+    def _check_progress(self, length: float, remaining: float) -> None:
         """Stop if the fastest mode cannot be resolved: pieces of the given `length` would not advance the
-        time, or too slowly for the `rest` of the interval or of the run.
+        time, or too slowly for the `remaining` of the interval or of the run.
         """
         self.pieces += 1
         left = MAX_PIECES - self.pieces
         slow = left < 0
         if self.unbroken >= WINDOWS_BEFORE_FORECAST:
-            slow |= rest > (left + 1) * length or self.goals[-1] - self.t > MAX_WINDOWS * length
+            slow |= remaining > (left + 1) * length or self.goals[-1] - self.t > MAX_WINDOWS * length
         if slow or length < NO_ADVANCE * max(1.0, self.t):
             raise self.stop(
                 "A503",

@@ -13,8 +13,8 @@ def hermite(h: float, x: float | Array, f: Array, slope: Array) -> tuple[Array, 
     d = f[1] - f[0]
     a, b = h * slope[0] - d, d - h * slope[1]
     value = (1 - y) * f[0] + y * f[1] + y * (1 - y) * ((1 - y) * a + y * b)
-    rate = d + (1 - 2 * y) * ((1 - y) * a + y * b) + y * (1 - y) * (b - a)
-    return value, rate / h
+    slope_in_y = d + (1 - 2 * y) * ((1 - y) * a + y * b) + y * (1 - y) * (b - a)
+    return value, slope_in_y / h
 
 
 class SampledMotion:

@@ -131,14 +131,14 @@ def find_zero(p: Array, degree: int, low: float, high: float) -> float:
     """
     at, last = 0.5 * (low + high), np.inf
     for _ in range(MAX_ROOT_TRIALS):
-        g, rate = value(p, degree, at), slopes(p, degree, at)[0]
+        g, slope = value(p, degree, at), slopes(p, degree, at)[0]
         if g == 0.0:
             return at
         if g > 0.0:
             high = at
         else:
             low = at
-        new = at - g / rate if rate > 0.0 else low
+        new = at - g / slope if slope > 0.0 else low
         if not low < new < high or abs(new - at) > 0.5 * last:
             new = 0.5 * (low + high)
         last = abs(new - at)
@@ -152,12 +152,12 @@ def find_summit(p: Array, degree: int, low: float, high: float) -> float:
     """Return where the slope of the polynomial falls through zero between `low` and `high`."""
     at, last = 0.5 * (low + high), np.inf
     for _ in range(MAX_SUMMIT_TRIALS):
-        rate, bend = slopes(p, degree, at)
-        if rate > 0.0:
+        slope, bend = slopes(p, degree, at)
+        if slope > 0.0:
             low = at
         else:
             high = at
-        new = at - rate / bend if bend < 0.0 else low
+        new = at - slope / bend if bend < 0.0 else low
         if not low < new < high or abs(new - at) > 0.5 * last:
             new = 0.5 * (low + high)
         last = abs(new - at)

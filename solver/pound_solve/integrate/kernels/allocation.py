@@ -112,16 +112,16 @@ def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
     if in_stiffness:
         touched += [columns for columns, _ in system.corotational.touched()]
     linked.append(coupled_pairs(touched))
-    one, other = (np.concatenate(part) for part in zip(*linked))
-    return laid_out(system.size, one, other, joins)
+    first, second = (np.concatenate(part) for part in zip(*linked))
+    return laid_out(system.size, first, second, joins)
 
 
 @by_content(most=8)
-def laid_out(n: int, one: Index, other: Index, joins: Flags) -> Layout:
+def laid_out(n: int, first: Index, second: Index, joins: Flags) -> Layout:
     """Choose the order of elimination of n unknowns from the pairs that are coupled."""
-    order = ldl.order(n, one, other)
+    order = ldl.order(n, first, second)
     inverse_order = np.argsort(order)
-    pattern = ldl.analyse(n, inverse_order[one], inverse_order[other])
+    pattern = ldl.analyse(n, inverse_order[first], inverse_order[second])
     column = np.repeat(np.arange(n), np.diff(pattern.ap))
     position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
     return Layout(order, inverse_order, pattern, column, joins, position)

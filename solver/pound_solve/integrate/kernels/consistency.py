@@ -96,16 +96,16 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition = laws.definition
     slowest = slowest_decay(sim)
-    rate = max(1.0 / linear.instant, 1.0 / (DELAY * slowest) if slowest > 0.0 else 0.0)
+    inverse_instant = max(1.0 / linear.instant, 1.0 / (DELAY * slowest) if slowest > 0.0 else 0.0)
     for q in range(len(step.matrix)):
         i, j = linear.pattern.ai[q], linear.column[q]
         step.matrix[q] = 0.0
         if not linear.has_mass[i] and not linear.has_mass[j]:
-            step.matrix[q] = linear.on_pattern[K_ROW, q] + rate * linear.on_pattern[C_ROW, q]
+            step.matrix[q] = linear.on_pattern[K_ROW, q] + inverse_instant * linear.on_pattern[C_ROW, q]
         elif i == j:
             step.matrix[q] = 1.0
     for i in range(len(definition.rule)):
-        change = laws.tangent.stiffness[i] + rate * laws.tangent.damping[i]
+        change = laws.tangent.stiffness[i] + inverse_instant * laws.tangent.damping[i]
         for q in range(definition.pair_pointers[i], definition.pair_pointers[i + 1]):
             at = definition.pair_places[q]
             if not linear.has_mass[linear.pattern.ai[at]] and not linear.has_mass[linear.column[at]]:
@@ -117,7 +117,7 @@ def factorise_massless(sim: Simulation, quantities: Array) -> float:
     if factor(linear.pattern, step.matrix, step.factors[MASSLESS], step.pivots[MASSLESS], step.row) >= 0:
         for i in range(len(step.row)):  # unrestrained unknowns keep their motion
             step.pivots[MASSLESS, i] = float("inf")
-    return rate
+    return inverse_instant
 
 
 def force_rates(sim: Simulation, velocity: Array, rate: Array, input_rates: Array, out: Array) -> None:
@@ -188,7 +188,8 @@ def jump_massless_rates(sim: Simulation) -> None:
     """Set the velocities of massless unknowns for the present branches (see the module docstring)."""
     linear, laws, step = sim.linear, sim.laws, sim.step
     definition, rows, tangent = laws.definition, laws.definition.rows, laws.tangent
-    rate = factorise_massless(sim, sim.members.now.quantities)  # before the scratch rows are filled here
+    # before the scratch rows are filled here
+    inverse_instant = factorise_massless(sim, sim.members.now.quantities)
     now, change, force = step.now, step.scratch[0], step.scratch[1]
     size, damping_force = step.scratch[2], step.scratch[3]
     multiply(linear.stiffness, now.displacement, force)
@@ -210,13 +211,13 @@ def jump_massless_rates(sim: Simulation) -> None:
     for i in range(len(force)):
         if linear.has_mass[i] or abs(force[i]) <= NEARLY_MET * size[i]:
             force[i] = 0.0
-        force[i] *= rate
+        force[i] *= inverse_instant
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], force)
     dashpot_forces(linear, laws, force, damping_force)
     force_rates(sim, now.velocity, laws.now.rate, now.input_rates, change)
     for i in range(len(change)):
         if not linear.has_mass[i]:
-            change[i] += rate * damping_force[i]
+            change[i] += inverse_instant * damping_force[i]
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
     for i in range(len(change)):
         now.velocity[i] += change[i]

@@ -124,14 +124,13 @@ def _with_relaxing_dofs(
 ) -> StateSpace:
     """Return the first-order form for ``n_mass`` DOFs with mass, then massless DOFs d with dashpots.
 
-    ``d' = rate (p_d - C_dh v - K_dh u - K_dd d)`` with ``rate = C_dd^-1`` is substituted into the equations
-    of the DOFs with mass.  `keep`, `u_p` and `back` relate these DOFs to all DOFs of the subsystem (see
-    `_without_static_dofs`).
+    ``d' = C_dd^-1 (p_d - C_dh v - K_dh u - K_dd d)`` is substituted into the equations of the DOFs with mass.
+    `keep`, `u_p` and `back` relate these DOFs to all DOFs of the subsystem (see `_without_static_dofs`).
     """
     n, n_x, n_damped = len(u_p), len(m), len(m) - n_mass
     h, d = slice(0, n_mass), slice(n_mass, n_x)
-    rate = np.linalg.inv(c[d, d]) if n_damped else np.zeros((0, 0))
-    to_h = c[h, d] @ rate
+    inverse_damping = np.linalg.inv(c[d, d]) if n_damped else np.zeros((0, 0))
+    to_h = c[h, d] @ inverse_damping
     c_h = c[h, h] - to_h @ c[d, h]
     k_h = k[h, h] - to_h @ k[d, h]
     k_hd = k[h, d] - to_h @ k[d, d]
@@ -142,7 +141,7 @@ def _with_relaxing_dofs(
     # displacements of damped massless DOFs are scaled to the root of their energy, like the others
     scale_d = np.sqrt(np.abs(np.diag(k)[d]))
     scale_d[scale_d == 0.0] = 1.0
-    rate_z = scale_d[:, None] * rate
+    inverse_damping_z = scale_d[:, None] * inverse_damping
     size = 2 * n_mass + n_damped
     zu, zv, zd = slice(0, n_mass), slice(n_mass, 2 * n_mass), slice(2 * n_mass, size)
     a = np.zeros((size, size))
@@ -150,12 +149,12 @@ def _with_relaxing_dofs(
     a[zv, zu] = -(phi.T @ k_h @ phi) / scale
     a[zv, zv] = -phi.T @ c_h @ phi
     a[zv, zd] = -phi.T @ k_hd / scale_d
-    a[zd, zu] = -rate_z @ k[d, h] @ phi / scale
-    a[zd, zv] = -rate_z @ c[d, h] @ phi
-    a[zd, zd] = -rate_z @ k[d, d] / scale_d
+    a[zd, zu] = -inverse_damping_z @ k[d, h] @ phi / scale
+    a[zd, zv] = -inverse_damping_z @ c[d, h] @ phi
+    a[zd, zd] = -inverse_damping_z @ k[d, d] / scale_d
     b = np.zeros((size, n))
     b[zv] = phi.T @ (keep[:, h].T - to_h @ keep[:, d].T)
-    b[zd] = rate_z @ keep[:, d].T
+    b[zd] = inverse_damping_z @ keep[:, d].T
     x_z, xdot_z = np.zeros((n_x, size)), np.zeros((n_x, size))
     x_z[h, zu] = phi / scale
     x_z[d, zd] = np.diag(1.0 / scale_d)
@@ -165,7 +164,7 @@ def _with_relaxing_dofs(
     z_u[zu] = (scale[:, None] * phi.T @ m[h, h]) @ back[h]
     z_v[zv] = (phi.T @ m[h, h]) @ back[h]
     z_u[zd] = scale_d[:, None] * back[d]
-    v_p = keep[:, d] @ rate @ keep[:, d].T if n_damped else np.zeros((n, n))
+    v_p = keep[:, d] @ inverse_damping @ keep[:, d].T if n_damped else np.zeros((n, n))
     return StateSpace(a, b, keep @ x_z, keep @ xdot_z, z_u, z_v, u_p, v_p, ())
 
 

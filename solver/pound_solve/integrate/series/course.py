@@ -147,21 +147,21 @@ class IntervalCourse:
         n_x = 2 * q + modal.particular_solution.shape[2]
         return np.vstack([*modal.motion[b, :, :seen], force])[:, :n_x]
 
-    def _rates(self, b: int) -> tuple[Complex, int, int]:
+    def _exponents(self, b: int) -> tuple[Complex, int, int]:
         """Return the eigenvalues of a part times the interval length; numbers of modes and of inputs."""
         modal, q = self.modal, int(self.modal.counts[b, 1])
         real, imaginary = modal.exponent_per_cell[b, :, :q]
-        rate = (real + 1j * imaginary) * (self.cells // 2)
-        return rate, q, modal.particular_solution.shape[2] // 2
+        exponents = (real + 1j * imaginary) * (self.cells // 2)
+        return exponents, q, modal.particular_solution.shape[2] // 2
 
     def _on_grid(self, b: int, count: int) -> Array:
         """Return the rows of a part at the starts of all cells of the first `count` intervals, shape
         (n_rows, n_intervals, n_cells), with one table for all intervals.
         """
-        rate, q, n_inputs = self._rates(b)
+        exponents, q, n_inputs = self._exponents(b)
         places = np.arange(self.cells) / self.cells
         re, im, start, slope = np.split(self.rows[b], [q, 2 * q, 2 * q + n_inputs], axis=1)
-        g, s = np.exp(rate * places[:, None])[:, None], places[:, None, None]
+        g, s = np.exp(exponents * places[:, None])[:, None], places[:, None, None]
         whole = np.broadcast_to(start, (self.cells, *start.shape))
         parts = g.real * re + g.imag * im, g.real * im - g.imag * re, whole, slope + s * start
         table = np.concatenate(parts, axis=2)
@@ -172,9 +172,9 @@ class IntervalCourse:
         """Return the rows of a part at places in some intervals, shape (n_rows, n_intervals, n_places),
         with the modes evaluated there.
         """
-        rate, q, n_inputs = self._rates(b)
+        exponents, q, n_inputs = self._exponents(b)
         x = self.envelope.x[intervals, b, None]
-        free = (x[..., :q] + 1j * x[..., q : 2 * q]) * np.exp(rate * places[..., None])
+        free = (x[..., :q] + 1j * x[..., q : 2 * q]) * np.exp(exponents * places[..., None])
         slope = np.broadcast_to(x[..., 2 * q + n_inputs : 2 * (q + n_inputs)], (*places.shape, n_inputs))
         start = x[..., 2 * q : 2 * q + n_inputs] + slope * places[..., None]
         moved = np.concatenate([free.real, free.imag, start, slope], axis=2)

@@ -127,8 +127,8 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) 
     new = series.motion[k + 2]
     n = len(new)
     springs = series.springs
-    rate = h * (k + 1)
-    structural_forces(linear, series, k, h * h, rate, new)
+    on_damping = h * (k + 1)
+    structural_forces(linear, series, k, h * h, on_damping, new)
     if k == 0:
         for i in range(n):
             new[i] += h * h * springs.constant[i]
@@ -141,7 +141,7 @@ def next_term(sim: Simulation, series: Series, k: int, h: float, n_powers: int) 
     for q in range(springs.n_dashpots[0]):
         law = springs.dashpots[q]
         term = deformation_term(laws.definition, series, k + 1, n_powers, law)
-        force = rate * laws.tangent.damping[law] * term
+        force = on_damping * laws.tangent.damping[law] * term
         add_row(laws.definition.rows, law, -force, new)
     add_contacts(laws, series, k, h, n_powers, new)
     add_friction(laws, series, k, h, n_powers, new)

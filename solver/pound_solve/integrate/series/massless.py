@@ -70,14 +70,14 @@ def allocate(
     elastic : ndarray, shape (n_laws,)
         Initial stiffness of the laws [F/L].
     """
-    first = np.flatnonzero(~linear.has_mass)
-    laws = np.flatnonzero(used_rows(law_rows[:, first]))
-    touched = law_rows[laws][:, first]
-    among = [a[np.ix_(first, first)] for a in (damping, stiffness)]
+    unordered = np.flatnonzero(~linear.has_mass)
+    laws = np.flatnonzero(used_rows(law_rows[:, unordered]))
+    touched = law_rows[laws][:, unordered]
+    among = [a[np.ix_(unordered, unordered)] for a in (damping, stiffness)]
     linked = [*(entries(a)[:2] for a in among), coupled_pairs(columns for columns, _ in by_rows(touched))]
-    one, other = (np.concatenate(part) for part in zip(*linked))
-    layout = laid_out(len(first), one, other, np.ones(len(laws), bool))
-    order, pattern, column, unknown = layout.order, layout.pattern, layout.column, first[layout.order]
+    first, second = (np.concatenate(part) for part in zip(*linked))
+    layout = laid_out(len(unordered), first, second, np.ones(len(laws), bool))
+    order, pattern, column, unknown = layout.order, layout.pattern, layout.column, unordered[layout.order]
     rows = sparse_rows(touched[:, order])
     pointers, pairs, values = places_in_pattern(rows, layout)
     lower = pattern.ai.astype(np.int64)
@@ -96,15 +96,15 @@ def allocate(
         pair_pointers=pointers,
         pair_places=pairs,
         pair_values=values,
-        damped=np.zeros(len(first), bool),
-        unknowns_of_order=np.zeros((2, len(first)), np.int64),
+        damped=np.zeros(len(unordered), bool),
+        unknowns_of_order=np.zeros((2, len(unordered)), np.int64),
         n_of_order=np.zeros(2, np.int64),
         factors=np.zeros((2, len(pattern.li))),
         failed_pivot=np.zeros(1),
-        inverse_pivots=np.ones((2, len(first))),
+        inverse_pivots=np.ones((2, len(unordered))),
         matrix=np.zeros(len(column)),
-        row=np.zeros(len(first)),
-        right_side=np.zeros(len(first)),
+        row=np.zeros(len(unordered)),
+        right_side=np.zeros(len(unordered)),
         elastic=np.abs(diagonal(stiffness)[unknown] + diagonal(springs)),
     )
 
@@ -191,12 +191,12 @@ def balance_forces(series: Series, k: int, n_powers: int, which: int) -> None:
     of K and of the laws, including the parts of smooth laws and dampers beyond their tangents.
     """
     massless, springs, c = series.massless, series.springs, series.motion[k]
-    members, x = massless.unknowns_of_order[which], massless.right_side
+    unknowns, x = massless.unknowns_of_order[which], massless.right_side
     for q in range(massless.n_of_order[which]):
-        x[members[q]] = -row_product(springs.rows, massless.unknown[members[q]], c)
+        x[unknowns[q]] = -row_product(springs.rows, massless.unknown[unknowns[q]], c)
     if k < n_powers:
         for q in range(massless.n_of_order[which]):
-            x[members[q]] += load_term(springs, series, k, n_powers, massless.unknown[members[q]])
+            x[unknowns[q]] += load_term(springs, series, k, n_powers, massless.unknown[unknowns[q]])
     smooth = series.smooth
     for r in range(len(smooth.laws)):
         n = massless.index_of_law[smooth.laws[r]]
@@ -212,10 +212,10 @@ def balance_forces(series: Series, k: int, n_powers: int, which: int) -> None:
 def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> None:
     """Compute the coefficients `k` > 0 of the unknowns of order one."""
     massless, c, x = series.massless, series.motion, series.massless.right_side
-    members = massless.unknowns_of_order[ORDER_ONE]
+    unknowns = massless.unknowns_of_order[ORDER_ONE]
     balance_forces(series, k - 1, n_powers, ORDER_ONE)
     for q in range(massless.n_of_order[ORDER_ONE]):
-        x[members[q]] -= k / h * row_product(massless.damping, members[q], c[k])
+        x[unknowns[q]] -= k / h * row_product(massless.damping, unknowns[q], c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
         if massless.index_of_law[i] >= 0:
@@ -229,7 +229,7 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, n_powers: int) -> N
             add_row(massless.rows, n, -dashpot_remainder(laws.definition, series.smooth, r, k - 1, h), x)
     solve_order(massless, ORDER_ONE)
     for q in range(massless.n_of_order[ORDER_ONE]):
-        c[k, massless.unknown[members[q]]] = x[members[q]] * (h / k)
+        c[k, massless.unknown[unknowns[q]]] = x[unknowns[q]] * (h / k)
 
 
 def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_powers: int) -> None:
@@ -245,9 +245,9 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, n_pow
         add_damped(laws, series, k, h, n_powers)
     balance_forces(series, k, n_powers, ORDER_ZERO)
     solve_order(massless, ORDER_ZERO)
-    members = massless.unknowns_of_order[ORDER_ZERO]
+    unknowns = massless.unknowns_of_order[ORDER_ZERO]
     for q in range(massless.n_of_order[ORDER_ZERO]):
-        c[k, massless.unknown[members[q]]] = x[members[q]]
+        c[k, massless.unknown[unknowns[q]]] = x[unknowns[q]]
 
 
 def joints_jump(laws: Laws, series: Series, n_powers: int) -> bool:

@@ -89,15 +89,15 @@ class ModalPart:
 
         self.damping, self.inputs, self.constant, self.length = damping, inputs, constant, length
         self.modes = ModalPropagator(state_space(mass, damping, stiffness), inputs)
-        self.rate = self.modes.eigenvalues
-        size = np.abs(self.rate)
-        loose = size.min() < NOT_HELD * size.max() or self.rate.real.max() > GROWS * size.max()
+        self.eigenvalues = self.modes.eigenvalues
+        size = np.abs(self.eigenvalues)
+        loose = size.min() < NOT_HELD * size.max() or self.eigenvalues.real.max() > GROWS * size.max()
         if loose or self.modes.condition > MAX_CONDITION:
             raise np.linalg.LinAlgError
         unit, none = np.eye(inputs.shape[1]), np.zeros(len(mass))
         forcing = np.array([self.modes.forcing(s[None], none)[0] for s in unit]).T
-        self.steady = -forcing.reshape(len(self.rate), len(unit)) / self.rate[:, None]
-        self.static_positions = -self.modes.load_forcing(np.eye(len(mass))).T / self.rate[:, None]
+        self.steady = -forcing.reshape(len(self.eigenvalues), len(unit)) / self.eigenvalues[:, None]
+        self.static_positions = -self.modes.load_forcing(np.eye(len(mass))).T / self.eigenvalues[:, None]
         self.followed = np.flatnonzero(rows.any(axis=1))
         self.rows = rows[self.followed] @ self.modes.u_q
 
@@ -105,8 +105,9 @@ class ModalPart:
         """Return the derivative of order 0 or 1 of some rows at places in [0, 1] of the interval, as rows
         on x, shape (n_places, n_rows, n_x).
         """
-        free = (rows * self.rate**order) * np.exp(self.rate * self.length * places[:, None])[:, None]
-        start, slope = rows @ self.steady, rows @ (self.steady / (self.rate * self.length)[:, None])
+        growth = np.exp(self.eigenvalues * self.length * places[:, None])
+        free = (rows * self.eigenvalues**order) * growth[:, None]
+        start, slope = rows @ self.steady, rows @ (self.steady / (self.eigenvalues * self.length)[:, None])
         grown = slope + start * places[:, None, None]
         if order:
             start, grown = 0.0 * start, np.broadcast_to(start / self.length, grown.shape)
@@ -116,7 +117,7 @@ class ModalPart:
     @cached_property
     def works(self) -> WorkForms:
         """Works over the interval."""
-        panels = int(np.ceil(np.abs(self.rate).max() * self.length / PANEL))
+        panels = int(np.ceil(np.abs(self.eigenvalues).max() * self.length / PANEL))
         points, weights = np.polynomial.legendre.leggauss(POINTS)
         places = ((np.arange(panels)[:, None] + 0.5 + 0.5 * points) / panels).ravel()
         shares = np.tile(0.5 * self.length / panels * weights, panels)
@@ -192,14 +193,14 @@ def allocate(
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
     stiffness = stiffness * open_  # parts have separate modes while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
-    if any(np.abs(p.rate).max() * length > MAX_CELLS * MAX_RADIANS for _, p in parts):
+    if any(np.abs(p.eigenvalues).max() * length > MAX_CELLS * MAX_RADIANS for _, p in parts):
         parts = []
     seen = [np.flatnonzero(np.isin(enveloped, place[unknowns])) for unknowns, _ in parts]
     n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
-    counts = [(len(u), len(p.rate), len(p.followed), len(s)) for (u, p), s in zip(parts, seen)]
+    counts = [(len(u), len(p.eigenvalues), len(p.followed), len(s)) for (u, p), s in zip(parts, seen)]
     n, q, r, w = np.max([(0, 0, 0, 0), *counts], axis=0).tolist()
     b, size = len(parts), 2 * q + 2 * n_inputs
-    fastest = max((float(np.abs(p.rate).max()) for _, p in parts), default=0.0)
+    fastest = max((float(np.abs(p.eigenvalues).max()) for _, p in parts), default=0.0)
     cells = max(MIN_CELLS, int(np.ceil(fastest * length / MAX_RADIANS)))
     places = 2 * cells + 1
     modal = Modal(
@@ -245,27 +246,27 @@ def fill_tables(
     """Fill in the tables of part `b`.  `enveloped` are those of its `unknowns` that the envelopes need, and
     `seen` their numbers among all that the envelopes need.
     """
-    modes, rate = part.modes, part.rate
+    modes, eigenvalues = part.modes, part.eigenvalues
     h, steady = part.length, part.steady
 
     def put(array: NDArray[Any], values: NDArray[Any]) -> None:
         array[b][tuple(map(slice, values.shape))] = values
 
     put(out.unknowns, unknowns)
-    one = np.eye(len(unknowns))
-    to_modes = modes.state_of(one, 0.0 * one), modes.state_of(0.0 * one, one)
+    unit = np.eye(len(unknowns))
+    to_modes = modes.state_of(unit, 0.0 * unit), modes.state_of(0.0 * unit, unit)
     put(out.to_modes, np.array([np.vstack([x.real, x.imag]) for x in to_modes]))
     put(out.from_modes, np.array([np.hstack([x.real, -x.imag]) for x in (modes.u_q, modes.v_q)]))
     put(out.static_positions, np.vstack([part.static_positions.real, part.static_positions.imag]))
     cells = len(out.values) - 1
-    growth = np.exp(rate * h * np.linspace(0.0, 1.0, 2 * cells + 1)[:, None])
+    growth = np.exp(eigenvalues * h * np.linspace(0.0, 1.0, 2 * cells + 1)[:, None])
     put(out.exponentials, np.stack([growth.real, growth.imag], axis=1))
-    start = np.hstack([steady, steady / (rate * h)[:, None]])
+    start = np.hstack([steady, steady / (eigenvalues * h)[:, None]])
     put(out.particular_solution, np.vstack([start.real, start.imag]))
-    put(out.chord_error_factor, np.minimum(2.0, (np.abs(rate) * h / cells) ** 2 / 8.0))
+    put(out.chord_error_factor, np.minimum(2.0, (np.abs(eigenvalues) * h / cells) ** 2 / 8.0))
     put(out.followed, part.followed)
     out.index_of[b, part.followed] = np.arange(len(part.followed))
-    put(out.exponent_per_cell, np.array([rate.real, rate.imag]) * h / cells)
+    put(out.exponent_per_cell, np.array([eigenvalues.real, eigenvalues.imag]) * h / cells)
     put(out.amplitude, np.abs(part.rows))
     put(out.rows, part.table(part.rows, START)[0])
     put(out.damping_work, part.works.damping)

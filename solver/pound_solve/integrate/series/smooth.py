@@ -59,7 +59,7 @@ def allocate(smooth: Flags, n_coefs: int) -> Smooth:
         high=np.zeros(n),
         ratio=np.zeros((n, 2 * MAX_POWER_BITS, n_coefs)),
         ratio_power=np.zeros((n, n_coefs)),
-        part=np.zeros((n, n_coefs)),
+        w=np.zeros((n, n_coefs)),
         remainder=np.zeros((n, n_coefs)),
         force=np.zeros((n, n_coefs)),
     )
@@ -119,8 +119,8 @@ def product_term(a: Array, b: Array, k: int) -> float:
     return total
 
 
-def whole_power_term(share: Array, n: int, k: int) -> float:
-    """Coefficient `k` of the power `n` of the series in the first row of `share`, by squares and products
+def whole_power_term(ratio: Array, n: int, k: int) -> float:
+    """Coefficient `k` of the power `n` of the series in the first row of `ratio`, by squares and products
     that fill the other rows.
     """
     bit, row = 1, 0
@@ -128,33 +128,33 @@ def whole_power_term(share: Array, n: int, k: int) -> float:
         bit *= 2
     while bit > 1:
         bit //= 2
-        share[row + 1, k] = product_term(share[row], share[row], k)
+        ratio[row + 1, k] = product_term(ratio[row], ratio[row], k)
         row += 1
         if n & bit:
-            share[row + 1, k] = product_term(share[row], share[0], k)
+            ratio[row + 1, k] = product_term(ratio[row], ratio[0], k)
             row += 1
-    power: float = share[row, k]
+    power: float = ratio[row, k]
     return power
 
 
 def compute_term(laws: Laws, series: Series, r: int, k: int, n_powers: int) -> None:
     """Compute the coefficients `k` of deformation, force and power of smooth law `r` from the motion."""
     smooth, i = series.smooth, series.smooth.laws[r]
-    constants, share = smooth.constants[r], smooth.ratio[r]
+    constants, ratio = smooth.constants[r], smooth.ratio[r]
     d = deformation_term(laws.definition, series, k, n_powers, i)
     series.deformation[i, k] = d
     smooth.force[r, k] = laws.tangent.stiffness[i] * d + constants[Q] * smooth.remainder[r, k]
-    smooth.part[r, k] = constants[SLOPE] * d + smooth.remainder[r, k]
+    smooth.w[r, k] = constants[SLOPE] * d + smooth.remainder[r, k]
     if k == 0:
         smooth.force[r, 0] += laws.tangent.offset[i]
-        smooth.part[r, 0] = constants[W] + constants[SLOPE] * (d - laws.now.deformation[i])
-    share[0, k] = smooth.part[r, k] / constants[Y]
+        smooth.w[r, 0] = constants[W] + constants[SLOPE] * (d - laws.now.deformation[i])
+    ratio[0, k] = smooth.w[r, k] / constants[Y]
     if not smooth.bent[r]:
         smooth.ratio_power[r, k] = 0.0
     elif is_product(constants[N]):
-        smooth.ratio_power[r, k] = whole_power_term(share, int(constants[N]), k)
+        smooth.ratio_power[r, k] = whole_power_term(ratio, int(constants[N]), k)
     else:
-        smooth.ratio_power[r, k] = power_term(constants[N], share[0, 0], share[0], smooth.ratio_power[r], k)
+        smooth.ratio_power[r, k] = power_term(constants[N], ratio[0, 0], ratio[0], smooth.ratio_power[r], k)
 
 
 def find_remainders(laws: Laws, series: Series, k: int, n_powers: int) -> None:
@@ -168,10 +168,10 @@ def find_remainders(laws: Laws, series: Series, k: int, n_powers: int) -> None:
             continue
         compute_term(laws, series, r, k - 1, n_powers)
         constants, d = smooth.constants[r], series.deformation[smooth.laws[r]]
-        power, part = smooth.ratio_power[r], smooth.part[r]
+        power, w = smooth.ratio_power[r], smooth.w[r]
         total = 0.0
         for j in range(1, k):
-            total += (k - j) * power[j] * (constants[A] * d[k - j] - constants[B] * part[k - j])
+            total += (k - j) * power[j] * (constants[A] * d[k - j] - constants[B] * w[k - j])
         smooth.remainder[r, k] = total / (k * (1.0 + constants[B] * power[0]))
 
 
@@ -195,14 +195,14 @@ def add_remainders(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> 
 
 def power_defect(smooth: Smooth, r: int, degree: int, s: float) -> float:
     """Relative error of w/y at the place `s` that comes from truncating the series of its power."""
-    constants, share = smooth.constants[r], smooth.ratio[r, 0]
+    constants, ratio = smooth.constants[r], smooth.ratio[r, 0]
     x, power = 0.0, 0.0
     for k in range(degree - 1, -1, -1):
-        x = x * s + share[k]
+        x = x * s + ratio[k]
         power = power * s + smooth.ratio_power[r, k]
     whole = (x if is_product(constants[N]) else max(x, 0.0)) ** constants[N]
-    lacks: float = max(abs(constants[A]), abs(constants[B])) * abs(whole - power) * abs(x - share[0])
-    return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
+    lacks: float = max(abs(constants[A]), abs(constants[B])) * abs(whole - power) * abs(x - ratio[0])
+    return lacks if lacks == 0.0 else lacks / max(abs(x), abs(ratio[0]))
 
 
 def smooth_valid_up_to(smooth: Smooth, degree: int, end: float) -> float:

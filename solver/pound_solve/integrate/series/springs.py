@@ -38,17 +38,17 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Ass
     i, j, values = entries(np.zeros((0, 0)) if stiffness is None else stiffness)
     every = np.arange(0 if stiffness is None else n)  # free bodies have a row, too
     slices = [slice(a, b) for a, b in pairwise(rows.pointers.tolist())]
-    one, other = coupled_pairs(rows.columns[x].astype(np.int64) for x in slices)
-    keys = np.unique(np.concatenate([one * n + other, i * n + j, every * n + every]))
-    place, fixed = np.searchsorted(keys, one * n + other), np.zeros(len(keys))
+    first, second = coupled_pairs(rows.columns[x].astype(np.int64) for x in slices)
+    keys = np.unique(np.concatenate([first * n + second, i * n + j, every * n + every]))
+    place, fixed = np.searchsorted(keys, first * n + second), np.zeros(len(keys))
     fixed[np.searchsorted(keys, i * n + j)] = values
-    row, first = np.unique(keys // n, return_index=True)
+    row, begin = np.unique(keys // n, return_index=True)
     squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in slices]
     return AssembledSprings(
         row=row.astype(np.uint32),
         index_of=inverse_index(row, n),
         rows=Rows(
-            np.append(first, len(keys)).astype(np.uint32), (keys % n).astype(np.uint32), np.zeros(len(keys))
+            np.append(begin, len(keys)).astype(np.uint32), (keys % n).astype(np.uint32), np.zeros(len(keys))
         ),
         stiffness=fixed,
         pair_pointers=pointers(squares),

@@ -244,7 +244,7 @@ class Smooth(NamedTuple):
         Range of w/y in which the series is valid.
     ratio : ndarray, shape (n_smooth, 2 MAX_POWER_BITS, MAX_DEGREE + 1)
         Coefficients of w/y, and of its powers on the way to n.
-    ratio_power, part, remainder, force : ndarray, shape (n_smooth, MAX_DEGREE + 1)
+    ratio_power, w, remainder, force : ndarray, shape (n_smooth, MAX_DEGREE + 1)
         Coefficients of p and w, of the part of w beyond the tangent, and of the forces.
     """
 
@@ -256,7 +256,7 @@ class Smooth(NamedTuple):
     high: Array
     ratio: Array
     ratio_power: Array
-    part: Array
+    w: Array
     remainder: Array
     force: Array
 

@@ -89,14 +89,14 @@ def accept_members(members: Corotational) -> None:
 
 def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
     """Compute the residual of the alpha methods at the end of the step."""
-    one = 1.0 / (1.0 - scheme.alpha_f)
+    factor = 1.0 / (1.0 - scheme.alpha_f)
     before, after, residual = step.now.acceleration, step.trial.acceleration, step.residual
     mean, inertia = step.scratch[0], step.scratch[1]
     for i in range(len(residual)):
         mean[i] = (1.0 - scheme.alpha_m) * after[i] + scheme.alpha_m * before[i]
     multiply(linear.mass, mean, inertia)
     for i in range(len(residual)):
-        residual[i] = one * (inertia[i] - scheme.alpha_f * residual[i])
+        residual[i] = factor * (inertia[i] - scheme.alpha_f * residual[i])
 
 
 def accept_trial(sim: Simulation, rules: RuleFunctions, scheme: Scheme, h: float, factor: int) -> None:

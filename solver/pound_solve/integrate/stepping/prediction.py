@@ -29,9 +29,9 @@ def predict_step(sim: Simulation, scheme: Scheme, coefs: Array, end: float, h: f
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
         inertia = step.scratch[0]
         multiply(linear.mass, now.acceleration, inertia)
-        one = 1.0 / (1.0 - scheme.alpha_f)
+        factor = 1.0 / (1.0 - scheme.alpha_f)
         for i in range(n):
-            right[i] -= one * (scheme.alpha_f * step.residual[i] - scheme.alpha_m * inertia[i])
+            right[i] -= factor * (scheme.alpha_f * step.residual[i] - scheme.alpha_m * inertia[i])
     for i in range(n):
         right[i] = trial.load[i] - right[i] - now.damping_force[i] - on_velocity * now.damping_rate[i]
     for i in range(len(definition.rule)):
