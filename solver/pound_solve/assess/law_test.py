@@ -154,6 +154,13 @@ def protocol(spring: LawSpring) -> list[float]:
     return [mu * d for mu in DUCTILITIES for d in (plus, minus)] + [0.0]
 
 
+def usual_rate(spring: LawSpring) -> float:
+    """Return the speed at which a loop is drawn unless another is given: 1 if the reported force includes
+    the law's resistance to the rate, otherwise 0.
+    """
+    return 1.0 if spring.role.reports_damping else 0.0
+
+
 def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
     """Drive a virgin law from zero deformation along a path.
 
@@ -236,5 +243,5 @@ def table(points: Sequence[LoopPoint]) -> str:
 def picture(spec: Spec) -> str:
     """SVG of a law's loop with its `sample`, for the manual."""
     spring, items = specimen(spec)
-    loop = trace(spring.law, protocol(spring), float(spring.role.reports_damping))
+    loop = trace(spring.law, protocol(spring), usual_rate(spring))
     return svg(loop.curve, f"{spec.name} {items}", *AXES[spec.family])

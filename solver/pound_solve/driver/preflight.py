@@ -38,7 +38,7 @@ def pressed(structure: Structure) -> list[Diagnostic]:
     """Warn of contacts that are closed at rest: some programs write the gap with a minus sign."""
     elements, props = structure.model.elements, structure.model.props
     used = dict.fromkeys(elements[s.element].prop for s in structure.laws if s.role.collides)
-    hint = "a distance is positive; leave it if the bodies are pressed on purpose"
+    hint = "a distance is positive; keep it if the bodies are pressed on purpose"
     return [
         Diagnostic(
             "P336",

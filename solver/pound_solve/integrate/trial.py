@@ -56,9 +56,13 @@ class ExactTrial:
             self.cost = np.inf
 
     def run(self, others: float) -> Outcome | None:
-        """Run EXACT and return its outcome.  Return None if all trials would cost more than a fraction of
-        the `others`, which still have to load their kernels, or if EXACT stops because a mode is too fast
-        or changes do not end.
+        """Run EXACT and return its outcome; None if all trials together would exceed the budget, a fraction
+        of the cost without trials, or if EXACT stops because a mode is too fast or changes do not end.
+
+        Parameters
+        ----------
+        others : float
+            Cost of the other methods, without the loading of their kernels.
 
         Raises
         ------

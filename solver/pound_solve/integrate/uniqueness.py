@@ -72,9 +72,9 @@ class Uniqueness:
     Attributes
     ----------
     first : float
-        The first instant at which it is undecided which of them continues [T]; NaN if there is none.
+        The first instant at which rounding decides which of the laws gives way [T]; NaN if there is none.
     elements : list of int
-        Elements of the laws that are undecided at that instant.
+        Elements of the laws among which rounding decides at that instant.
     """
 
     def __init__(self, system: ReducedSystem) -> None:
@@ -152,8 +152,8 @@ class Uniqueness:
         factors = 1.0 / np.sqrt(np.where(elastic > 0.0, elastic, 1.0))
         values, motions = np.linalg.eigh(scaled(linear + (rows.T * stiffness) @ rows, factors))
         for stretch in (rows @ (factors[:, None] * motions[:, values < least])).T:
-            share = np.sign(rising) * stretch / np.abs(stretch).max()
-            on, back = share > PARTICIPATION, share < -PARTICIPATION
+            motion = np.sign(rising) * stretch / np.abs(stretch).max()
+            on, back = motion > PARTICIPATION, motion < -PARTICIPATION
             if on.any() and back.any():
                 return sorted({system.structure.laws[i].element for i in np.flatnonzero(on | back)})
         return []

@@ -37,7 +37,7 @@ def execute(args: argparse.Namespace) -> int:
     spec = law_test.law_of(f"{args.law} {args.items.pop(0)}" if family else args.law)
     spring, items = law_test.specimen(spec, args.items)
     path = _turning_points(args) or law_test.protocol(spring)
-    rate = float(spring.role.reports_damping) if args.rate is None else args.rate
+    rate = law_test.usual_rate(spring) if args.rate is None else args.rate
     loop = law_test.trace(spring.law, path, rate)
     texts = (f"{spec.name} {items}", *law_test.AXES[spec.family])
     print(f"{texts[0]}\n\n{law_test.table(loop.corners)}\n\n{text_plot.letters(loop.curve)}")

@@ -169,7 +169,7 @@ class LawExtremes(NamedTuple):
     deformation, rate : ndarray
     terms : ndarray
         Largest sum of the absolute terms of a rate.  The rounding of a rate is a fraction of it, however
-        small the rate.  The initial value is so large that a structure at rest moves by less.
+        small the rate.  It starts at a size beside which the rounding of a state of rest is no motion.
     """
 
     deformation: Array

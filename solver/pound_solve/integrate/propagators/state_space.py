@@ -124,7 +124,7 @@ def _with_relaxing_dofs(
 ) -> StateSpace:
     """Return the first-order form for ``n_mass`` DOFs with mass, then massless DOFs d with dashpots.
 
-    ``d' = C_dd^-1 (p_d - C_dh v - K_dh u - K_dd d)`` is substituted into the equations of the DOFs with mass.
+    ``d' = C_dd^-1 (p_d - C_dh v - K_dh u - K_dd d)`` is substituted into the equations of those with mass.
     `keep`, `u_p` and `back` relate these DOFs to all DOFs of the subsystem (see `_without_static_dofs`).
     """
     n, n_x, n_damped = len(u_p), len(m), len(m) - n_mass

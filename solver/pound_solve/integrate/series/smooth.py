@@ -40,7 +40,7 @@ from pound_solve.numerics.types import Array, Flags
 POWER_LEFT_OUT = 1e-14  #: fraction of the force at w = y that a power left out may make
 ZERO = 0.1 * PAST  #: fraction of y below which w counts as zero
 POWER_TRUNCATION = 1e-13  #: error of w by truncating the series of the power, as a share of w, at most
-CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
+CREEP = 100.0  #: multiple of y over the length of the run: the least rate beside which others are judged
 #: bits of the largest whole power computed by multiplication; larger ones matter near w = y only
 MAX_POWER_BITS = 7
 W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.constants`

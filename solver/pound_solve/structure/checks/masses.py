@@ -26,9 +26,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
     movable = {*structure.dofs.free, *structure.dofs.moved}
     heavy = {n for (n, d), mass in structure.nodal_mass.items() if mass > 0.0 and (n, d) in movable}
     if not heavy:
-        return [
-            Diagnostic("P347", "nothing has mass, so that nothing swings", asked.span, remedy, "warning")
-        ]
+        return [Diagnostic("P347", "no node has mass, so nothing can swing", asked.span, remedy, "warning")]
     names = {n: card.label for card in model.buildings for n in card["NODES"]}
     free = {owner for owner, _ in structure.dofs.free}
     problems = []
@@ -36,7 +34,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
         if heavy.isdisjoint(nodes) and not free.isdisjoint(nodes) and stands(model, nodes):
             name = next((names[n] for n in nodes if n in names), "")
             who = repr(name) if name else f"the building of nodes {some(nodes)}"
-            message = f"{who} has no mass, so that the ground does not shake it"
+            message = f"{who} has no mass, so the ground does not shake it"
             problems.append(Diagnostic("P347", message, model.nodes[nodes[0]].span, remedy, "warning"))
     return problems
 

@@ -64,7 +64,7 @@ def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
                 f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
                 f"{bare / force:.3g} {model.units.force} by A and E"
             )
-            yield b.name, _weights(model, b, finding, "; leave it if the frame bears no slab")
+            yield b.name, _weights(model, b, finding, "; keep it if the frame bears no slab")
         elif strain > SQUASHED:
             finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, which shortens its columns by "
