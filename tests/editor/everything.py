@@ -6,7 +6,7 @@ from pound_deck.model import Span
 from pound_solve.catalog import catalog
 from pound_solve.editor.complete import complete
 from pound_solve.editor.definition import define, references
-from pound_solve.editor.diagnose import MOST, diagnose
+from pound_solve.editor.diagnose import MAX_DIAGNOSTICS, diagnose
 from pound_solve.editor.hover import hover
 from pound_solve.editor.reading import read
 from pound_solve.editor.rename import RenameError, renamable, rename
@@ -18,7 +18,7 @@ def ask_everything(path, text, place):
     unsaved = {str(path): text}
     reading = read(str(path), catalog(), unsaved)
     found, files = diagnose(str(path), unsaved)
-    assert {d.code for d in found} <= MESSAGES.keys() and len(found) <= MOST
+    assert {d.code for d in found} <= MESSAGES.keys() and len(found) <= MAX_DIAGNOSTICS
     for d in found:
         lines = files[d.span.file].split("\n") if d.span and d.span.file in files else None
         assert lines is None or (1 <= d.span.line <= len(lines) and 1 <= d.span.column < d.span.end)

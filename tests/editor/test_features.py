@@ -231,5 +231,5 @@ def test_the_structure_is_left_out_of_a_deck_with_many_nodes(monkeypatch):
 def test_errors_come_first_where_there_are_too_many_messages():
     bad = DECK.replace("NODES\n", "NODES\n" + "".join(f"   {k}  0 0\n" for k in range(200, 350)))
     found, _ = diagnose.diagnose("/deck.inp", {"/deck.inp": bad + "   HISTORY T=oops\n"})
-    assert len(found) == diagnose.MOST
-    assert [d.severity for d in found] == ["error"] + ["warning"] * (diagnose.MOST - 1)
+    assert len(found) == diagnose.MAX_DIAGNOSTICS
+    assert [d.severity for d in found] == ["error"] + ["warning"] * (diagnose.MAX_DIAGNOSTICS - 1)

@@ -242,7 +242,7 @@ MISTAKES = {
     ),
     "no weights": (
         [(" 12,13,15,16 240\n 22,23,25,26 300\n", "")],
-        "P347 nothing has mass, so that nothing swings: give the nodes of its floors WEIGHTS",
+        "P347 nothing has mass, so nothing can swing: give the nodes of its floors WEIGHTS",
     ),
     "weights of one building forgotten": (
         [(" 22,23,25,26 300\n", "")],

@@ -137,7 +137,7 @@ WEIGHTS = "WEIGHTS\n 2,4 500\n 6 800\n"
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ([(WEIGHTS, "")], "nothing has mass, so that nothing swings: give the nodes of its floors WEIGHTS"),
+        ([(WEIGHTS, "")], "nothing has mass, so nothing can swing: give the nodes of its floors WEIGHTS"),
         ([(WEIGHTS, ""), ("HISTORY 1", "MODAL 1")], "nothing has mass"),
         ([(" 6 800\n", "")], "the building of nodes 5, 6 has no mass"),
         ([(" 6 800\n", " 6 0\n")], "the building of nodes 5, 6 has no mass"),

@@ -29,7 +29,7 @@ Sides = tuple[float, float]  #: positive and negative side
 
 NONE: Sides = (0.0, 0.0)  #: a spring that does not yield
 
-FAR = 10.0  #: range of unloading, as a multiple of the deformation plus the elastic deformation
+UNLOADING_RANGE = 10.0  #: range of unloading, as a multiple of the deformation plus the elastic deformation
 
 
 class Damage(NamedTuple):
@@ -108,7 +108,7 @@ def residual(law: Law, state: State, d: float) -> float:
     force = law.force(state, d)[0]
     if force == 0.0:
         return d
-    end = d - math.copysign(FAR * (abs(d) + abs(force) / law.p[K]), force)
+    end = d - math.copysign(UNLOADING_RANGE * (abs(d) + abs(force) / law.p[K]), force)
     for at, after in [*transitions(law, state, d, end), (end, state)]:
         if force * law.force(state, at)[0] <= 0.0:
             while (middle := 0.5 * (d + at)) not in (d, at):

@@ -111,7 +111,7 @@ class PushoverResult:
         self.curve.append(point)
 
 
-def mistakes(structure: Structure) -> list[Diagnostic]:
+def mistaken_cards(structure: Structure) -> list[Diagnostic]:
     """Return the error in the PUSHOVER card of a deck: one message, or none."""
     for card in structure.model.analyses:
         if card.spec.name == "PUSHOVER" and (wrong := _wrong(structure, card)):
@@ -120,7 +120,7 @@ def mistakes(structure: Structure) -> list[Diagnostic]:
     return []
 
 
-def distant(structure: Structure) -> list[Diagnostic]:
+def distant_targets(structure: Structure) -> list[Diagnostic]:
     """Return a message if the target of a PUSHOVER exceeds what the height of its control node allows."""
     model, warnings = structure.model, list[Diagnostic]()
     for card in model.analyses:

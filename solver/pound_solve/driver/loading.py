@@ -25,7 +25,7 @@ from pound_solve.version import __version__
 #: motions to be checked; pulses and sines are textbook motions, which may be truncated
 EARTHQUAKES: Final = ("RECORD", "SYNTHETIC", "MATCHED")
 LEAST_ACTED: Final = 0.2  #: least fraction of an earthquake's Arias intensity before the end of a history
-MOST: Final = 6  #: differences from a saved run in a message
+MAX_DIFFERENCES: Final = 6  #: differences from a saved run in a message
 
 
 def context(model: Model, request: Request) -> LoadingContext:
@@ -166,8 +166,10 @@ def _taken_up(
         differ = {name: what for name, what in differ.items() if not name.startswith(MOTION)}
     elif differ and all(name.startswith(MOTION) for name in differ):
         hint = "write NEW=MOTION beside RESTART if another earthquake follows the first"
-    for name, what in list(differ.items())[:MOST]:
+    for name, what in list(differ.items())[:MAX_DIFFERENCES]:
         diagnostics.append(Diagnostic("R408", f"{name} is not that of {path}: {what}", place, hint))
-    if len(differ) > MOST:
-        diagnostics.append(Diagnostic("R408", f"and {len(differ) - MOST} other parts", place, hint))
+    if len(differ) > MAX_DIFFERENCES:
+        diagnostics.append(
+            Diagnostic("R408", f"and {len(differ) - MAX_DIFFERENCES} other parts", place, hint)
+        )
     return state

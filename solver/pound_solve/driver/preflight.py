@@ -8,15 +8,24 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
-from pound_solve.structure.buildings import misnamed
-from pound_solve.structure.checks.contacts import duplicate_contacts, idle, misplaced, wide
+from pound_solve.structure.buildings import misnamed_buildings
+from pound_solve.structure.checks.contacts import (
+    duplicate_contacts,
+    idle_contacts,
+    misplaced_contacts,
+    wide_gaps,
+)
 from pound_solve.structure.checks.drifts import doubtful_drifts
 from pound_solve.structure.checks.ends import loose_ends
-from pound_solve.structure.checks.first_modes import contact_stiffnesses, frequencies_in_hertz, misdamped
+from pound_solve.structure.checks.first_modes import (
+    contact_stiffnesses,
+    frequencies_in_hertz,
+    misdamped_buildings,
+)
 from pound_solve.structure.checks.frames import framing_mistakes
-from pound_solve.structure.checks.hinges import facing
-from pound_solve.structure.checks.loads import misloaded, unloaded
-from pound_solve.structure.checks.masses import immovable, massless, massless_roof
+from pound_solve.structure.checks.hinges import facing_hinges
+from pound_solve.structure.checks.loads import misloaded_buildings, unloaded_buildings
+from pound_solve.structure.checks.masses import immovable_weights, massless_buildings, massless_roof
 from pound_solve.structure.checks.materials import impossible_materials
 from pound_solve.structure.checks.mechanisms import (
     coarse_steps,
@@ -24,17 +33,22 @@ from pound_solve.structure.checks.mechanisms import (
     implausible_periods,
     supported_parts,
 )
-from pound_solve.structure.checks.members import doubled, misjudged, misshapen
-from pound_solve.structure.checks.supports import unmoved_feet, unsupported
-from pound_solve.structure.checks.weights import far, misarmed, misweighed, outsized
-from pound_solve.structure.damping.by_building import uneven
+from pound_solve.structure.checks.members import doubled_members, implausible_hinges, misshapen_members
+from pound_solve.structure.checks.supports import unmoved_feet, unsupported_buildings
+from pound_solve.structure.checks.weights import (
+    far_yielding_springs,
+    implausible_base_strengths,
+    misweighed_buildings,
+    outsized_buildings,
+)
+from pound_solve.structure.damping.by_building import unevenly_damped_buildings
 from pound_solve.structure.structure import Structure
 
 MOST_STEPS: Final = 10**8  #: steps of a history: hours for a small structure
 MOST_ROWS: Final = 5 * 10**6  #: rows of stored histories
 
 
-def pressed(structure: Structure) -> list[Diagnostic]:
+def pressed_contacts(structure: Structure) -> list[Diagnostic]:
     """Warn of contacts that are closed at rest: some programs write the gap with a minus sign."""
     elements, props = structure.model.elements, structure.model.props
     used = dict.fromkeys(elements[s.element].prop for s in structure.laws if s.role.collides)
@@ -52,7 +66,7 @@ def pressed(structure: Structure) -> list[Diagnostic]:
     ]
 
 
-def too_many(structure: Structure) -> list[Diagnostic]:
+def too_many_steps(structure: Structure) -> list[Diagnostic]:
     """Report histories of more than `MOST_STEPS` steps, or of more than `MOST_ROWS` stored rows."""
     model = structure.model
     diagnostics = []
@@ -69,21 +83,22 @@ def too_many(structure: Structure) -> list[Diagnostic]:
     return diagnostics
 
 
-def unsteady(structure: Structure) -> list[Diagnostic]:
+def unsteady_buildings(structure: Structure) -> list[Diagnostic]:
     """Report buildings that are mechanisms; if there are none, those that could move as a rigid body."""
-    return find_mechanisms(structure, supported_parts(structure)) or unsupported(structure)
+    return find_mechanisms(structure, supported_parts(structure)) or unsupported_buildings(structure)
 
 
-def misbuilt(structure: Structure) -> list[Diagnostic]:
-    """Report `unsteady` buildings, the first implausible one of height, period and weight of each building,
+def implausible_buildings(structure: Structure) -> list[Diagnostic]:
+    """Report `unsteady_buildings`, the first implausible one of height, period and weight of each building,
     and values inconsistent with the periods.
     """
     parts, first = supported_parts(structure), dict[str, Diagnostic]()
-    wrong = (*outsized(structure), *implausible_periods(structure, parts), *misweighed(structure))
-    for name, diagnostic in wrong:
+    periods = implausible_periods(structure, parts)
+    for name, diagnostic in (*outsized_buildings(structure), *periods, *misweighed_buildings(structure)):
         first.setdefault(name, diagnostic)
-    diagnostics = [*(find_mechanisms(structure, parts) or unsupported(structure)), *first.values()]
-    for check in (coarse_steps, misdamped, frequencies_in_hertz, contact_stiffnesses):
+    mechanisms = find_mechanisms(structure, parts) or unsupported_buildings(structure)
+    diagnostics = [*mechanisms, *first.values()]
+    for check in (coarse_steps, misdamped_buildings, frequencies_in_hertz, contact_stiffnesses):
         diagnostics += check(structure, parts)
     return diagnostics
 
@@ -96,42 +111,42 @@ def rounded_up(x: float) -> float:
 
 #: checks that need neither contacts nor damping: they may explain why these could not be built
 FRAME_CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
-    massless,
-    immovable,
+    massless_buildings,
+    immovable_weights,
     massless_roof,
-    unloaded,
-    misloaded,
-    misshapen,
-    doubled,
-    misjudged,
-    facing,
+    unloaded_buildings,
+    misloaded_buildings,
+    misshapen_members,
+    doubled_members,
+    implausible_hinges,
+    facing_hinges,
     unmoved_feet,
     framing_mistakes,
 )
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
-    pressed,
-    wide,
-    misplaced,
+    pressed_contacts,
+    wide_gaps,
+    misplaced_contacts,
     duplicate_contacts,
-    idle,
+    idle_contacts,
     impossible_materials,
     loose_ends,
-    misbuilt,
-    misarmed,
-    far,
+    implausible_buildings,
+    implausible_base_strengths,
+    far_yielding_springs,
     *FRAME_CHECKS,
-    pushover.mistakes,
-    pushover.distant,
-    too_many,
-    misnamed,
-    uneven,
+    pushover.mistaken_cards,
+    pushover.distant_targets,
+    too_many_steps,
+    misnamed_buildings,
+    unevenly_damped_buildings,
     doubtful_drifts,
 )
 
 
 def causes(structure: Structure) -> list[Diagnostic]:
     """Report why the damping and contacts of a structure could not be assembled."""
-    return [diagnostic for check in (unsteady, *FRAME_CHECKS) for diagnostic in check(structure)]
+    return [diagnostic for check in (unsteady_buildings, *FRAME_CHECKS) for diagnostic in check(structure)]
 
 
 def preflight(structure: Structure) -> list[Diagnostic]:

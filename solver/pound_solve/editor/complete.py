@@ -17,7 +17,7 @@ from pound_solve.editor.hover import describe, explain
 from pound_solve.editor.names import SORTS, Mention, mentions
 from pound_solve.editor.reading import Reading
 
-MOST: Final = 1000  #: nodes or elements
+MAX_PROPOSALS: Final = 1000  #: nodes or elements
 _CARDS: Final = frozenset(spec.name for spec in CARDS)
 #: kinds that take expressions
 _NUMBERS: Final = (Kind.REAL, Kind.INT, Kind.NODE, Kind.NODES, Kind.ELEMENTS)
@@ -189,7 +189,7 @@ def _names(reading: Reading, sort: str) -> Iterator[Suggestion]:
     """Suggestions of names that the deck defines."""
     defined = (m for m in mentions(reading) if m.defines and m.sort == sort)
     keys = ((key, m) for m in defined for key in m.keys)
-    for key, m in islice(keys, MOST):
+    for key, m in islice(keys, MAX_PROPOSALS):
         yield Suggestion(_text(key, m, reading), "name", sort)
 
 

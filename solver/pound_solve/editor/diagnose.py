@@ -13,7 +13,7 @@ from pound_solve.driver.prepare import DeckError, assembled
 from pound_solve.driver.request import Request
 
 MANY: Final = 2000  #: nodes beyond which the structure is not assembled: a number may be half typed
-MOST: Final = 100  #: most messages of a deck
+MAX_DIAGNOSTICS: Final = 100  #: most messages of a deck
 
 
 def diagnose(
@@ -32,7 +32,7 @@ def diagnose(
     Returns
     -------
     diagnostics : list of Diagnostic
-        At most `MOST`, errors first.
+        At most `MAX_DIAGNOSTICS`, errors first.
     files : mapping of str to str
         Texts of the deck and of included files, by the name in spans.
 
@@ -48,4 +48,4 @@ def diagnose(
             diagnostics = list(assembled(request, model, diagnostics, files).warnings)
         except DeckError as error:
             diagnostics = list(error.diagnostics)
-    return sorted(diagnostics, key=lambda d: d.severity != "error")[:MOST], files
+    return sorted(diagnostics, key=lambda d: d.severity != "error")[:MAX_DIAGNOSTICS], files

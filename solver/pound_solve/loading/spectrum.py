@@ -40,7 +40,7 @@ from pound_solve.numerics.phi import duhamel
 from pound_solve.numerics.types import Array, Complex, Index
 
 BLOCK: Final = 2**17  #: largest number of elements of a work array
-MOST: Final = 2**22  #: most intervals into which an acceleration is divided for short periods
+MAX_INTERVALS: Final = 2**22  #: most intervals into which an acceleration is divided for short periods
 LINES: Final = 16  #: most straight lines for an interval of a curved acceleration
 EQUAL: Final = 12  #: digits to which equal steps agree
 ENOUGH: Final = 1e-10  #: of an interval, to which the instant of a peak is found: the peak has its square
@@ -100,7 +100,7 @@ def response_spectrum(
     ------
     ValueError
         A period or a damping is out of its range, or a period so short that the acceleration would have
-        to be divided into more than `MOST` intervals.
+        to be divided into more than `MAX_INTERVALS` intervals.
     """
     t, xi = _valid(periods, damping)
     return Spectrum(t, xi, *_largest(acceleration, t, xi, (0, 1, 2), free))
@@ -136,7 +136,7 @@ def _largest(
     curved = _power_of_two(np.minimum(bends, LINES))
     # an interval shorter than half a period has one inflexion at most
     parts = _power_of_two(2.0 * width / (curved * period))
-    if (curved * parts).max() * len(acceleration.breaks) > MOST:
+    if (curved * parts).max() * len(acceleration.breaks) > MAX_INTERVALS:
         raise ValueError(f"the period {t.min():g} is too short for an acceleration of this length")
     peaks = np.empty((len(quantities), len(period)))
     for lines, count in np.unique(np.stack([curved, parts]), axis=1).T.tolist():

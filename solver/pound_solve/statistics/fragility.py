@@ -40,10 +40,11 @@ from scipy.stats import t as student
 
 from pound_solve.numerics.types import Array
 
-LEAST: Final = 1e-4  #: smallest dispersion searched; no structure has less
-MOST: Final = 1e2  #: largest dispersion searched
-FAR: Final = 30.0  #: distance of the median from the data up to which it is searched, in logarithms
-SURE: Final = 1e-10  #: relative accuracy of a parameter
+MIN_DISPERSION: Final = 1e-4  #: smallest dispersion searched; no structure has less
+MAX_DISPERSION: Final = 1e2  #: largest dispersion searched
+#: distance of the median from the data up to which it is searched, in logarithms
+MEDIAN_RANGE: Final = 30.0
+PARAMETER_ACCURACY: Final = 1e-10  #: relative accuracy of a parameter
 
 
 class FragilityError(Exception):
@@ -259,11 +260,16 @@ def _logarithms(values: ArrayLike) -> Array:
 
 def _fit(data: Likelihood, level: float) -> Fragility:
     """The most likely parameters and their intervals."""
-    beta = _highest(lambda s: _given_dispersion(data, s), math.log(LEAST), math.log(MOST))
+    beta = _highest(
+        lambda s: _given_dispersion(data, s), math.log(MIN_DISPERSION), math.log(MAX_DISPERSION)
+    )
     mu = _best_median(data, math.exp(beta))
     middle = _of_quantile(data, 0.0, mu, level)
     ends = _ends(
-        lambda s: _given_dispersion(data, s), beta, (math.log(LEAST), math.log(MOST)), _drop(data, level)
+        lambda s: _given_dispersion(data, s),
+        beta,
+        (math.log(MIN_DISPERSION), math.log(MAX_DISPERSION)),
+        _drop(data, level),
     )
     return Fragility(math.exp(mu), math.exp(beta), middle, _exponentials(ends), level, data.count, data)
 
@@ -282,7 +288,7 @@ def _given_dispersion(data: Likelihood, s: float) -> float:
 
 def _best_median(data: Likelihood, beta: float) -> float:
     """Most likely ln median for a dispersion."""
-    return _highest(lambda mu: data.of(mu, beta), data.low - FAR, data.high + FAR)
+    return _highest(lambda mu: data.of(mu, beta), data.low - MEDIAN_RANGE, data.high + MEDIAN_RANGE)
 
 
 def _of_quantile(data: Likelihood, z: float, mu: float, level: float) -> Interval:
@@ -292,10 +298,11 @@ def _of_quantile(data: Likelihood, z: float, mu: float, level: float) -> Interva
         def of(s: float) -> float:
             return data.of(q - z * math.exp(s), math.exp(s))
 
-        return of(_highest(of, math.log(LEAST), math.log(MOST)))
+        return of(_highest(of, math.log(MIN_DISPERSION), math.log(MAX_DISPERSION)))
 
-    start = mu if z == 0.0 else _highest(at_quantile, data.low - FAR, data.high + FAR)
-    return _exponentials(_ends(at_quantile, start, (data.low - FAR, data.high + FAR), _drop(data, level)))
+    low, high = data.low - MEDIAN_RANGE, data.high + MEDIAN_RANGE
+    start = mu if z == 0.0 else _highest(at_quantile, low, high)
+    return _exponentials(_ends(at_quantile, start, (low, high), _drop(data, level)))
 
 
 def _exponentials(ends: tuple[float, float]) -> Interval:
@@ -308,7 +315,9 @@ def _highest(of: Callable[[float], float], low: float, high: float) -> float:
     places = np.linspace(low, high, 33)
     best = int(np.argmax([of(x) for x in places]))
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
-    optimum = minimize_scalar(lambda x: -of(x), bounds=ends, method="bounded", options={"xatol": SURE})
+    optimum = minimize_scalar(
+        lambda x: -of(x), bounds=ends, method="bounded", options={"xatol": PARAMETER_ACCURACY}
+    )
     return float(optimum.x)
 
 

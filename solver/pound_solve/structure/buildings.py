@@ -6,9 +6,9 @@ building.  A building takes its name from a card of BUILDINGS; unnamed ones are 
 
 The base of a building is its lowest support, or its lowest node if it has no support. Nodes with mass above
 it make a level if their heights differ by no more than `SAME_LEVEL` of the height of the building.  Its
-floors are the levels that FLOORS names; by default, the highest level and every level with at least `LEAST`
-of the mass of the heaviest. This excludes joints within a column. A storey reaches from the floor below, or
-the base, to its floor, and is cut at the middle of its height.
+floors are the levels that FLOORS names; by default, the highest level and every level with at least
+`MIN_FLOOR_MASS_RATIO` of the mass of the heaviest. This excludes joints within a column. A storey reaches from
+the floor below, or the base, to its floor, and is cut at the middle of its height.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
 SAME_LEVEL = 1e-3  #: fraction of a building's height by which nodes of one level may differ in height
-LEAST = 0.1  #: least mass of a floor, as a share of the mass of the building's heaviest level
+#: least mass of a floor, as a share of the mass of the building's heaviest level
+MIN_FLOOR_MASS_RATIO = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +182,7 @@ class Levels:
             return tuple(level for level in self._levels if level in at)
         heaviest = max((level.mass for level in self._levels), default=0.0)
         last = self._levels[-1:]
-        return tuple(f for f in self._levels if f.mass >= LEAST * heaviest or f in last)
+        return tuple(f for f in self._levels if f.mass >= MIN_FLOOR_MASS_RATIO * heaviest or f in last)
 
     def at(self, node: int) -> Floor | None:
         """The level at the height of a node of the building, if there is one."""
@@ -219,7 +220,7 @@ def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection
     return by_group
 
 
-def misnamed(structure: Structure) -> list[Diagnostic]:
+def misnamed_buildings(structure: Structure) -> list[Diagnostic]:
     """Report cards of BUILDINGS that match no building, several buildings, or one that is already named."""
     problems, names, of = list[Diagnostic](), set[str](), {}
     for i, nodes in enumerate(parts(structure.model)):

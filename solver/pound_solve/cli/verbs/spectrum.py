@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "response spectra of records, of the motions of a deck, or of the floors of a run"
 DEFAULT = "0.01:10:91"  #: thirty periods per decade
-MOST = 10_000  #: most periods
+MAX_PERIODS = 10_000  #: most periods
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -65,8 +65,8 @@ def _periods(word: str) -> list[float]:
     if word.count(":") != 2 or "," in word or not values[0] < values[1]:
         raise argparse.ArgumentTypeError(f"{word[:60]}: write FIRST:LAST:COUNT, as {DEFAULT}")
     first, last, count = values
-    if count != int(count) or not 2 <= count <= MOST:
-        raise argparse.ArgumentTypeError(f"{word[:60]}: COUNT is a whole number from 2 to {MOST}")
+    if count != int(count) or not 2 <= count <= MAX_PERIODS:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: COUNT is a whole number from 2 to {MAX_PERIODS}")
     steps = int(count) - 1
     return [first * (last / first) ** (k / steps) for k in range(steps)] + [last]
 

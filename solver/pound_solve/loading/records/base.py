@@ -23,8 +23,8 @@ from pound_solve.numerics.types import Array
 
 HEAD: Final = 4096  #: largest number of characters passed to `sniff`
 #: bounds of steps, rates and factors in headers; numbers outside them are refused
-LEAST: Final = 1e-9
-MOST: Final = 1e9
+MIN_NUMBER: Final = 1e-9
+MAX_NUMBER: Final = 1e9
 
 
 class RecordError(Exception):
@@ -123,8 +123,10 @@ class RawRecord:
             )
         if n < 2:
             raise RecordError("R402", f"the file holds {n} samples; a record needs two at least")
-        if self.dt is not None and not LEAST <= self.dt <= MOST:
-            raise RecordError("R402", f"the step is {self.dt:g} s, not from {LEAST:g} to {MOST:g} s")
+        if self.dt is not None and not MIN_NUMBER <= self.dt <= MAX_NUMBER:
+            raise RecordError(
+                "R402", f"the step is {self.dt:g} s, not from {MIN_NUMBER:g} to {MAX_NUMBER:g} s"
+            )
         if self.times is not None and (stuck := np.flatnonzero(np.diff(self.times) <= 0)).size:
             k = int(stuck[0])
             before, after = self.times[k : k + 2]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 from pound_deck.schema import Field, Kind
-from pound_solve.loading.records.base import LEAST, MOST, RecordError
+from pound_solve.loading.records.base import MAX_NUMBER, MIN_NUMBER, RecordError
 from pound_solve.loading.records.text import parse
 from pound_solve.numerics.types import Array
 
@@ -70,9 +70,11 @@ def positive(word: str, what: str, line: int) -> float:
         R402 for anything but a number from 1e-9 to 1e9.
     """
     plain = printed(word)
-    if not plain or not LEAST <= float(plain) <= MOST:
+    if not plain or not MIN_NUMBER <= float(plain) <= MAX_NUMBER:
         raise RecordError(
-            "R402", f"line {line}: {what} is '{word.strip()[:20]}', not a number from {LEAST:g} to {MOST:g}"
+            "R402",
+            f"line {line}: {what} is '{word.strip()[:20]}', "
+            f"not a number from {MIN_NUMBER:g} to {MAX_NUMBER:g}",
         )
     return float(plain)
 

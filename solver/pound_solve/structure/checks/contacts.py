@@ -13,21 +13,21 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model, Node
 from pound_solve.numerics.graph import components
 from pound_solve.structure.buildings import parts, stands
-from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.members import members_by_set
 from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.structure import Structure
 
-SAME: Final = 1e-9  #: distance that counts as zero, as a fraction of that of the nodes
+SAME_DISTANCE: Final = 1e-9  #: distance that counts as zero, as a fraction of that of the nodes
 #: largest gap over the distance of the nodes.  The bodies lie between the nodes, so this ratio is below
 #: one, but a parameter study may vary the gap and keep the coordinates
-WIDEST: Final = 3.0
-LEAST_ANGLE: Final = 1e-6  #: tolerance of the slope of a contact [degrees]
-LEVEL: Final = 0.1  #: fraction of a difference in height that counts as none
-ALONG: Final = 0.99  #: cosine of the angle between a member and a contact that lies along it
+MAX_GAP_RATIO: Final = 3.0
+ANGLE_TOLERANCE: Final = 1e-6  #: tolerance of the slope of a contact [degrees]
+LEVEL_RATIO: Final = 0.1  #: fraction of a difference in height that counts as none
+ALONG_COSINE: Final = 0.99  #: cosine of the angle between a member and a contact that lies along it
 
 
-def wide(structure: Structure) -> list[Diagnostic]:
+def wide_gaps(structure: Structure) -> list[Diagnostic]:
     """Report contacts whose gap exceeds the height of the adjacent buildings, or far exceeds the distance
     of the nodes, once per property set.
 
@@ -43,10 +43,10 @@ def wide(structure: Structure) -> list[Diagnostic]:
         height.update(dict.fromkeys(nodes, max(y) - min(y)))
     for spring in (s for s in structure.laws if s.role.collides):
         e = model.elements[spring.element]
-        high, between = max(height[e.i], height.get(e.j, 0.0)), apart(model, spring)
+        high, between = max(height[e.i], height.get(e.j, 0.0)), node_distance(model, spring)
         if spring.gap > high > 0.0:
             problem = _beyond(model, e, high)
-        elif high and 0.0 < WIDEST * between < spring.gap:
+        elif high and 0.0 < MAX_GAP_RATIO * between < spring.gap:
             problem = _between(model, e, between)
         else:
             continue
@@ -74,16 +74,16 @@ def _between(model: Model, e: Element, between: float) -> Diagnostic:
     return Diagnostic("P360", message, card.place("GAP"), hint, "warning")
 
 
-def misplaced(structure: Structure) -> list[Diagnostic]:
+def misplaced_contacts(structure: Structure) -> list[Diagnostic]:
     """Report contacts between nodes of one floor, or with I and J exchanged."""
     model, problems = structure.model, list[Diagnostic]()
     floors, columns = _floors(model), _columns(model)
-    collide = [s for s in structure.laws if s.role.collides and apart(model, s) > 0.0]
+    collide = [s for s in structure.laws if s.role.collides and node_distance(model, s) > 0.0]
     forward = {frozenset((e.i, e.j)) for e in (model.elements[s.element] for s in collide)}
     for spring in structure.laws:
         e = model.elements[spring.element]
         if spring.role.collides and e.j is not None:
-            within = floors[e.i] == floors[e.j] and abs(_way(spring)[0]) > ALONG
+            within = floors[e.i] == floors[e.j] and abs(_way(spring)[0]) > ALONG_COSINE
             twin = frozenset((e.i, e.j)) in forward
             problems += [_within(e)] if within else _backwards(model, spring, e, twin)
             problems += _misaligned(model, columns, spring, e)
@@ -107,14 +107,14 @@ def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
     return problems
 
 
-def idle(structure: Structure) -> list[Diagnostic]:
+def idle_contacts(structure: Structure) -> list[Diagnostic]:
     """Report contacts along X between buildings that an earthquake along Y alone shakes."""
     model = structure.model
     ways = shaken(model)
     of = {n: k for k, nodes in enumerate(parts(model)) if stands(model, nodes) for n in nodes}
     for spring in structure.laws if ways.keys() == {"Y"} else ():
         e = model.elements[spring.element]
-        across = spring.role.collides and abs(_way(spring)[0]) > ALONG and spring.gap > 0.0
+        across = spring.role.collides and abs(_way(spring)[0]) > ALONG_COSINE and spring.gap > 0.0
         if across and e.j in of and e.i in of and of[e.i] != of[e.j]:
             card = ways["Y"]
             message = f"the ground moves along Y alone, but contact {e.name or e.id} closes along X"
@@ -140,7 +140,7 @@ def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -
         assert one is not None and other is not None
         rise = abs(nodes[one].y - nodes[other].y)
         for n in columns[nodes[other].x] if rise else ():
-            if abs(n.y - nodes[one].y) < LEVEL * rise:
+            if abs(n.y - nodes[one].y) < LEVEL_RATIO * rise:
                 return n.id, other
     return None
 
@@ -155,13 +155,13 @@ def _misaligned(
     i, j = model.nodes[e.i], model.nodes[e.j]
     across, along = abs(i.x - j.x), abs(i.y - j.y)
     sloping = model.props[e.prop]["ANGLE"] is None
-    if abs(_way(spring)[1]) > ALONG and along < LEVEL * across:
+    if abs(_way(spring)[1]) > ALONG_COSINE and along < LEVEL_RATIO * across:
         message = (
             f"contact {e.name or e.id} acts along Y, but its nodes {e.i} and {e.j} lie beside each other: "
             "they pass without a collision"
         )
         yield Diagnostic("P368", message, e.span, "give it ANGLE=0, or leave ANGLE out", "warning")
-    elif across and (sloping or abs(_way(spring)[1]) <= ALONG):
+    elif across and (sloping or abs(_way(spring)[1]) <= ALONG_COSINE):
         beside, angle = _beside(model, columns, e), spring.facts["angle"]
         if beside:
             n, other = beside
@@ -170,7 +170,7 @@ def _misaligned(
                 f"but node {n} faces it"
             )
             yield Diagnostic("P368", message, e.span, f"name node {n} in place of node {other}", "warning")
-        elif sloping and abs(math.remainder(angle, 90.0)) > LEAST_ANGLE:
+        elif sloping and abs(math.remainder(angle, 90.0)) > ANGLE_TOLERANCE:
             message = (
                 f"contact {e.name or e.id} acts along the line between its nodes, at {angle:.4g} degrees"
             )
@@ -182,10 +182,10 @@ def _floors(model: Model) -> dict[int, int]:
     """Floor number of each node; horizontal members and slaving along x tie nodes to one floor."""
     number = {n: i for i, n in enumerate(model.nodes)}
     pairs = [(n.id, n.slaved["X"]) for n in model.nodes.values() if "X" in n.slaved]
-    for e in (e for members in kinds(model).values() for e in members):
+    for e in (e for members in members_by_set(model).values() for e in members):
         assert e.j is not None
         i, j = model.nodes[e.i], model.nodes[e.j]
-        if abs(i.x - j.x) > ALONG * math.hypot(i.x - j.x, i.y - j.y):
+        if abs(i.x - j.x) > ALONG_COSINE * math.hypot(i.x - j.x, i.y - j.y):
             pairs.append((e.i, e.j))
     joined = components(len(number), groups=[np.array([number[i], number[j]]) for i, j in pairs])
     return dict(zip(number, joined.tolist()))
@@ -206,19 +206,19 @@ def _within(e: Element) -> Diagnostic:
     return Diagnostic("P358", message, e.span, hint, "warning")
 
 
-def apart(model: Model, spring: LawSpring) -> float:
+def node_distance(model: Model, spring: LawSpring) -> float:
     """Distance of a contact's nodes along its direction [L]; negative if J is behind I, 0 for a wall."""
     e, (c, s) = model.elements[spring.element], _way(spring)
     i, j = model.nodes[e.i], model.nodes[e.i if e.j is None else e.j]
     distance = (j.x - i.x) * c + (j.y - i.y) * s
-    return distance if abs(distance) > SAME * math.hypot(j.x - i.x, j.y - i.y) else 0.0
+    return distance if abs(distance) > SAME_DISTANCE * math.hypot(j.x - i.x, j.y - i.y) else 0.0
 
 
 def _backwards(model: Model, spring: LawSpring, e: Element, twin: bool) -> Iterator[Diagnostic]:
     """Yield a warning for a contact that closes as its nodes move apart, without a counterpart that closes
     as they approach.
     """
-    if apart(model, spring) < 0.0 <= spring.gap and not twin:
+    if node_distance(model, spring) < 0.0 <= spring.gap and not twin:
         message = (
             f"contact {e.name or e.id} closes as nodes {e.i} and {e.j} move apart: "
             f"ANGLE points from {e.j} to {e.i}"

@@ -12,22 +12,23 @@ from pound_deck.model import Card, Model
 from pound_solve.numerics.matrices import Matrix
 from pound_solve.structure.buildings import Building
 from pound_solve.structure.checks.mechanisms import BuildingStiffness
-from pound_solve.structure.checks.members import kinds, length, lies
+from pound_solve.structure.checks.members import is_horizontal, length, members_by_set
 from pound_solve.structure.structure import Structure
 
 #: fractions of critical damping of a first mode: by DAMPING, where materials and walls give 0.01 to 0.1,
 #: and by dashpots, which may include a snubber that ties equipment to a building
-MOST_OWN, MOST_ADDED = 0.2, 10.0
-LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode
-LEAST_ADDED: Final = 1e-3  #: least fraction of critical damping by dashpots, if there are any
+MAX_CARD_DAMPING, MAX_DASHPOT_DAMPING = 0.2, 10.0
+#: of the largest frequency with a damping ratio over that of the first mode
+MIN_FREQUENCY_RATIO: Final = 0.6
+MIN_DASHPOT_DAMPING: Final = 1e-3  #: least fraction of critical damping by dashpots, if there are any
 #: stiffness of a contact over the axial one of the beams behind it; slabs may stiffen them tenfold
-STIFFEST: Final = 300.0
+MAX_CONTACT_STIFFNESS_RATIO: Final = 300.0
 #: duration of a collision in which sound at 3500 m/s does not cross a column [s]
-BRIEFEST: Final = 1e-4
+MIN_COLLISION_TIME: Final = 1e-4
 RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be textbook inputs
 
 
-def misdamped(
+def misdamped_buildings(
     structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
 ) -> list[Diagnostic]:
     """Report buildings whose first mode is implausibly damped, or undamped under an earthquake."""
@@ -40,19 +41,19 @@ def misdamped(
         by_cards = whole - xi
         place: Card | None = next(iter(model.damping), None)
         dashpots = _dashpots(model, b)
-        if place and by_cards > MOST_OWN:
+        if place and by_cards > MAX_CARD_DAMPING:
             message = (
                 f"DAMPING gives the first mode of {b.name!r} {_percent(by_cards)} of critical: 5 % is usual"
             )
             hint = "XI is a share; ALPHA [1/T] and BETA [T] are factors of M and K, not shares"
             problems.append(Diagnostic("P373", message, place.span, hint, "warning"))
-        elif dashpots and xi > MOST_ADDED:
+        elif dashpots and xi > MAX_DASHPOT_DAMPING:
             message = (
                 f"dashpots give the first mode of {b.name!r} {_percent(xi)} of critical: it does not swing"
             )
             hint = f"coefficients are in {model.units.text('F*T/L')}"
             problems.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
-        elif dashpots and 0.0 < xi < LEAST_ADDED:
+        elif dashpots and 0.0 < xi < MIN_DASHPOT_DAMPING:
             message = f"dashpots give the first mode of {b.name!r} no more than {_percent(xi)} of critical"
             hint = f"coefficients are in {model.units.text('F*T/L')}"
             problems.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
@@ -81,7 +82,7 @@ def frequencies_in_hertz(
         if not omega or not periods:
             continue
         first = 2.0 * math.pi / max(periods)
-        if max(omega) < LOWEST * first:
+        if max(omega) < MIN_FREQUENCY_RATIO * first:
             written = ",".join(f"{w:g}" for w in omega)
             message = f"OMEGA={written} is below the first mode, about {first:.3g} rad/{model.units.time}"
             hint = "OMEGA are circular frequencies: 2 pi times those in 1/s"
@@ -111,10 +112,10 @@ def _percent(share: float) -> str:
 def _axial(model: Model) -> dict[int, float]:
     """Sum of EA/L of the horizontal members at each node [F/L]."""
     stiffness = defaultdict[int, float](float)
-    for label, members in kinds(model).items():
+    for label, members in members_by_set(model).items():
         card = model.props[label]
         for e in members:
-            if lies(model, e):
+            if is_horizontal(model, e):
                 for n in (e.i, e.j or e.i):
                     stiffness[n] += card["E"] * card["A"] / length(model, e)
     return stiffness
@@ -144,11 +145,11 @@ def contact_stiffnesses(
         behind, which = max(beams.get(e.i, 0.0), beams.get(e.j or e.i, 0.0)), f"contact {e.name or e.id}"
         if deep > high:
             message = f"the weight of the bodies at {which} would press it by {deep:.2g} {unit.length}"
-        elif k > STIFFEST * behind > 0.0:
+        elif k > MAX_CONTACT_STIFFNESS_RATIO * behind > 0.0:
             message = (
                 f"{which} is {k / behind:.2g} times as stiff as the beams behind it, EA/L, which give way"
             )
-        elif half < BRIEFEST and unit.time.lower() in ("s", "sec"):
+        elif half < MIN_COLLISION_TIME and unit.time.lower() in ("s", "sec"):
             message = f"a collision at {which} takes {half:.1g} {unit.time}: 0.001 s is brief"
         else:
             continue

@@ -16,13 +16,14 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model
 from pound_solve.structure.buildings import Building, Floor, buildings, joints, parts, stands
 from pound_solve.structure.checks.ends import places
-from pound_solve.structure.checks.members import kinds, length, lies
+from pound_solve.structure.checks.members import is_horizontal, length, members_by_set
 from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
 
-SHORTEST: Final = 0.25  #: least height of a column over the median length of its property set
+#: least height of a column over the median length of its property set
+MIN_COLUMN_LENGTH_RATIO: Final = 0.25
 
-GENTLE, STEEP = 10.0, 70.0  #: slopes of braces from and to [degrees]
+MIN_BRACE_SLOPE, MAX_BRACE_SLOPE = 10.0, 70.0  #: slopes of braces from and to [degrees]
 
 _warn = partial(Diagnostic, severity="warning")
 
@@ -85,7 +86,7 @@ class Lines:
             if e.j is None or model.props[e.prop].spec.name == "CONTACT":
                 continue
             i, j = model.nodes[e.i], model.nodes[e.j]
-            if lies(model, e):
+            if is_horizontal(model, e):
                 self.beams[e.i].append(e)
                 self.beams[e.j].append(e)
             elif i.y != j.y:
@@ -173,9 +174,9 @@ def _sloping_beams(model: Model) -> Iterator[Diagnostic]:
     """Yield a warning for the only sloping beam of a property set with at least two horizontal beams and no
     column.
     """
-    for members in kinds(model).values():
-        flat = [e for e in members if lies(model, e)]
-        others = [e for e in members if not lies(model, e)]
+    for members in members_by_set(model).values():
+        flat = [e for e in members if is_horizontal(model, e)]
+        others = [e for e in members if not is_horizontal(model, e)]
         if len(others) != 1 or len(flat) < 2:
             continue
         (e,) = others
@@ -204,7 +205,7 @@ def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
             continue
         i, j = model.nodes[e.i], model.nodes[e.j]
         slope = math.degrees(math.atan2(abs(j.y - i.y), abs(j.x - i.x)))
-        if card["CX"] and not card["CY"] and GENTLE < slope < STEEP:
+        if card["CX"] and not card["CY"] and MIN_BRACE_SLOPE < slope < MAX_BRACE_SLOPE:
             reported.add(e.prop)
             message = f"dashpot {e.id} acts along X, but its nodes lie on a slope of {slope:.3g} degrees"
             hint = "ANGLE=MEMBER lets it act along the line between them"
@@ -215,14 +216,14 @@ def _short_columns(structure: Structure) -> Iterator[Diagnostic]:
     """Yield warnings for columns between floors far shorter than the others of their property set."""
     model = structure.model
     floors = {n for b in buildings(structure) for floor in b.floors for n in floor.nodes}
-    for label, members in kinds(model).items():
+    for label, members in members_by_set(model).items():
         high = [e for e in members if model.nodes[e.i].x == model.nodes[e.j or e.i].x]
         short = [e for e in high if {e.i, e.j} <= floors]
         if not short:
             continue
         e, middle = min(short, key=lambda e: length(model, e)), median(length(model, e) for e in high)
         height, unit = length(model, e), model.units.length
-        if height < SHORTEST * middle:
+        if height < MIN_COLUMN_LENGTH_RATIO * middle:
             message = f"column {e.id} is {height:.3g} {unit} high, others of {label} {middle:.3g} {unit}"
             hint = f"correct the height of node {e.i} or {e.j} under NODES"
             yield _warn("P353", message, e.span, hint)

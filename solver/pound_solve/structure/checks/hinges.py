@@ -13,12 +13,14 @@ from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.structure import Structure
 
-EQUAL: Final = 1e-6  #: relative difference up to which two strengths count as equal
-BEYOND: Final = 1.01  #: deformation over that at yield at which the hardening of a rule is examined
-FLAT: Final = 1e-9  #: stiffness that counts as no hardening, as a fraction of the initial one
+EQUAL_STRENGTHS: Final = 1e-6  #: relative difference up to which two strengths count as equal
+#: deformation over that at yield at which the hardening of a rule is examined
+EXAMINED_DUCTILITY: Final = 1.01
+#: stiffness that counts as no hardening, as a fraction of the initial one
+MIN_HARDENING_RATIO: Final = 1e-9
 
 
-def facing(structure: Structure) -> list[Diagnostic]:
+def facing_hinges(structure: Structure) -> list[Diagnostic]:
     """Report hinges of equal strength without hardening on both sides of a joint that nothing else
     restrains.
 
@@ -50,7 +52,7 @@ def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:
     for side in (0, 1):
         facing_side = side if ratio > 0.0 else 1 - side
         mine, theirs = _flat_strength(one, side), _flat_strength(other, facing_side)
-        if mine and math.isclose(abs(ratio) * mine, theirs, rel_tol=EQUAL):
+        if mine and math.isclose(abs(ratio) * mine, theirs, rel_tol=EQUAL_STRENGTHS):
             return mine
     return 0.0
 
@@ -66,8 +68,8 @@ def _flat_strength(spring: LawSpring, side: int) -> float:
     at_yield = spring.yields[side] - spring.beside * strength
     if not math.isfinite(at_yield):
         return 0.0
-    stiffness = law.branch(drive(law, law.start(), 0.0, BEYOND * at_yield)).stiffness
-    return abs(strength) if stiffness <= FLAT * law.p[K] else 0.0
+    stiffness = law.branch(drive(law, law.start(), 0.0, EXAMINED_DUCTILITY * at_yield)).stiffness
+    return abs(strength) if stiffness <= MIN_HARDENING_RATIO * law.p[K] else 0.0
 
 
 def _warning(

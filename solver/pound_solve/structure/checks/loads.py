@@ -9,20 +9,22 @@ from typing import Final, NamedTuple
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
-from pound_solve.structure.checks.members import kinds, length
+from pound_solve.structure.checks.members import length, members_by_set
 from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
 
 #: ratio of loads along x to the weight; a pushover load left in the deck may exceed it
-SIDEWAYS: Final = 0.5
+MAX_PUSH_RATIO: Final = 0.5
 #: ratio of downward loads to the weight, outside of which they have other units; columns that lean on the
 #: building may bear several times its loads
-LIGHTEST, HEAVIEST = 0.01, 8.0
-UPWARDS: Final = 0.3  #: ratio of upward loads to downward loads
-PART: Final = 0.3  #: ratio of loads to the weight below which P-Delta covers only part of the weight
-TWICE: Final = (0.7, 1.4)  #: range of this ratio in which the loads repeat a weight that acts already
-SEVERAL: Final = 3  #: least number of floors of a building in which one without load is reported
-PRESSES: Final = 0.1  #: least ratio of loads to the weight of the other floors
+MIN_LOAD_RATIO, MAX_LOAD_RATIO = 0.01, 8.0
+MAX_UPLIFT_RATIO: Final = 0.3  #: ratio of upward loads to downward loads
+#: ratio of loads to the weight below which P-Delta covers only part of the weight
+MIN_PDELTA_LOAD_RATIO: Final = 0.3
+#: range of this ratio in which the loads repeat a weight that acts already
+REPEATED_WEIGHT_RATIOS: Final = (0.7, 1.4)
+MIN_FLOORS: Final = 3  #: least number of floors of a building in which one without load is reported
+MIN_FLOOR_LOAD_RATIO: Final = 0.1  #: least ratio of loads to the weight of the other floors
 
 
 class Load(NamedTuple):
@@ -53,7 +55,7 @@ def gravity_acts(model: Model) -> bool:
     return any(c.values.get("GRAVITY") == "YES" for c in model.analyses)
 
 
-def unloaded(structure: Structure) -> list[Diagnostic]:
+def unloaded_buildings(structure: Structure) -> list[Diagnostic]:
     """Report buildings whose members take P-Delta into account but bear no load."""
     model, problems = structure.model, list[Diagnostic]()
     if not model.geometry.startswith("PDELTA") or not model.analyses or gravity_acts(model):
@@ -84,9 +86,13 @@ def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
     inside, weight = set(b.nodes), b.mass * model.gravity
     loads = [load for load in loads_on_nodes(model) if load.node in inside]
     press = -sum(load.y for load in loads)
-    for e in (e for members in kinds(model).values() for e in members if e.i in inside):
+    for e in (e for members in members_by_set(model).values() for e in members if e.i in inside):
         press += structure.self_weight * model.props[e.prop]["WGT"] * length(model, e)
-    if not 0.0 <= press < PART * weight or not shaken(model) or any(load.y > 0.0 for load in loads):
+    if (
+        not 0.0 <= press < MIN_PDELTA_LOAD_RATIO * weight
+        or not shaken(model)
+        or any(load.y > 0.0 for load in loads)
+    ):
         return []
     unit, kind = model.units.force, model.geometry
     finding = f"loads press {b.name!r}, which weighs {weight:.4g} {unit}, by {press:.4g} {unit}"
@@ -96,7 +102,7 @@ def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
     return [Diagnostic("P340", message, place, hint, "warning")]
 
 
-def misloaded(structure: Structure) -> list[Diagnostic]:
+def misloaded_buildings(structure: Structure) -> list[Diagnostic]:
     """Report buildings whose loads contradict their weight, with the first contradiction of each."""
     model, problems = structure.model, list[Diagnostic]()
     if not shaken(model):
@@ -117,7 +123,7 @@ def _lifted(structure: Structure, b: Building, loads: list[Load]) -> list[Diagno
     up = sum(load.y for load in loads if load.y > 0.0)
     press = -sum(load.y for load in loads if load.y < 0.0)
     press += b.mass * structure.model.gravity if gravity_acts(structure.model) else 0.0
-    if up <= UPWARDS * press:
+    if up <= MAX_UPLIFT_RATIO * press:
         return []
     load = max(loads, key=lambda load: load.y)
     message = f"loads pull {b.name!r} upwards by {up:.4g} {unit}, others press by {press:.4g} {unit}"
@@ -129,7 +135,7 @@ def _sideways(structure: Structure, b: Building, loads: list[Load]) -> list[Diag
     """Report loads along x of the size of the weight."""
     model, push = structure.model, sum(load.x for load in loads)
     weight, unit = b.mass * model.gravity, model.units.force
-    if abs(push) < SIDEWAYS * weight:
+    if abs(push) < MAX_PUSH_RATIO * weight:
         return []
     card = max(loads, key=lambda load: abs(load.x)).card
     message = f"loads push {b.name!r} sideways by {push:.4g} {unit}; it weighs {weight:.4g} {unit}"
@@ -145,10 +151,10 @@ def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnos
         return []
     load = min(loads, key=lambda load: load.y)
     finding = f"loads press {b.name!r} by {press:.4g} {unit}"
-    if gravity_acts(model) and TWICE[0] <= press / weight <= TWICE[1]:
+    if gravity_acts(model) and REPEATED_WEIGHT_RATIOS[0] <= press / weight <= REPEATED_WEIGHT_RATIOS[1]:
         message = f"{finding}, and STATIC GRAVITY=YES by its weight, {weight:.4g} {unit}, once more"
         hint = "leave one of them out: GRAVITY=YES turns WEIGHTS into loads"
-    elif not LIGHTEST <= press / weight <= HEAVIEST and not gravity_acts(model):
+    elif not MIN_LOAD_RATIO <= press / weight <= MAX_LOAD_RATIO and not gravity_acts(model):
         message = f"{finding}, {press / weight:.2g} of its weight, {weight:.4g} {unit}"
         hint = f"loads are in {model.units.text('F')}, loads by length in {model.units.text('F/L')}"
     else:
@@ -159,13 +165,13 @@ def _again(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnos
 def _forgotten(structure: Structure, b: Building, loads: list[Load]) -> list[Diagnostic]:
     """Report a floor without load if the other floors bear loads of the size of their weights."""
     model = structure.model
-    if gravity_acts(model) or len(b.floors) < SEVERAL:
+    if gravity_acts(model) or len(b.floors) < MIN_FLOORS:
         return []
     close = SAME_LEVEL * (b.levels[-1] - b.base)
     at = [[load for load in loads if abs(model.nodes[load.node].y - f.level) <= close] for f in b.floors]
     press = [-sum(load.y for load in a) / (f.mass * model.gravity) for a, f in zip(at, b.floors)]
     bare = [f for f, p in zip(b.floors, press) if not p]
-    if len(bare) != 1 or any(0.0 < p < PRESSES for p in press):
+    if len(bare) != 1 or any(0.0 < p < MIN_FLOOR_LOAD_RATIO for p in press):
         return []
     message = f"no load presses nodes {some(bare[0].nodes)} of {b.name!r}, as loads press its other floors"
     hint = "load them, too, or their beams"

@@ -7,12 +7,12 @@ from collections import defaultdict
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.structure.buildings import buildings, parts, stands
 from pound_solve.structure.checks.ends import places
-from pound_solve.structure.checks.members import kinds, lies
+from pound_solve.structure.checks.members import is_horizontal, members_by_set
 from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
 
 
-def massless(structure: Structure) -> list[Diagnostic]:
+def massless_buildings(structure: Structure) -> list[Diagnostic]:
     """Report structures and buildings without mass if the deck requires modes or the motion under an
     earthquake.
 
@@ -26,7 +26,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
     movable = {*structure.dofs.free, *structure.dofs.moved}
     heavy = {n for (n, d), mass in structure.nodal_mass.items() if mass > 0.0 and (n, d) in movable}
     if not heavy:
-        return [Diagnostic("P347", "no node has mass, so nothing can swing", asked.span, remedy, "warning")]
+        return [Diagnostic("P347", "nothing has mass, so nothing can swing", asked.span, remedy, "warning")]
     names = {n: card.label for card in model.buildings for n in card["NODES"]}
     free = {owner for owner, _ in structure.dofs.free}
     problems = []
@@ -45,7 +45,7 @@ def massless_roof(structure: Structure) -> list[Diagnostic]:
     group, at = places(model)
     own_mass = {n for (n, d), mass in structure.nodal_mass.items() if d == 0 and mass > 0.0}
     heavy = {n for m in own_mass for n in group[at[m]]}  # a joint may lie between a beam and its mass
-    beams = [e for members in kinds(model).values() for e in members if lies(model, e)]
+    beams = [e for members in members_by_set(model).values() for e in members if is_horizontal(model, e)]
     for b in buildings(structure) if "X" in shaken(model) else ():
         inside, levels = set(b.nodes), defaultdict[float, set[int]](set)
         for e in beams:
@@ -62,7 +62,7 @@ def massless_roof(structure: Structure) -> list[Diagnostic]:
     return problems
 
 
-def immovable(structure: Structure) -> list[Diagnostic]:
+def immovable_weights(structure: Structure) -> list[Diagnostic]:
     """Report weights above the base of a building at nodes that are fixed along x while others move."""
     model, problems = structure.model, list[Diagnostic]()
     moved = {owner for owner, _ in structure.dofs.moved}

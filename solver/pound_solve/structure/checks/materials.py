@@ -8,17 +8,17 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Element, Model
 from pound_solve.loading.motions.base import METRE
-from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.members import members_by_set
 from pound_solve.structure.checks.weights import NEWTON
 from pound_solve.structure.structure import Structure
 
 #: least modulus of elasticity of members [Pa]: adobe has 0.2e9, rubber 1e6
-SOFTEST: Final = 1e8
+MIN_ELASTIC_MODULUS: Final = 1e8
 #: weights by volume of concrete and steel, read as N/m: more than any column under 0.6 m^2 weighs
-VOLUMES, COLUMN = ((22e3, 26e3), (76e3, 79e3)), 0.6
+UNIT_WEIGHTS, MAX_COLUMN_AREA = ((22e3, 26e3), (76e3, 79e3)), 0.6
 #: of soils: shear modulus [Pa] from peat to rock, weight by volume [N/m^3]; and the largest half width of a
 #: footing [m]
-SHEAR, SOIL, WIDEST = (5e5, 1e11), (8e3, 35e3), 100.0
+SHEAR_MODULI, SOIL_UNIT_WEIGHTS, MAX_HALF_WIDTH = (5e5, 1e11), (8e3, 35e3), 100.0
 
 
 def impossible_materials(structure: Structure) -> list[Diagnostic]:
@@ -29,7 +29,7 @@ def impossible_materials(structure: Structure) -> list[Diagnostic]:
         return []
     pascal, by_volume = newton * metre**2, newton * metre**3
     flaws = []
-    for label, members in kinds(model).items():
+    for label, members in members_by_set(model).items():
         flaws += [
             *_soft(model, model.props[label], pascal),
             *_heavy(model, label, members, newton * metre, metre**2),
@@ -41,7 +41,7 @@ def impossible_materials(structure: Structure) -> list[Diagnostic]:
 
 
 def _soft(model: Model, card: Card, pascal: float) -> Iterator[Diagnostic]:
-    if card["I"] and card["E"] * pascal < SOFTEST:
+    if card["I"] and card["E"] * pascal < MIN_ELASTIC_MODULUS:
         unit = model.units.text("F/L^2")
         message = (
             f"E of {card.label} is {card['E']:g} {unit}, {card['E'] * pascal / 1e6:.3g} MPa: timber has "
@@ -60,7 +60,7 @@ def _heavy(
     card, nodes = model.props[label], model.nodes
     upright = all(nodes[e.i].x == nodes[e.j or e.i].x for e in members)
     weight, area = card["WGT"] * by_length, card["A"] / face
-    if upright and area < COLUMN and any(low <= weight <= high for low, high in VOLUMES):
+    if upright and area < MAX_COLUMN_AREA and any(low <= weight <= high for low, high in UNIT_WEIGHTS):
         unit = model.units.text("F/L")
         message = (
             f"columns of {label} weigh {card['WGT']:g} {unit}, {card['WGT'] / card['A']:.3g} "
@@ -71,7 +71,12 @@ def _heavy(
 
 
 def _soil(model: Model, card: Card, factors: dict[str, float]) -> Iterator[Diagnostic]:
-    limits = {"G": SHEAR, "WGT": SOIL, "B": (0.0, WIDEST), "L": (0.0, WIDEST)}
+    limits = {
+        "G": SHEAR_MODULI,
+        "WGT": SOIL_UNIT_WEIGHTS,
+        "B": (0.0, MAX_HALF_WIDTH),
+        "L": (0.0, MAX_HALF_WIDTH),
+    }
     usual = {
         "G": "soils have 10 to 1000 MPa",
         "WGT": "soils have 15 to 22 kN/m^3",

@@ -15,17 +15,18 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, scaled, used_rows
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.buildings import Building, buildings, columns_of, stands
-from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.members import members_by_set
 from pound_solve.structure.checks.supports import ROUNDING, resisted, shaken, some
 from pound_solve.structure.dofs import DIRECTIONS
 from pound_solve.structure.structure import Structure
 
-MOVES: Final = 0.1  #: fraction of a motion's largest displacement above which a node counts as moving
-FEWEST: Final = 10  #: steps in a first period
-SAME: Final = 1e-6  #: fraction of a motion by which that of one body may differ
+#: fraction of a motion's largest displacement above which a node counts as moving
+MOVING_RATIO: Final = 0.1
+MIN_STEPS_PER_PERIOD: Final = 10  #: steps in a first period
+MAX_SHAPE_DIFFERENCE: Final = 1e-6  #: fraction of a motion by which that of one body may differ
 #: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid
 #: block of concrete 2200
-FASTEST: Final = 1000.0
+MAX_WAVE_SPEED: Final = 1000.0
 
 
 def find_mechanisms(
@@ -49,7 +50,9 @@ def implausible_periods(
     springs may be rigid on purpose.
     """
     model = structure.model
-    framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
+    framed = {
+        e.i for members in members_by_set(model).values() for e in members if model.props[e.prop]["I"]
+    }
     sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
     metre = METRE.get(model.units.length.lower(), math.inf)
     for b, part in parts:
@@ -62,8 +65,9 @@ def implausible_periods(
         speed = 4.0 * high / t1
         if t1 > slowest:
             limit, why = f"above {slowest:.3g}", "it would fall by its own weight"
-        elif speed > FASTEST * metre and framed & set(b.nodes) and not sprung & set(b.nodes):
-            limit, why = f"below {4.0 * high / (FASTEST * metre):.2g}", "a solid block is hardly stiffer"
+        elif speed > MAX_WAVE_SPEED * metre and framed & set(b.nodes) and not sprung & set(b.nodes):
+            shortest = 4.0 * high / (MAX_WAVE_SPEED * metre)
+            limit, why = f"below {shortest:.2g}", "a solid block is hardly stiffer"
         else:
             continue
         yield b.name, _period(structure, b, t1, limit, why)
@@ -82,15 +86,15 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
 def coarse_steps(
     structure: Structure, parts: Sequence[tuple[Building, BuildingStiffness]]
 ) -> list[Diagnostic]:
-    """Report histories of fewer than `FEWEST` steps in the first period of every building, and output
-    intervals longer than that period.
+    """Report histories of fewer than `MIN_STEPS_PER_PERIOD` steps in the first period of each building, and
+    output intervals longer than that period.
     """
     model, problems = structure.model, list[Diagnostic]()
     longest, unit = max((part.period for _, part in parts), default=0.0), model.units.time
     for card in (c for c in model.analyses if c.spec.name == "HISTORY" and longest):
         first = f"a motion whose first period is about {longest:.2g} {unit}"
         dt, every = card.values.get("DT"), model.output["EVERY"]
-        if dt is not None and longest < FEWEST * dt:
+        if dt is not None and longest < MIN_STEPS_PER_PERIOD * dt:
             message = f"steps of DT={dt:g} {unit} do not follow {first}"
             hint = f"DT is a time in {unit}: a hundredth of the first period is usual"
             problems.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
@@ -202,14 +206,14 @@ def _rigid(structure: Structure, b: Building, motion: Array) -> bool:
     body = np.column_stack([np.append(one, none), np.append(none, one), np.append(-y, x)])
     moved = structure.dofs.matrix([(n, d) for d in range(2) for n in b.nodes]) @ motion
     left = moved - body @ np.linalg.lstsq(body, moved, rcond=None)[0]
-    return bool(abs(left).max() <= SAME * abs(moved).max())
+    return bool(abs(left).max() <= MAX_SHAPE_DIFFERENCE * abs(moved).max())
 
 
 def _mechanism(structure: Structure, b: Building, motion: Array) -> Diagnostic:
     model, free = structure.model, structure.dofs.free
     shifts = [(abs(motion[i]), owner, d) for i, (owner, d) in enumerate(free) if d < 2]
     most = max(shifts)[0]
-    moved = [(owner, d) for x, owner, d in shifts if x > MOVES * most]
+    moved = [(owner, d) for x, owner, d in shifts if x > MOVING_RATIO * most]
     _, first = moved[0]
     nodes = sorted({owner for owner, d in moved if d == first})
     who = f"node{'s' * (len(nodes) > 1)} {some(nodes)}"

@@ -21,21 +21,23 @@ from pound_solve.structure.structure import Structure
 MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
 #: depth over length: a core of 16 m in storeys of 3 m has no more; a section must also fit into its
 #: building
-DEEPEST: Final = 5.0
-USUAL: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
-ALONG: Final = 0.999  #: cosine of the largest slope of a horizontal member
-THINNEST: Final = 1.0 / 300.0  #: depth over length of a member that bends
-SLENDER: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
-LONGEST: Final = 6.0  #: length over the median of its property set; an error of one digit makes it ten
+MAX_DEPTH_RATIO: Final = 5.0
+USUAL_DEPTHS: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
+HORIZONTAL_COSINE: Final = 0.999  #: cosine of the largest slope of a horizontal member
+MIN_DEPTH_RATIO: Final = 1.0 / 300.0  #: depth over length of a member that bends
+SLENDER_DEPTH_RATIO: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
+#: length over the median of its property set; an error of one digit makes it ten
+MAX_LENGTH_RATIO: Final = 6.0
 #: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
 #: 0.0005 to 0.01, so that a factor of a thousand is beyond these limits
-LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
-MOST_ROTATION: Final = 0.2  #: at yield [rad]; joints of timber have 0.05
-FAR: Final = 2.0  #: depth over the size of a building; a stick model of a whole building stays below
-WIDEST: Final = 8.0  #: width over depth of a section
-MOST_HARDENING: Final = 0.2  #: fraction of a section's stiffness that remains after yield
+MIN_YIELD_STRAIN, MAX_YIELD_STRAIN = 2e-5, 0.1
+MAX_YIELD_ROTATION: Final = 0.2  #: at yield [rad]; joints of timber have 0.05
+#: depth over the size of a building; a stick model of a whole building stays below
+MAX_DEPTH_IN_BUILDING: Final = 2.0
+MAX_WIDTH_RATIO: Final = 8.0  #: width over depth of a section
+MAX_HARDENING_RATIO: Final = 0.2  #: fraction of a section's stiffness that remains after yield
 ROUNDING: Final = 1e-9  #: fraction of a length
-MOST_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
+MAX_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
 
 
 def depth(card: Card) -> float:
@@ -49,24 +51,24 @@ def length(model: Model, e: Element) -> float:
     return math.hypot(i.x - j.x, i.y - j.y)
 
 
-def lies(model: Model, e: Element) -> bool:
+def is_horizontal(model: Model, e: Element) -> bool:
     """Whether an element with two nodes is horizontal."""
     assert e.j is not None
     i, j = model.nodes[e.i], model.nodes[e.j]
-    return abs(i.x - j.x) > ALONG * math.hypot(i.x - j.x, i.y - j.y)
+    return abs(i.x - j.x) > HORIZONTAL_COSINE * math.hypot(i.x - j.x, i.y - j.y)
 
 
-def misshapen(structure: Structure) -> list[Diagnostic]:
+def misshapen_members(structure: Structure) -> list[Diagnostic]:
     """Report sections and members of impossible proportions, once for each property set."""
     model, problems = structure.model, dict[str, Diagnostic]()
     sizes = _sizes(model)
-    for label, members in kinds(model).items():
+    for label, members in members_by_set(model).items():
         card = model.props[label]
         if not card["I"]:
             continue
         h, short = depth(card), min(members, key=lambda e: length(model, e))
         size, long = sizes[short.i], length(model, short)
-        if h > size and (h > DEEPEST * long or _exchanged(card, long, h / size)):
+        if h > size and (h > MAX_DEPTH_RATIO * long or _exchanged(card, long, h / size)):
             problems[label] = _too_deep(model, card, short, h)
             continue
         problem = _area_in_smaller_units(model, card, members, size**2)
@@ -80,10 +82,13 @@ def _exchanged(card: Card, long: float, beyond: float) -> bool:
     """Whether A and I of a section have been exchanged: it is `beyond` times as deep as its building is
     large, and with A and I exchanged its depth would be usual for a member of the length `long`.
     """
-    return beyond > FAR and USUAL[0] <= math.sqrt(12.0 * card["A"] / card["I"]) / long <= USUAL[1]
+    return (
+        beyond > MAX_DEPTH_IN_BUILDING
+        and USUAL_DEPTHS[0] <= math.sqrt(12.0 * card["A"] / card["I"]) / long <= USUAL_DEPTHS[1]
+    )
 
 
-def kinds(model: Model) -> dict[str, list[Element]]:
+def members_by_set(model: Model) -> dict[str, list[Element]]:
     """Members (elements of frame types) by their property sets."""
     by_set: dict[str, list[Element]] = defaultdict(list)
     for e in model.elements.values():
@@ -130,12 +135,11 @@ def _area_in_smaller_units(
         return None
     for unit, factor in (("mm", 1e-3), ("cm", 1e-2)):
         high, area = depth(card) / factor, factor**2 * card["A"]
-        if USUAL[0] <= high / middle <= USUAL[1] and area <= WIDEST * high**2:
+        if USUAL_DEPTHS[0] <= high / middle <= USUAL_DEPTHS[1] and area <= MAX_WIDTH_RATIO * high**2:
             message = (
                 f"A of {card.label} is {card['A']:g} m^2, but I makes the section {depth(card):.1g} m deep"
             )
-            hint = f"{card['A']:g} {unit}^2 are {area:g} m^2; leave it if no axial "
-            hint += "deformation is meant"
+            hint = f"{card['A']:g} {unit}^2 are {area:g} m^2; keep it if no axial deformation is meant"
             return Diagnostic("P352", message, card.place("A"), hint, "warning")
     return None
 
@@ -144,7 +148,7 @@ def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Di
     """Return a warning for a section as thin as a wire in members that bend; an area above the `face` of
     the building [L^2] models an axially rigid member.
     """
-    if h >= THINNEST * length(model, e) or card["PIN"] == "BOTH" or card["A"] > face:
+    if h >= MIN_DEPTH_RATIO * length(model, e) or card["PIN"] == "BOTH" or card["A"] > face:
         return None
     unit = model.units.length
     hint = f"A is in {unit}^2, I in {unit}^4: correct the one of other units; a bar has PIN=BOTH or no I"
@@ -155,7 +159,7 @@ def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Dia
     """Return a warning for a member too slender and far longer than the others of its property set."""
     e = max(members, key=lambda e: length(model, e))
     long, middle = length(model, e), median(length(model, m) for m in members)
-    if long <= LONGEST * middle or h >= SLENDER * long:
+    if long <= MAX_LENGTH_RATIO * middle or h >= SLENDER_DEPTH_RATIO * long:
         return None
     unit, ends = model.units.length, " and ".join(str(n) for n in (e.i, e.j))
     message = f"member {e.id} is {long:.3g} {unit} long, others of {card.label} {middle:.3g} {unit}"
@@ -163,11 +167,11 @@ def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Dia
     return Diagnostic("P353", message, e.span, hint, "warning")
 
 
-def doubled(structure: Structure) -> list[Diagnostic]:
+def doubled_members(structure: Structure) -> list[Diagnostic]:
     """Report members between the same two nodes, except in sets all of whose members are parallel to
     others, such as column jackets.
     """
-    problems, sets = list[Diagnostic](), kinds(structure.model)
+    problems, sets = list[Diagnostic](), members_by_set(structure.model)
     at = defaultdict[frozenset[int | None], list[Element]](list)
     for members in sets.values():
         for e in members:
@@ -184,14 +188,16 @@ def doubled(structure: Structure) -> list[Diagnostic]:
     return problems
 
 
-def misjudged(structure: Structure) -> list[Diagnostic]:
+def implausible_hinges(structure: Structure) -> list[Diagnostic]:
     """Report hinges of members with an implausible yield strain of the section or ductility, and hinges and
     springs with a stiffness of their own that yield at an implausible rotation, one for each property set.
 
     The latter may be rigid until they yield, so small strains and large ductilities are not reported.
     """
     model, problems = structure.model, dict[str, Diagnostic]()
-    of_hinges = [d for label, members in kinds(model).items() for d in _long_hinges(model, label, members)]
+    of_hinges = [
+        d for label, members in members_by_set(model).items() for d in _long_hinges(model, label, members)
+    ]
     for spring in structure.laws:
         element = model.elements[spring.element]
         card = model.props[element.prop]
@@ -226,7 +232,7 @@ def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[D
         hint = f"LP is in {unit}: half the depth of the section is usual"
         yield Diagnostic("P355", message, card.place("LP"), hint, "warning")
     hardening = card.values.get("R")
-    if hinges and hardening is not None and hardening >= MOST_HARDENING:
+    if hinges and hardening is not None and hardening >= MAX_HARDENING_RATIO:
         message = f"hinges of {label} keep R={hardening:g} of the stiffness of the section as they yield"
         hint = f"R is a share: {hardening:g} % is R={hardening / 100.0:g}; 0.01 to 0.05 are usual"
         yield Diagnostic("P355", message, card.place("R"), hint, "warning")
@@ -242,9 +248,9 @@ def _strain(
     moment = max((abs(m) for m in strengths if math.isfinite(m)), default=0.0)
     ei = card["E"] * card["I"]
     strain = moment * h / ei if ei else 0.0
-    plain = USUAL[0] < h / length(model, element) < 1.0  # else A or the length is a modelling choice
-    if strain and plain and not LEAST_STRAIN <= strain <= MOST_STRAIN:
-        few = strain < LEAST_STRAIN
+    plain = USUAL_DEPTHS[0] < h / length(model, element) < 1.0  # else A or the length is a modelling choice
+    if strain and plain and not MIN_YIELD_STRAIN <= strain <= MAX_YIELD_STRAIN:
+        few = strain < MIN_YIELD_STRAIN
         message = (
             f"hinges of {card.label} yield at {moment:g} {unit}, a strain of {strain:.1g} of the section: "
             f"{'0.001 is little' if few else '0.01 is much'}"
@@ -259,7 +265,7 @@ def _rotation(model: Model, card: Card, spring: LawSpring) -> Iterator[Diagnosti
     implausible rotation.
     """
     at = max((abs(x) for x in spring.yields or () if math.isfinite(x)), default=0.0)
-    if at > MOST_ROTATION:
+    if at > MAX_YIELD_ROTATION:
         k, m = ("KH", "MI") if card.spec.name in MEMBERS else ("KR", "MR")
         item = next(i for i in (m, "MJ", k) if card.values.get(i) is not None)
         message = f"{card.label} yields at a rotation of {at:.2g} rad: 0.05 is much"
@@ -269,7 +275,7 @@ def _rotation(model: Model, card: Card, spring: LawSpring) -> Iterator[Diagnosti
 
 def _ductility(card: Card) -> Iterator[Diagnostic]:
     most = max(card.values.get("DUCTU") or (0.0,))
-    if most > MOST_DUCTILITY:
-        message = f"DUCTU of {card.label} is {most:g}, but no member has more than {MOST_DUCTILITY:g}"
+    if most > MAX_DUCTILITY:
+        message = f"DUCTU of {card.label} is {most:g}, but no member has more than {MAX_DUCTILITY:g}"
         hint = "DUCTU is a multiple of the yield deformation, not per cent"
         yield Diagnostic("P355", message, card.place("DUCTU"), hint, "warning")

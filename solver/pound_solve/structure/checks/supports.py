@@ -14,7 +14,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Element, Model
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import Building, buildings, stands
-from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.members import members_by_set
 from pound_solve.structure.dofs import DIRECTIONS
 from pound_solve.structure.elements.base import direction
 from pound_solve.structure.elements.beam import INSIDE
@@ -26,7 +26,7 @@ ENDS_AT_I: Final = (INSIDE[0], INSIDE[2])
 ROUNDING = 1e-9  #: fraction of its terms below which a sum that should be zero is zero
 
 
-def unsupported(structure: Structure) -> list[Diagnostic]:
+def unsupported_buildings(structure: Structure) -> list[Diagnostic]:
     """Report directions in which nothing connects the structure, or one of its buildings, to the shaken
     ground.
     """
@@ -143,7 +143,7 @@ def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Ar
     """
     columns = [*structure.dofs.free, *structure.dofs.moved]
     moved = np.zeros((len(columns), count))
-    beams = {e.id: e for members in kinds(structure.model).values() for e in members}
+    beams = {e.id: e for members in members_by_set(structure.model).values() for e in members}
     for row, (owner, d) in zip(moved, columns):
         if d < 3:
             row[:] = motions[owner][d] if owner in motions else 0.0

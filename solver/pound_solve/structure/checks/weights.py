@@ -11,7 +11,14 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model
 from pound_solve.loading.motions.base import METRE
 from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
-from pound_solve.structure.checks.members import MEMBERS, USUAL, depth, kinds, length, lies
+from pound_solve.structure.checks.members import (
+    MEMBERS,
+    USUAL_DEPTHS,
+    depth,
+    is_horizontal,
+    length,
+    members_by_set,
+)
 from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.structure import Structure
 
@@ -20,52 +27,53 @@ NEWTON: Final[Mapping[str, float]] = MappingProxyType(
 )
 #: modulus of elasticity from and to [Pa], and weight by volume [N/m^3], of concrete and of steel
 MATERIALS: Final = ((15e9, 60e9, 24e3), (180e9, 220e9, 77e3))
-EARTH: Final = 9.81  #: [m/s^2]
-SPUN: Final = 0.1  #: fraction of gravity by which that of a model in a centrifuge differs at least
+EARTH_GRAVITY: Final = 9.81  #: [m/s^2]
+#: fraction of gravity by which that of a model in a centrifuge differs at least
+MIN_GRAVITY_DIFFERENCE: Final = 0.1
 #: fraction of beams and columns in the whole weight: 0.1 to 0.45 with slabs and walls, ten times that where
 #: masses are written in place of weights
-BARE: Final = 0.6
+MAX_FRAME_WEIGHT_RATIO: Final = 0.6
 #: strain of columns under the whole weight: 0.0003 to 0.0008 at design stresses of concrete, steel, timber
-SQUASHED: Final = 1e-3
+MAX_COLUMN_STRAIN: Final = 1e-3
 #: strength of the lowest storey over the weight; sliding bearings have 0.02, walls of one storey 3
-WEAKEST, STRONGEST = 0.002, 20.0
-LOWEST, HIGHEST = 0.1, 1000.0  #: height of a building or a model of one [m]
+MIN_STRENGTH_RATIO, MAX_STRENGTH_RATIO = 0.002, 20.0
+MIN_HEIGHT, MAX_HEIGHT = 0.1, 1000.0  #: height of a building or a model of one [m]
 
 
-def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
+def outsized_buildings(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
     """Yield the names of buildings lower than any shaking-table model or higher than any building, each
     with a warning; centrifuge models, recognised by their gravity, are skipped.
     """
     model = structure.model
     metre = METRE.get(model.units.length.lower())
-    spun = metre and not math.isclose(model.gravity, EARTH * metre, rel_tol=SPUN)
+    spun = metre and not math.isclose(model.gravity, EARTH_GRAVITY * metre, rel_tol=MIN_GRAVITY_DIFFERENCE)
     for b in _standing(structure) if metre and not spun else ():
         high = (max(model.nodes[n].y for n in b.nodes) - b.base) / (metre or 1.0)
-        if high > 0.0 and not LOWEST <= high <= HIGHEST:
+        if high > 0.0 and not MIN_HEIGHT <= high <= MAX_HEIGHT:
             message = f"{b.name!r} is {high:.3g} m high"
             hint = f"coordinates under NODES are in {model.units.length}: correct them, or UNITS"
             yield b.name, Diagnostic("P362", message, model.nodes[b.nodes[0]].span, hint, "warning")
 
 
-def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
+def misweighed_buildings(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
     """Yield the names of buildings that weigh hardly more than their frame or more than their columns can
     carry, each with a warning.
     """
     model = structure.model
     force, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
-    beams = {e.i for members in kinds(model).values() for e in members if lies(model, e)}
+    beams = {e.i for members in members_by_set(model).values() for e in members if is_horizontal(model, e)}
     for b in _standing(structure) if force and metre else ():
         assert force and metre
-        weight = b.mass * force * metre * EARTH
+        weight = b.mass * force * metre * EARTH_GRAVITY
         bare = _bare_weight(model, b, force * metre**2, metre)
         strain = _strain(model, b, weight / force)
-        if bare > BARE * weight and beams & set(b.nodes):
+        if bare > MAX_FRAME_WEIGHT_RATIO * weight and beams & set(b.nodes):
             finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
                 f"{bare / force:.3g} {model.units.force} by A and E"
             )
             yield b.name, _weights(model, b, finding, "; keep it if the frame bears no slab")
-        elif strain > SQUASHED:
+        elif strain > MAX_COLUMN_STRAIN:
             finding = (
                 f"weighs {weight / force:.3g} {model.units.force}, which shortens its columns by "
                 f"{1e3 * strain:.2g} per mille: columns bear less than one"
@@ -96,7 +104,7 @@ def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> floa
         if card["WGT"]:
             return 0.0
         long = length(model, e)
-        if long and USUAL[0] <= depth(card) / long <= 1.0:
+        if long and USUAL_DEPTHS[0] <= depth(card) / long <= 1.0:
             kind = (w for low, high, w in MATERIALS if low <= card["E"] * pascal <= high)
             total += card["A"] * long / metre**3 * next(kind, 0.0)
     return total
@@ -127,7 +135,7 @@ def _lowest(model: Model, b: Building) -> list[Element]:
     return lowest
 
 
-def misarmed(structure: Structure) -> list[Diagnostic]:
+def implausible_base_strengths(structure: Structure) -> list[Diagnostic]:
     """Report buildings on springs whose total strength is implausible for the weight that they carry."""
     model, problems = structure.model, list[Diagnostic]()
     along = {s.element: s for s in structure.laws if s.component == "X" and s.strengths is not None}
@@ -137,9 +145,12 @@ def misarmed(structure: Structure) -> list[Diagnostic]:
             continue
         pairs = [along[e.id].strengths or (math.inf, -math.inf) for e in lowest]
         strength, weight = sum(max(plus, -minus) for plus, minus in pairs), b.mass * model.gravity
-        if math.isfinite(strength) and not WEAKEST * weight <= strength <= STRONGEST * weight:
+        if (
+            math.isfinite(strength)
+            and not MIN_STRENGTH_RATIO * weight <= strength <= MAX_STRENGTH_RATIO * weight
+        ):
             unit, card = model.units.force, model.props[lowest[0].prop]
-            few = strength < WEAKEST * weight
+            few = strength < MIN_STRENGTH_RATIO * weight
             message = (
                 f"the springs below {b.name!r} yield at {strength:.4g} {unit} together, "
                 f"{strength / weight:.2g} of its weight: {'0.02 is little' if few else '1 is much'}"
@@ -149,7 +160,7 @@ def misarmed(structure: Structure) -> list[Diagnostic]:
     return problems
 
 
-def far(structure: Structure) -> list[Diagnostic]:
+def far_yielding_springs(structure: Structure) -> list[Diagnostic]:
     """Report springs weaker than the weight that yield at a deformation beyond the height of their
     building.
     """

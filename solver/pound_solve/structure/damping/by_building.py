@@ -8,7 +8,7 @@ from pound_solve.structure.buildings import Building, buildings
 from pound_solve.structure.structure import Structure
 
 
-def uneven(structure: Structure) -> list[Diagnostic]:
+def unevenly_damped_buildings(structure: Structure) -> list[Diagnostic]:
     """Report buildings damped by several cards, one of them by name, and undamped buildings if others are
     damped by name.
 

@@ -42,7 +42,7 @@ from pound_solve.structure.elements.base import (
     signed,
 )
 
-FAR = 1e3  #: deformation, in widths, that no spring reaches
+UNREACHED_WIDTHS = 1e3  #: deformation, in widths, that no spring reaches
 
 
 def lobatto(count: int) -> tuple[Array, Array]:
@@ -57,7 +57,7 @@ def no_tension(
     element: int, component: str, row: Mapping[Dof, float], k: float, strength: float | None, width: float
 ) -> LawSpring:
     """A spring that opens in tension and crushes at its `strength`; elastic if that is None."""
-    far = FAR * width
+    far = UNREACHED_WIDTHS * width
     limit = k * far if strength is None else strength
     law = Law(RULE, (k, limit, -limit, far, 0.0, 0.0, 1.0))
     dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))

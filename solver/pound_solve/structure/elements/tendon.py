@@ -25,7 +25,7 @@ from pound_solve.structure.elements.base import (
     direction,
 )
 
-FAR = 1e3  #: strain that is never reached
+UNREACHED_STRAIN = 1e3  #: strain that is never reached
 
 
 def build(context: ElementContext) -> ElementParts:
@@ -39,7 +39,7 @@ def build(context: ElementContext) -> ElementParts:
         raise ElementError("a tendon is slack or prestressed, not both: SLACK or N0", "N0")
     if p["PY"] is not None and p["N0"] >= p["PY"]:
         raise ElementError(f"N0 is {p['N0']:g}, no less than the yield force PY={p['PY']:g}", "N0")
-    k, far = p["E"] * p["A"] / length, FAR * length
+    k, far = p["E"] * p["A"] / length, UNREACHED_STRAIN * length
     slack = p["SLACK"] - p["N0"] / k
     strength = k * far if p["PY"] is None else p["PY"]
     row = [

@@ -33,7 +33,7 @@ from pound_solve.sweep.study.records import Suite, scaled
 from pound_solve.sweep.study.run import ParameterCase, Shaking, StudyRun, digest_of
 from pound_solve.user_error import UserError
 
-MOST: Final = 10**6  #: runs
+MAX_RUNS: Final = 10**6  #: runs
 ITEMS: Final = (
     "deck", "decks", "records", "out", "method", "dt", "tol", "workers", "seconds", "memory", "histories",
     "grid", "zip", "cases", "motions",
@@ -364,8 +364,8 @@ class _Reader:
         for deck in decks:
             context = self._context(deck)
             shakings: list[Shaking | None] = [x for s in self.suites for x in s.shakings(context)]
-            if len(decks) * len(combinations) * len(shakings or [None]) > MOST:
-                document.mistake("S605", f"the study has more than {MOST} runs")
+            if len(decks) * len(combinations) * len(shakings or [None]) > MAX_RUNS:
+                document.mistake("S605", f"the study has more than {MAX_RUNS} runs")
                 return
             read = dict[Params, tuple[str, str]]()
             for params in combinations:

@@ -12,7 +12,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 if TYPE_CHECKING:
     from pound_solve.analyses.spring_response import SpringResponse
 
-MOST = 10  #: rows
+MAX_ROWS = 10  #: rows
 #: states by the damage index of Park and Ang
 STATES = ((1.0, "failed"), (0.4, "beyond repair"), (0.2, "moderate"), (0.1, "slight"), (0.0, "none"))
 BEYOND = "look: beyond ordinary rotations"
@@ -34,7 +34,7 @@ def rows(run: RunRecord) -> list[Row] | None:
     }
     yielded = sorted((r for r in worst if r.ductility > 1.0), key=_rank, reverse=True)
     buildings = run.history.items.buildings
-    places = [member_end(run.model, buildings, r.spring.element, _end(r)) for r in yielded[:MOST]]
+    places = [member_end(run.model, buildings, r.spring.element, _end(r)) for r in yielded[:MAX_ROWS]]
     return [
         _row(r, max(other[id(r)], default=math.nan), place) for r, place in zip(yielded, places)
     ] or None
