@@ -3,7 +3,7 @@
 import pytest
 
 from pound_solve.loading.motions.base import LoadingContext
-from pound_solve.loading.motions.doubts import mispaced, pace
+from pound_solve.loading.motions.doubts import pace, reason_mispaced
 from pound_solve.loading.motions.record import samples
 from pound_solve.loading.piecewise import Piecewise
 from pound_solve.loading.records.known import KNOWN
@@ -16,7 +16,7 @@ def record(name, stretched=1.0):
 
 @pytest.mark.parametrize("name", sorted(KNOWN))
 def test_no_step_of_a_record_is_doubted(name):
-    assert not mispaced(record(name))
+    assert not reason_mispaced(record(name))
     period, duration = pace(record(name))
     assert 0.1 < period < 1.5 and 3.0 < duration < 100.0
 
@@ -25,7 +25,7 @@ def test_no_step_of_a_record_is_doubted(name):
     ("stretched", "told"), [(10.0, "lake beds have 2 s"), (0.1, "hard rock has 0.05 s")]
 )
 def test_ten_times_the_step_is_told(stretched, told):
-    assert told in mispaced(record("ELCENTRO_180", stretched))
+    assert told in reason_mispaced(record("ELCENTRO_180", stretched))
     period, duration = pace(record("ELCENTRO_180"))
     assert pace(record("ELCENTRO_180", stretched)) == pytest.approx(
         (stretched * period, stretched * duration)

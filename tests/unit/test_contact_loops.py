@@ -326,6 +326,6 @@ def test_points_that_make_no_table(values, words):
 
 
 def test_a_table_takes_as_many_points_as_its_parameters_hold():
-    n = table.MOST
+    n = table.MAX_SEGMENTS
     law = crush(DEPTHS=tuple(range(1, n + 1)), FORCES=tuple(range(1, n + 1)), KU=2.0, GAP=0.0).law
     assert law.force(drive(law, law.start(), 0.0, n + 1.5), n + 1.5)[0] == pytest.approx(n + 1.5)

@@ -16,7 +16,7 @@ from pound_solve.loading.records import peer
 from pound_solve.user_error import UserError
 
 EQUAL: Final = 1e-9  #: relative difference of equal steps, because times are sums
-LONGEST: Final = 10**7  #: most steps of a file
+MAX_STEPS: Final = 10**7  #: most steps of a file
 
 
 class MotionError(UserError):
@@ -78,9 +78,9 @@ def _file(number: int, motion: GroundMotion, gravity: float, dt: float | None) -
     if dt is None:
         step = float(f"{step:.12g}")  # of times that are sums
     steps_of_file = (a.end - a.start) / step
-    if not 1.0 - EQUAL <= steps_of_file <= LONGEST:
+    if not 1.0 - EQUAL <= steps_of_file <= MAX_STEPS:
         message = f"--dt {step:g} divides {name} into {steps_of_file:.3g} steps"
-        raise MotionError(f"{message}, and a file holds from one to {LONGEST:g}")
+        raise MotionError(f"{message}, and a file holds from one to {MAX_STEPS:g}")
     count = int(np.ceil(steps_of_file - EQUAL)) + 1
     times = np.minimum(a.start + step * np.arange(count), a.end)
     values = np.asarray(a.value(times)) / gravity

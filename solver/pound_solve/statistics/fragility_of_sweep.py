@@ -30,7 +30,7 @@ from pound_solve.statistics.incremental import Rules, capacity
 #: only a run that stops counts as collapse; limits of the demand are given separately
 STOPS: Final = Rules(step=1.0, slope=0.0)
 FEW: Final = 10  #: number of data below which a remark warns
-FEWEST: Final = 3  #: fewest levels of a record that make a curve
+MIN_LEVELS: Final = 3  #: fewest levels of a record that make a curve
 
 
 class Fitted(NamedTuple):
@@ -95,11 +95,11 @@ def counts(records: Sequence[IdaCurve], limit: float) -> tuple[tuple[float, int,
 
 
 def suited(records: Sequence[IdaCurve]) -> str:
-    """Name of the default method: capacities if each record has at least `FEWEST` levels, else stripes if
-    all records have the same two or more levels, else a cloud.
+    """Name of the default method: capacities if each record has at least `MIN_LEVELS` levels, else stripes
+    if all records have the same two or more levels, else a cloud.
     """
     levels = [tuple(p.level for p in c.points) for c in records if c.points]
-    if levels and min(map(len, levels)) >= FEWEST:
+    if levels and min(map(len, levels)) >= MIN_LEVELS:
         return "capacities"
     return "stripes" if len(set(levels)) == 1 and len(levels[0]) > 1 else "cloud"
 

@@ -7,8 +7,8 @@ building.  A building takes its name from a card of BUILDINGS; unnamed ones are 
 The base of a building is its lowest support, or its lowest node if it has no support. Nodes with mass above
 it make a level if their heights differ by no more than `SAME_LEVEL` of the height of the building.  Its
 floors are the levels that FLOORS names; by default, the highest level and every level with at least
-`MIN_FLOOR_MASS_RATIO` of the mass of the heaviest. This excludes joints within a column. A storey reaches from
-the floor below, or the base, to its floor, and is cut at the middle of its height.
+`MIN_FLOOR_MASS_RATIO` of the mass of the heaviest. This excludes joints within a column. A storey reaches
+from the floor below, or the base, to its floor, and is cut at the middle of its height.
 """
 
 from __future__ import annotations

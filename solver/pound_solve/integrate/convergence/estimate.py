@@ -11,10 +11,10 @@ that explains the differences :math:`\Delta_1` and :math:`\Delta_2` between the 
 
 .. math:: \frac{\Delta_2}{\Delta_1} = \frac{1 - r_2^{-p}}{r_1^p - 1} .
 
-The power is trusted between `SLOWEST` and `ORDER`, and only once it has been observed twice: the lower of
+The power is trusted between `MIN_ORDER` and `ORDER`, and only once it has been observed twice: the lower of
 two powers is used, that of the last three runs and that of the three runs before the last.  (A power from
 three runs is not enough, since the first of them may have had too few steps to show any order.)
-Differences that fall with a power above `FASTEST` fall faster than the method explains.  They agree by
+Differences that fall with a power above `CHANCE_ORDER` fall faster than the method explains.  They agree by
 chance and indicate no order; the slowest power is then assumed, as with fewer than four runs.  The last run
 is compared with each of the `COMPARED_RUNS` runs before it, since a single run may agree with it by chance.
 `SAFETY` follows from the distribution of the ratio of true errors to estimates (manual, theory of AUTO).
@@ -28,19 +28,17 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 
-SLOWEST, ORDER = (
-    0.5,
-    1.75,
-)  #: smallest and largest power of the step with which an error is assumed to fall
-FASTEST = 2.5  #: power of the step above which the decrease of the differences counts as chance
+#: smallest and largest power of the step with which an error is assumed to fall
+MIN_ORDER, ORDER = 0.5, 1.75
+CHANCE_ORDER = 2.5  #: power of the step above which the decrease of the differences counts as chance
 SAFETY = 1.5  #: ratio of the estimate to the error that the differences indicate
 COMPARED_RUNS = 3  #: number of runs with which the last one is compared
 BISECTIONS = 30  #: number of bisections to the observed power
 
 
 def observed_order(before: Array, now: Array, first: float, second: float) -> Array:
-    """Return the observed orders of convergence, between `SLOWEST` and `FASTEST`: the powers of the step
-    with which errors fall.
+    """Return the observed orders of convergence, between `MIN_ORDER` and `CHANCE_ORDER`: the powers of the
+    step with which errors fall.
 
     Parameters
     ----------
@@ -49,7 +47,7 @@ def observed_order(before: Array, now: Array, first: float, second: float) -> Ar
     first, second : float
         Ratio of the steps of the second run to those of the first, and of the third to those of the second.
     """
-    low, high = np.full(before.shape, SLOWEST), np.full(before.shape, FASTEST)
+    low, high = np.full(before.shape, MIN_ORDER), np.full(before.shape, CHANCE_ORDER)
     for _ in range(BISECTIONS):
         power = 0.5 * (low + high)
         faster = now * (first**power - 1.0) <= before * (1.0 - second**-power)
@@ -59,8 +57,8 @@ def observed_order(before: Array, now: Array, first: float, second: float) -> Ar
 
 def trusted_order(observed: Array) -> Array:
     """Return the assumed orders of convergence for `observed` orders."""
-    by_chance = observed > FASTEST - 2.0 * (FASTEST - SLOWEST) / 2**BISECTIONS
-    return np.where(by_chance, SLOWEST, np.minimum(observed, ORDER))
+    by_chance = observed > CHANCE_ORDER - 2.0 * (CHANCE_ORDER - MIN_ORDER) / 2**BISECTIONS
+    return np.where(by_chance, MIN_ORDER, np.minimum(observed, ORDER))
 
 
 def differences(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> tuple[Array, Array]:
@@ -77,7 +75,7 @@ def last_order(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> A
     runs.
     """
     if len(steps) < 3:
-        return np.full(scales.shape, SLOWEST)
+        return np.full(scales.shape, MIN_ORDER)
     before, now = (np.abs(peaks[k] - peaks[k - 1]) / scales for k in (-2, -1))
     return trusted_order(observed_order(before, now, steps[-2] / steps[-3], steps[-1] / steps[-2]))
 

@@ -41,7 +41,7 @@ MAX_RETRIES, MAX_SHORTER = 10, 3
 EARLY, NEARBY = 0.01, 0.6
 
 #: reasons why no shorter steps are tried
-MOST, STALE = "the most that are tried", "nor nearer than with far fewer"
+NO_SHORTER, NO_NEARER = "the most that are tried", "nor nearer than with far fewer"
 
 
 class StepRefinement:
@@ -121,7 +121,7 @@ class StepRefinement:
         several = any(check.subject is Subject.UNIQUENESS for check in outcome.checks)
         stale = self.stale >= (MAX_STALE_OF_SEVERAL if several else MAX_STALE_RUNS)
         if self.met or stale or self._longest():
-            return self._end(MOST if self._longest() else STALE)
+            return self._end(NO_SHORTER if self._longest() else NO_NEARER)
         self._choose()
         return None
 

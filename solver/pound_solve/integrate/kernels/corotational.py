@@ -68,9 +68,9 @@ def add_tangent(
         has_mass = linear.has_mass[linear.pattern.ai[at]] or linear.has_mass[linear.column[at]]
         if massless_only and has_mass:
             continue
-        one, other = members.pair[y, 1], members.pair[y, 2] - first
+        row, product_row = members.pair[y, 1], members.pair[y, 2] - first
         for j in range(6):
-            step.matrix[at] += members.rows[one, j] * members.product[other, j]
+            step.matrix[at] += members.rows[row, j] * members.product[product_row, j]
 
 
 def form_members(members: Corotational, step: Step) -> None:

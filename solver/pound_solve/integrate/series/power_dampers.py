@@ -79,9 +79,11 @@ def linearise_dampers(laws: Laws, rules: RuleFunctions, dampers: PowerDampers) -
             constants[N],
             constants[RATE] if constants[K] > 0.0 else -constants[RATE],
         )
-        share = 1.0 / max(n, 1.0)
+        exponent = 1.0 / max(n, 1.0)
         constants[LIMIT] = (
-            max(SLOW_RATE_OF_UNIT**share, SLOW_RATE**share * laws.largest.rate[i]) if n != 1.0 else np.inf
+            max(SLOW_RATE_OF_UNIT**exponent, SLOW_RATE**exponent * laws.largest.rate[i])
+            if n != 1.0
+            else np.inf
         )
         dampers.is_series[r] = x > constants[LIMIT]
         if dampers.is_series[r]:

@@ -38,8 +38,8 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
-OPEN, MOST = 0, 8  #: segments of the table are branches 1 to MOST
-UNLOADING = MOST + 1
+OPEN, MAX_SEGMENTS = 0, 8  #: segments of the table are branches 1 to MOST
+UNLOADING = MAX_SEGMENTS + 1
 # parameters of a law: the first slope, KU (0: it does not crush), GAP, number of the points, the points
 KU, COUNT, POINTS = 1, 3, 4
 RESIDUAL, LARGEST, SEGMENT = range(3)  #: internal variables: residual depth; largest overlap; segment at it
@@ -105,7 +105,7 @@ def steepest(p: Numbers) -> float:
     return max(p[KU], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
 
 
-SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MOST + 1))
+SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MAX_SEGMENTS + 1))
 RULE = Rule(
     (*BranchKind.OPEN.named("open"), *BranchKind.PRESSED.named(*SEGMENTS, "pressed, unloading")),
     start,
@@ -113,7 +113,7 @@ RULE = Rule(
     transition,
     recoverable,
     steepest=steepest,
-    parameters=POINTS + 2 * MOST,
+    parameters=POINTS + 2 * MAX_SEGMENTS,
     variables=3,
 )
 
@@ -174,8 +174,15 @@ SPEC = Spec(
     "TABLE",
     "tabulated force, elastic or crushing",
     (
-        Field("DEPTHS", Kind.REAL, "L", count=(1, MOST), above=0, doc="overlaps of the points, ascending"),
-        Field("FORCES", Kind.REAL, "F", count=(1, MOST), above=0, doc="their forces"),
+        Field(
+            "DEPTHS",
+            Kind.REAL,
+            "L",
+            count=(1, MAX_SEGMENTS),
+            above=0,
+            doc="overlaps of the points, ascending",
+        ),
+        Field("FORCES", Kind.REAL, "F", count=(1, MAX_SEGMENTS), above=0, doc="their forces"),
         Field(
             "KU",
             Kind.REAL,

@@ -51,7 +51,7 @@ from pound_solve.laws.refusal import ItemError
 ELASTIC, YIELDING, WEAKENING = 0, 1, 3
 
 BEFORE = -1e300  #: smaller than any ductility, for the other side of zero
-LEAST = 0.01  #: fraction of the yield force that finally remains
+REMAINING_STRENGTH = 0.01  #: fraction of the yield force that finally remains
 # parameters of a law after K, FY, FY_MINUS: r, alpha; of the loss D1, D2, phi_R, its form, D3 (0: none) and
 # the loss by a cycle
 R, ALPHA, D1, D2, PHI_R, FORM, D3, BY_CYCLE = range(3, 11)
@@ -161,8 +161,10 @@ def _loss(values: Mapping[str, Any]) -> Numbers:
         raise ItemError("DUCT2 must be larger than DUCT1", "DUCT2")
     if d3 is not None and d3 <= d2:
         raise ItemError("DUCT3 must be larger than DUCT2", "DUCT3")
-    if d3 is not None and phi_r <= LEAST:
-        raise ItemError(f"RDUCT must be larger than {LEAST:g}, which is left at DUCT3", "RDUCT")
+    if d3 is not None and phi_r <= REMAINING_STRENGTH:
+        raise ItemError(
+            f"RDUCT must be larger than {REMAINING_STRENGTH:g}, which is left at DUCT3", "RDUCT"
+        )
     if d3 is None and form in (_EACH_SUDDEN, _LARGEST_SUDDEN):
         raise ItemError("a SUDDEN loss needs DUCT3, where it happens", "ILOS")
     if (by_cycle is None) is (form >= _COUNTING):
@@ -186,11 +188,11 @@ def phi(p: Numbers, x: float) -> float:
     """
     d1, d2, phi_r, d3 = p[D1], p[D2], p[PHI_R], p[D3]
     if d3 > 0.0 and x >= d3:
-        return LEAST
+        return REMAINING_STRENGTH
     if x >= d2:
         if d3 == 0.0 or p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN:
             return phi_r
-        return phi_r - (phi_r - LEAST) * (x - d2) / (d3 - d2)
+        return phi_r - (phi_r - REMAINING_STRENGTH) * (x - d2) / (d3 - d2)
     if x <= d1:
         return 1.0
     return 1.0 - (1.0 - phi_r) * (x - d1) / (d2 - d1)
@@ -225,7 +227,7 @@ def strength_by_cycles(p: Numbers, m: Numbers, s: float) -> float:
         return phi(p, inelastic_cycles(m, s))
     if p[FORM] < _COUNTING:
         return 1.0
-    return max(1.0 - p[BY_CYCLE] * inelastic_cycles(m, s), LEAST)
+    return max(1.0 - p[BY_CYCLE] * inelastic_cycles(m, s), REMAINING_STRENGTH)
 
 
 def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]:
@@ -237,7 +239,7 @@ def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]
     if p[FORM] == 0.0 or p[FORM] == _CYCLES:
         return 0.0, 1.0, 0.0
     if d3 > 0.0 and max(x, flat_to) >= d3:
-        return 0.0, LEAST, 0.0
+        return 0.0, REMAINING_STRENGTH, 0.0
     sudden = p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN
     if max(x, flat_to) >= d2 and (d3 == 0.0 or sudden):
         return 0.0, phi_r, d3
@@ -246,7 +248,7 @@ def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]
     if x < d2:
         slope = -(1.0 - phi_r) / (d2 - d1)
         return slope, 1.0 - slope * d1, d2
-    slope = -(phi_r - LEAST) / (d3 - d2)
+    slope = -(phi_r - REMAINING_STRENGTH) / (d3 - d2)
     return slope, phi_r - slope * d2, d3
 
 

@@ -34,7 +34,7 @@ NEAR: Final = 0.95  #: fraction of the first ordinate above which samples are re
 PEAK: Final = 0.9
 LEAST_DAMPING: Final = 0.01
 MOST_DAMPING: Final = 0.5
-FEWEST: Final = 8.0  #: samples in the shortest period
+MIN_SAMPLES_PER_PERIOD: Final = 8.0  #: samples in the shortest period
 
 
 class Target(NamedTuple):
@@ -70,9 +70,11 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMoti
     """
     target = spectrum(card_values["SPECTRUM"], float(card_values["XI"]))
     dt, tol = float(card_values["DT"]), float(card_values["TOL"])
-    if dt * FEWEST > target.periods[0] * (1.0 + 1e-9):
+    if dt * MIN_SAMPLES_PER_PERIOD > target.periods[0] * (1.0 + 1e-9):
         shortest = f"DT={dt:g} is too long for the period {target.periods[0]:g}"
-        raise RecordError("R405", shortest, f"give DT={target.periods[0] / FEWEST:.3g} or less", "DT")
+        raise RecordError(
+            "R405", shortest, f"give DT={target.periods[0] / MIN_SAMPLES_PER_PERIOD:.3g} or less", "DT"
+        )
     t = samples(card_values)
     e = envelope(t, *(float(card_values[name]) for name in ("RISE", "STRONG", "DECAY")))
     seed = int(card_values["SEED"])

@@ -16,7 +16,7 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.motions.base import COMMON, GroundMotion, LoadingContext, Piecewise, finish
-from pound_solve.loading.motions.doubts import mispaced
+from pound_solve.loading.motions.doubts import reason_mispaced
 from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load
@@ -142,7 +142,7 @@ def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, st
     if at < start:
         message = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
         doubts.append((message, "START", "give an earlier START, or a DURATION to the part that is meant"))
-    if card_values.get("DT") is not None and (wrong := mispaced(whole)):
+    if card_values.get("DT") is not None and (wrong := reason_mispaced(whole)):
         doubts.append((wrong, "DT", "DT is the time from one sample to the next in s"))
     return tuple(doubts)
 
