@@ -38,7 +38,7 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.refusal import ItemError
 
-OPEN, MAX_SEGMENTS = 0, 8  #: segments of the table are branches 1 to MOST
+OPEN, MAX_SEGMENTS = 0, 8  #: segments of the table are branches 1 to MAX_SEGMENTS
 UNLOADING = MAX_SEGMENTS + 1
 # parameters of a law: the first slope, KU (0: it does not crush), GAP, number of the points, the points
 KU, COUNT, POINTS = 1, 3, 4
