@@ -207,7 +207,7 @@ def save(picture: Any, path: Path) -> None:
         if path.suffix == ".pdf":
             dated = {"CreationDate": None}
         memory = BytesIO()  # a format whose writing fails may raise other errors than the system's
-        picture.savefig(memory, format=path.suffix[1:], dpi=150, metadata=dated)
+        picture.savefig(memory, format=path.suffix[1:], metadata=dated)
     write(path, memory.getbuffer())
 
 
