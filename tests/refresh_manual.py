@@ -42,6 +42,13 @@ def loops() -> None:
         write(f"pictures/{name}", text)
 
 
+def gallery() -> None:
+    """The pictures of runs."""
+    import gallery as pictures_of_runs
+
+    pictures_of_runs.draw()
+
+
 def editors() -> dict[str, str]:
     """Highlighting of decks, by file name."""
     return {
@@ -63,13 +70,14 @@ def renew(name: str) -> None:
 
 
 PARTS = {name: partial(renew, name) for name in manual_pages.PARTS} | {
-    part.__name__: part for part in (loops, highlighting, verification)
+    part.__name__: part for part in (loops, gallery, highlighting, verification)
 }
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("parts", nargs="*", help=f"of {', '.join(PARTS)}; all if left out")
-    parts = parser.parse_args().parts or [*PARTS]
+    parser.add_argument("parts", nargs="*", help=f"of {', '.join(PARTS)}; all but gallery if left out")
+    # the gallery needs matplotlib, and each version of it draws other bytes
+    parts = parser.parse_args().parts or [name for name in PARTS if name != "gallery"]
     if unknown := sorted({*parts} - PARTS.keys()):
         parser.error(f"no part: {', '.join(unknown)}")
     for name in parts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from pound_solve.cli.main import main
 
 pytest.importorskip("matplotlib")
 
+from gallery import FILES, FOLDER
 from output import sample
 from pound_solve.report import plot
 from pound_solve.report.plot import PICTURES, style
@@ -39,6 +41,8 @@ def test_every_picture_is_a_module_with_its_paragraph_in_the_manual() -> None:
     page = (ROOT / "manual" / "plots.md").read_text("utf-8")
     sections = [line.removeprefix("### ").strip("`") for line in page.splitlines() if line[:4] == "### "]
     assert sections == list(PICTURES)
+    shown = re.findall(r"^### `(\w+)`\n(?:(?!^### ).*\n)*?!\[.*?\]\(pictures/(.*?)\)", page, re.MULTILINE)
+    assert dict(shown) == FILES and all((FOLDER / file).stat().st_size > 2000 for file in FILES.values())
     folder = Path(style.__file__).parent / "pictures"
     assert {p.stem for p in folder.glob("[!_]*.py")} == set(PICTURES)
 

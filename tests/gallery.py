@@ -1,0 +1,100 @@
+"""The pictures of runs in README and manual, drawn by the commands of a user from examples without records.
+
+Other versions of matplotlib draw other bytes, so no test compares the files: ``python
+tests/refresh_manual.py gallery`` draws them anew.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from pound_solve.cli.main import main
+from pound_solve.report.plot import PICTURES, style
+
+ROOT: Final = Path(__file__).parents[1]
+FOLDER: Final = ROOT / "manual" / "pictures"
+EXAMPLES: Final = ROOT / "examples"
+FRAMES: Final = EXAMPLES / "06_unequal_frames" / "unequal_frames.inp"
+PUSHED: Final = EXAMPLES / "03_concrete_frame" / "concrete_frame.inp"
+STUDIED: Final = EXAMPLES / "01_two_oscillators" / "two_oscillators.inp"
+FILM: Final = "run_animation.gif"
+#: file of every picture of one run, and that of two runs over each other
+FILES: Final = {name: FILM if name == "animation" else f"run_{name}.png" for name in PICTURES}
+TWO_RUNS: Final = "runs_storeys.png"
+TUTORIAL: Final = "tutorial_contact_force.png"
+AT_PEAK: Final = ("deformed", "diagrams")
+RESOLUTION: Final = 80  #: dots per inch
+COLOURS: Final = 48  #: of a file, which keeps it small
+FILM_WIDTH: Final = 440  #: dots
+FILM_SECONDS: Final = 20
+SHADES: Final = 8  #: from white to each colour of a film
+
+
+def draw() -> None:
+    """Draw all of them into the folder of the manual's pictures."""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        style = folder / "small.mplstyle"
+        style.write_text(f"savefig.dpi: {RESOLUTION}\n", "utf-8")
+        call(FRAMES, "-o", folder / "pounding")
+        call(FRAMES, "-o", folder / "apart", "--set", "pounding=0")
+        call(PUSHED, "-o", folder)
+        call(STUDIED, "-o", folder)
+        call("study", STUDIED, "--methods", "EXACT,NEWMARK,CENTRAL", "-o", folder)
+        look = "--as", "png", "--style", style, "-o", folder / "drawn"
+        frames, apart = (folder / run / f"{FRAMES.stem}.h5" for run in ("pounding", "apart"))
+        call("plot", frames, *look)
+        call("plot", frames, *AT_PEAK, "--at-peak", "largest", *look)
+        call("plot", frames, "animation", "--as", "gif", "-o", folder / "drawn")
+        call("plot", folder / f"{PUSHED.stem}.h5", "capacity", *look)
+        call("plot", next(folder.glob("*study*.h5")), "study", *look)
+        call("plot", frames, apart, "storeys", *look)
+        call("plot", folder / f"{STUDIED.stem}.h5", "contact_force", *look)
+        stems = {"capacity": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
+        for picture, file in FILES.items():
+            drawn = folder / "drawn" / f"{stems.get(picture, FRAMES.stem)}_{picture}{Path(file).suffix}"
+            reduce(drawn, FOLDER / file)
+        for name, file in ((f"*_vs_*_{FRAMES.stem}_storeys", TWO_RUNS), (f"{STUDIED.stem}_*", TUTORIAL)):
+            (drawn,) = (folder / "drawn").glob(f"{name}.png")
+            reduce(drawn, FOLDER / file)
+
+
+def call(*words: str | Path) -> None:
+    """Run a command of the program."""
+    assert main([str(word) for word in words]) == 0, words
+
+
+def reduce(drawn: Path, file: Path) -> None:
+    """Write a picture or film with few colours, a film also in few dots."""
+    from PIL import Image, ImageSequence  # of matplotlib
+
+    with Image.open(drawn) as image:
+        if drawn.suffix != ".gif":
+            image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(file, optimize=True)
+            return
+        size = FILM_WIDTH, round(image.height * FILM_WIDTH / image.width)
+        of_style = palette()
+        shots = [
+            shot.convert("RGB").resize(size).quantize(palette=of_style, dither=Image.Dither.NONE)
+            for shot in ImageSequence.Iterator(image)
+        ]
+    shots[0].save(
+        file, save_all=True, append_images=shots[1:], loop=0, duration=FILM_SECONDS * 1000 // len(shots)
+    )
+
+
+def palette() -> Any:
+    """Shades of the program's colours for a film, in which few dots are red or green."""
+    from matplotlib.colors import to_rgb
+    from PIL import Image
+
+    with style.sheet():
+        colours = [np.array(to_rgb(c)) for c in ("black", style.BLUE, style.RED, style.GREEN)]
+    shades = [1.0 + x * (colour - 1.0) for colour in colours for x in np.linspace(0.0, 1.0, SHADES)]
+    image = Image.new("P", (1, 1))
+    image.putpalette([round(255 * float(x)) for shade in shades for x in shade])
+    return image
