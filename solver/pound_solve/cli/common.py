@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pound_solve.cli import terminal
 from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ DONE, STOPPED, MISTAKES, FILES = range(4)  #: exit statuses
 
 def complain(text: str, status: int = FILES) -> int:
     """Print a line on the error stream and return the exit status."""
-    print(f"pound-solve: {text}", file=sys.stderr)
+    terminal.tell(f"pound-solve: {text}")
     return status
 
 

@@ -6,36 +6,60 @@ import argparse
 import os
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 
 from pound_solve.cli import verbs
-from pound_solve.cli.common import MISTAKES, STOPPED, complain
+from pound_solve.cli.common import DONE, MISTAKES, STOPPED, complain
+from pound_solve.cli.terminal import columns, tell
 from pound_solve.interruption import Interruption
 from pound_solve.modules import modules_below
 from pound_solve.numerics import threads
 from pound_solve.user_error import UserError
 from pound_solve.version import __version__
 
+PURPOSE = "earthquake pounding of 2-D frames: a text deck in, a report and an HDF5 file out."
+#: what to do first
+FIRST_STEPS = (
+    ("example 06_unequal_frames", "write an example deck"),
+    ("check model.inp", "report all mistakes of a deck"),
+    ("model.inp", "run a deck: model.rpt and model.h5"),
+    ("plot model.h5", "draw the run"),
+    ("list", "list what a deck may use"),
+    ("--help", "list all verbs; VERB --help shows options and examples"),
+)
 VERBS = tuple(name.rpartition(".")[2] for name in modules_below(verbs))
 
 
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser with the arguments of every verb."""
-    parser = argparse.ArgumentParser(
-        prog="pound-solve",
-        description="Earthquake pounding of 2-D frames: a text deck in, a report and an HDF5 file out.",
-    )
+    parser = argparse.ArgumentParser(prog="pound-solve", description=f"{PURPOSE[0].upper()}{PURPOSE[1:]}")
     parser.add_argument("--version", action="version", version=f"pound-solve {__version__}")
-    each = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    each = parser.add_subparsers(dest="verb", required=True, metavar="VERB", title="verbs")
     for name in VERBS:
         verb = import_module(f"{verbs.__name__}.{name}")
-        subparser = each.add_parser(name, help=verb.SUMMARY, description=verb.SUMMARY)
+        examples = listed((f"{name} {words}".strip(), what) for words, what in verb.EXAMPLES)
+        subparser = each.add_parser(
+            name,
+            help=verb.SUMMARY,
+            description=verb.SUMMARY,
+            epilog=f"examples:\n{examples}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         verb.add_arguments(subparser)
         subparser.set_defaults(execute=verb.execute)
     return parser
+
+
+def listed(commands: Iterable[tuple[str, str]]) -> str:
+    """Text of commands with what they do: beside them, or below them where the terminal is narrow."""
+    rows = [(f"  pound-solve {words}".rstrip(), what) for words, what in commands]
+    width = max(len(command) for command, _ in rows)
+    beside = all(width + 2 + len(what) <= columns(sys.stdout) for _, what in rows)
+    between = "  " if beside else "\n      "
+    return "\n".join(f"{command.ljust(width if beside else 0)}{between}{what}" for command, what in rows)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -44,6 +68,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
     words = list(sys.argv[1:] if argv is None else argv)
+    if not words:
+        print(f"pound-solve {__version__}: {PURPOSE}\n\n{listed(FIRST_STEPS)}")
+        return DONE
     if words and words[0] not in (*VERBS, "-h", "--help", "--version"):
         if _misspelt(words):
             near = get_close_matches(words[0], VERBS, 1)
@@ -81,7 +108,7 @@ def _status(execute: Callable[[argparse.Namespace], int], args: argparse.Namespa
     except UserError as err:
         if not err.has_places:
             return complain(str(err), err.status)
-        print(err, file=sys.stderr)
+        tell(str(err))
         return err.status
     except OSError as err:
         return complain(f"{err.filename or ''}: {err.strerror or err}".lstrip(": "))

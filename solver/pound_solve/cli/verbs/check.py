@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from pound_solve.cli import common
+from pound_solve.cli import common, terminal
 
 if TYPE_CHECKING:
     from pound_deck.diagnostics import Diagnostic
     from pound_solve.driver.prepare import Prepared
 
 SUMMARY = "report all mistakes of a deck without running it"
+EXAMPLES = (
+    ("model.inp", "every mistake with its place, and warnings"),
+    ("model.inp --set gap=0.05 --json", "with another PARAM, for programs"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +54,7 @@ def _print(deck: str, ready: Prepared, size: Mapping[str, int]) -> None:
     from pound_deck.diagnostics import render
 
     if ready.warnings:
-        print(render(ready.warnings, ready.files), file=sys.stderr)
+        terminal.tell(render(ready.warnings, ready.files))
     verdict = f"no errors, {_counted(len(ready.warnings), 'warning')}" if ready.warnings else "no mistakes"
     sizes = ", ".join(_counted(size[f"{what}s"], what) for what in ("node", "element", "unknown"))
     print(f"{deck}: {verdict}; {sizes}")

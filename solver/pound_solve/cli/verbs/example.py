@@ -11,6 +11,7 @@ from pathlib import Path
 from pound_solve.cli import common
 
 SUMMARY = "write an example: its decks and its README; without a name, list the examples"
+EXAMPLES = (("", "list the examples"), ("06_unequal_frames", "write one into a folder of its name"))
 
 _OWN = Path(__file__).parents[2]
 #: folders of the examples: beside the package in a wheel, else in the checkout
@@ -58,7 +59,7 @@ def _needs(needs: str) -> str:
     """Remark on further requirements of an example, from the column on records of the README."""
     if needs == "yes":
         return " (needs the extra records)"
-    return f" ({needs.removeprefix('no; ')})" if needs != "no" else ""
+    return f" ({needs.removeprefix('no; ')})" if needs.startswith("no; ") else ""
 
 
 def _write(source: Path, out: Path) -> int:

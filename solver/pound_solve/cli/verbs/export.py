@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from pound_solve.results import Results
 
 SUMMARY = "write the tables and histories of a results file as CSV, or for ParaView"
+EXAMPLES = (
+    ("model.h5", "all tables and histories as CSV"),
+    ("model.h5 --history node/u node=12 component=X", "one column of a history"),
+    ("model.h5 --vtk", "for ParaView"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

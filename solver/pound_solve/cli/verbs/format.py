@@ -5,12 +5,15 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
-import sys
 from pathlib import Path
 
-from pound_solve.cli import common
+from pound_solve.cli import common, terminal
 
 SUMMARY = "put the items of a deck into columns; values, comments and meaning stay"
+EXAMPLES = (
+    ("model.inp", "align the items in columns"),
+    ("model.inp --check", "only tell whether that would change the deck"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +35,7 @@ def execute(args: argparse.Namespace) -> int:
     data = contents(args.deck)
     new, diagnostics, files = arranged(str(args.deck), data)
     if diagnostics:
-        print(render(diagnostics, files), file=sys.stderr)
+        terminal.tell(render(diagnostics, files))
     if new is None:
         return common.complain(f"{args.deck} has mistakes: it is left as it is", common.MISTAKES)
     if args.check:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pound_solve.statistics.curves import Asked
 
 SUMMARY = "fragilities with intervals of confidence from the runs of a sweep"
+EXAMPLES = (("results/sweep.h5 --picture fragility.svg", "curves with intervals, drawn"),)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -7,6 +7,7 @@ import argparse
 from pound_solve.cli import common, studies
 
 SUMMARY = "scale the records of a study up until the structure collapses; capacities and fractiles"
+EXAMPLES = (("study.toml -o results", "scale the records up until the structure collapses"),)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

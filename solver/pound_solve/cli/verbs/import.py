@@ -10,6 +10,7 @@ from pathlib import Path
 from pound_solve.cli import common
 
 SUMMARY = "make a deck of this program of one of Ruaumoko-2D; comments say how it was read"
+EXAMPLES = (("old.dat -o model.inp", "translate a deck of Ruaumoko-2D"),)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

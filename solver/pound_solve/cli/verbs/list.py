@@ -8,6 +8,11 @@ import json
 from pound_solve.cli import common
 
 SUMMARY = "list what a deck may use"
+EXAMPLES = (
+    ("", "the families"),
+    ("contact", "all contact laws"),
+    ("hysteresis TAKEDA", "the items of one rule"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from pound_solve.cli import common
 
 SUMMARY = "drive a hysteresis rule or contact law along a path; print and draw its loop"
+EXAMPLES = (("TAKEDA KX=1000 FX=10 --svg loop.svg", "a hysteresis loop, drawn"),)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from pound_solve.cli import common
 
 SUMMARY = "start the language server, for editors (see manual/editor.md)"
+EXAMPLES = (("", "started by the editor"),)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

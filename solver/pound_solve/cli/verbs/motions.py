@@ -8,6 +8,7 @@ from pathlib import Path
 from pound_solve.cli import common
 
 SUMMARY = "write the ground motions of a deck as record files (.at2), as for a study of many records"
+EXAMPLES = (("model.inp -o records", "the motions of a deck as record files"),)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

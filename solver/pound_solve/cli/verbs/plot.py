@@ -17,6 +17,12 @@ if TYPE_CHECKING:
     from pound_solve.results import Results
 
 SUMMARY = "draw pictures of a run, of several runs over each other, or of a deck (needs the extra plot)"
+EXAMPLES = (
+    ("model.inp", "the deck, before it is run"),
+    ("model.h5", "all pictures of a run"),
+    ("model.h5 diagrams --at-peak largest", "forces while a contact pushes hardest"),
+    ("near/model.h5 far/model.h5", "two runs over each other"),
+)
 OF_A_DECK = ("frame", "loads")  #: pictures that need no run
 
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pound_solve.results import Results
 
 SUMMARY = "print the report of a results file, or write it as a page for a browser"
+EXAMPLES = (("model.h5 --brief", "the first page"), ("model.h5 --html", "one page for a browser"))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

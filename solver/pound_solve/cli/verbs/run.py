@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pound_solve.cli import common
+from pound_solve.cli import common, terminal
 from pound_solve.cli.progress import AnalysisProgress
 
 if TYPE_CHECKING:
     from pound_solve.results import Results
 
 SUMMARY = "run a deck (the verb may be left out)"
+EXAMPLES = (
+    ("model.inp", "writes model.rpt and model.h5"),
+    ("model.inp --set gap=0.05 -o wide", "another PARAM, another folder"),
+    ("model.inp --method NEWMARK --dt 0.001", "another method"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +48,7 @@ def execute(args: argparse.Namespace) -> int:
         raise
     progress.end()
     if ready.warnings and not args.quiet:
-        print(render(ready.warnings, ready.files), file=sys.stderr)
+        terminal.tell(render(ready.warnings, ready.files))
     with results:
         if not args.quiet:
             _warn_of_checks(results)

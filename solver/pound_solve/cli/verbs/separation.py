@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from pound_solve.statistics.needed_gaps import Options
 
 SUMMARY = "separation of the buildings by ABS, SRSS, DDC and codes; of a sweep: probability of contact"
+EXAMPLES = (("model.h5", "gap that the buildings need, by several rules"),)
 OF_SWEEPS: Final = ("gap", "raise", "confidence", "picture")  #: options for the results of sweeps
 
 

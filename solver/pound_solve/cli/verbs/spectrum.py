@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pound_solve.cli import common
+from pound_solve.cli import common, terminal
 from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
@@ -16,6 +15,11 @@ if TYPE_CHECKING:
     from pound_solve.report.spectrum import SpectrumCurve
 
 SUMMARY = "response spectra of records, of the motions of a deck, or of the floors of a run"
+EXAMPLES = (
+    ("quake.at2 --picture spectrum.svg", "of a record"),
+    ("model.inp", "of the motions of a deck"),
+    ("model.h5 --node 12", "of a floor"),
+)
 DEFAULT = "0.01:10:91"  #: thirty periods per decade
 MAX_PERIODS = 10_000  #: most periods
 
@@ -107,7 +111,7 @@ def _curves(args: argparse.Namespace) -> tuple[Units, list[SpectrumCurve]]:
     units = sources[0].units
     for name, source in zip(args.sources, sources):
         if source.warnings:
-            print(render(source.warnings, source.files), file=sys.stderr)
+            terminal.tell(render(source.warnings, source.files))
         other = source.units
         if (other.length, other.time) != (units.length, units.time):
             raise SpectrumError(

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pound_solve.cli import common
-from pound_solve.cli.progress import WIDTH, AnalysisProgress, StatusLine
+from pound_solve.cli import common, terminal
+from pound_solve.cli.progress import AnalysisProgress, StatusLine
 from pound_solve.report.formats import IMAGE_FORMATS
 
 if TYPE_CHECKING:
@@ -16,6 +15,11 @@ if TYPE_CHECKING:
     from pound_solve.assess.study import Plan
 
 SUMMARY = "error against time of every method on this deck, and advice"
+EXAMPLES = (
+    ("model.inp", "error and time of every method"),
+    ("model.inp --methods EXACT,NEWMARK", "of some"),
+    ("--stability --quick", "stiff and extreme scenes"),
+)
 #: options of only one of the two forms
 OF_A_DECK = ("set", "records", "methods", "steps", "tols", "repeat", "longest", "picture", "out")
 OF_THE_MATRIX = ("family", "law", "quick")
@@ -80,7 +84,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         line.clear()
     results = study.write(result, ready, request.path(".study.h5"))
     if ready.warnings:
-        print(render(ready.warnings, ready.files), file=sys.stderr)
+        terminal.tell(render(ready.warnings, ready.files))
     if result.warning:
         common.complain(f"warning: {result.warning}")
     with results:
@@ -135,7 +139,7 @@ def _stability(args: argparse.Namespace) -> int:
     for row in judge.matrix(families, chosen):
         rows.append(row)
         doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"
-        progress(len(rows), runs, doing[:WIDTH])
+        progress(len(rows), runs, terminal.fitted(doing, progress.line.width))
     progress.end()
     print(page.page(rows))
     return int(any(row.end == judge.FAULT for row in rows))

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from pound_solve.sweep.study.document import Document
 
 SUMMARY = "run a study: decks by values of PARAMs by records; one table of all runs"
+EXAMPLES = (
+    ("study.toml -o results", "all combinations, on all processors"),
+    ("study.toml --plan", "only list the runs"),
+)
 LISTS = ("scale", "pga", "sa")
 
 
