@@ -6,6 +6,7 @@ tests/refresh_manual.py gallery`` draws them anew.
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from pathlib import Path
 from typing import Any, Final
@@ -20,12 +21,14 @@ FOLDER: Final = ROOT / "manual" / "pictures"
 EXAMPLES: Final = ROOT / "examples"
 FRAMES: Final = EXAMPLES / "06_unequal_frames" / "unequal_frames.inp"
 PUSHED: Final = EXAMPLES / "03_concrete_frame" / "concrete_frame.inp"
+SUITE: Final = EXAMPLES / "08_gap_suite"
 STUDIED: Final = EXAMPLES / "01_two_oscillators" / "two_oscillators.inp"
 FILM: Final = "run_animation.gif"
 #: file of every picture of one run, and that of two runs over each other
 FILES: Final = {name: FILM if name == "animation" else f"run_{name}.png" for name in PICTURES}
 TWO_RUNS: Final = "runs_storeys.png"
 TUTORIAL: Final = "tutorial_contact_force.png"
+TRENDS: Final = "sweep_trends.png"
 AT_PEAK: Final = ("deformed", "diagrams")
 RESOLUTION: Final = 80  #: dots per inch
 COLOURS: Final = 48  #: of a file, which keeps it small
@@ -54,6 +57,11 @@ def draw() -> None:
         call("plot", next(folder.glob("*study*.h5")), "study", *look)
         call("plot", frames, apart, "storeys", *look)
         call("plot", folder / f"{STUDIED.stem}.h5", "contact_force", *look)
+        shutil.copytree(SUITE, folder / "suite")
+        call("motions", folder / "suite" / "motions.inp", "-o", folder / "suite" / "suite")
+        call("sweep", folder / "suite" / "gaps.toml", "--quiet", "-o", folder / "sweep")
+        call("plot", folder / "sweep" / "sweep.h5", *look)
+        reduce(folder / "drawn" / TRENDS, FOLDER / TRENDS)
         stems = {"capacity": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
         for picture, file in FILES.items():
             drawn = folder / "drawn" / f"{stems.get(picture, FRAMES.stem)}_{picture}{Path(file).suffix}"

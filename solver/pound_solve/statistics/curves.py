@@ -187,9 +187,11 @@ def widest_known(sweep: Sweep) -> dict[str, float]:
     return widest
 
 
-def cases(sweep: Sweep) -> list[str]:
-    """Name of the case of every run: its deck and those of its PARAMs that differ within the sweep."""
-    names = [n for n, v in sweep.variables.items() if v.doc.startswith(PARAM)]
+def cases(sweep: Sweep, leave_out: str = "") -> list[str]:
+    """Name of the case of every run: its deck and those of its PARAMs that differ within the sweep, without
+    the one that is left out.
+    """
+    names = [n for n, v in sweep.variables.items() if v.doc.startswith(PARAM) and n != leave_out]
     varied = [n for n in ("deck", *names) if len({str(x) for x in sweep[n]}) > 1]
     return [
         ", ".join(str(sweep[n][i]) if n == "deck" else f"{n}={_short(sweep[n][i])}" for n in varied)

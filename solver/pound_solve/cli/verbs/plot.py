@@ -22,17 +22,22 @@ EXAMPLES = (
     ("model.h5", "all pictures of a run"),
     ("model.h5 diagrams --at-peak largest", "forces while a contact pushes hardest"),
     ("near/model.h5 far/model.h5", "two runs over each other"),
+    ("study/sweep.h5 contact_force --over gap", "the force over the gap, of a sweep"),
 )
+NO_MATPLOTLIB = 'pictures need matplotlib: pip install "pound-solve[plot]"'
 OF_A_DECK = ("frame", "loads")  #: pictures that need no run
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    text = "results file (.h5), or a deck, which is drawn without a run; none: list the pictures"
+    text = (
+        "results file (.h5), a deck, which is drawn without a run, or results of a sweep; none: list the "
+        "pictures"
+    )
     parser.add_argument("file", nargs="?", metavar="FILE", help=text)
     text = (
         "further results files, drawn over the first, and names of pictures (default: all that there are "
-        "data for, but the animation)"
+        "data for, but the animation); of a sweep: quantities"
     )
     parser.add_argument("words", nargs="*", metavar="FILE|PICTURE", help=text)
     parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the first file's)")
@@ -52,6 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--style", type=Path, metavar="FILE", help="style sheet of matplotlib, laid over the program's"
     )
+    text = "PARAM along x (default: the first that varies)"
+    parser.add_argument("--over", metavar="PARAM", help=f"of a sweep: {text}")
     common.add_deck_options(parser)
 
 
@@ -66,11 +73,14 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.files import opened
     from pound_solve.driver.reading import is_deck
     from pound_solve.report import plot
+    from pound_solve.results.sweep_file import Sweep
 
     if args.file is None:
         for picture in plot.PICTURES.values():
             print(f"{picture.name:<14} {picture.shows}")
         return common.DONE
+    if Sweep.is_of(args.file):
+        return _trends(args)
     args.pictures = [word for word in args.words if word in plot.PICTURES or not _is_file(word)]
     args.files = [args.file, *(word for word in args.words if word not in args.pictures)]
     args.decks = [file for file in args.files if is_deck(file)]
@@ -85,7 +95,30 @@ def execute(args: argparse.Namespace) -> int:
             runs = [stack.enter_context(_opened(file, args)) for file in args.files]
             return _draw(runs, args, choice)
     except ImportError:
-        return common.complain('pictures need matplotlib: pip install "pound-solve[plot]"', common.MISTAKES)
+        return common.complain(NO_MATPLOTLIB, common.MISTAKES)
+
+
+def _trends(args: argparse.Namespace) -> int:
+    """Draw quantities of a sweep over a PARAM."""
+    from pound_solve.report.plot import ready, suites
+    from pound_solve.report.sweep import trends
+    from pound_solve.results.sweep_file import Sweep
+    from pound_solve.statistics.curves import PARAM, CurveError
+
+    folder: Path = args.out or Path(args.file).parent
+    path = folder / f"{Path(args.file).stem}_trends.{args.ending or IMAGE_FORMATS[0]}"
+    sweep = Sweep.open(args.file)
+    try:
+        ready(folder)
+        panels = trends.panels(sweep, args.over or "", args.words)
+        over = args.over or trends.varied(sweep)[0]
+        suites.trends(panels, sweep.variables[over].doc.removeprefix(PARAM), path)
+    except CurveError as err:
+        return common.complain(f"{args.file}: {err}", common.MISTAKES)
+    except ImportError:
+        return common.complain(NO_MATPLOTLIB, common.MISTAKES)
+    print(path)
+    return common.DONE
 
 
 def _is_file(word: str) -> bool:

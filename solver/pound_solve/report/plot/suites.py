@@ -1,5 +1,5 @@
-"""Pictures of many runs: curves of an incremental dynamic analysis with fractiles, fragilities, and
-probabilities of contact.
+"""Pictures of many runs: trends over a PARAM, curves of an incremental dynamic analysis with fractiles,
+fragilities, and probabilities of contact.
 """
 
 from __future__ import annotations
@@ -72,6 +72,59 @@ class Contacts(NamedTuple):
     seen: Array
     fitted: Array
     rules: Sequence[tuple[str, float]]
+
+
+class Trend(NamedTuple):
+    """Values of the runs of one case over a PARAM.
+
+    Attributes
+    ----------
+    title : str
+        The case; empty for the only one.
+    x : ndarray, shape (n,)
+    fractiles : ndarray, shape (3, n)
+        Of the values of all records there.
+    records : sequence of (Array, Array)
+        Abscissas and values of every record.
+    """
+
+    title: str
+    x: Array
+    fractiles: Array
+    records: Sequence[tuple[Array, Array]]
+
+
+class TrendPanel(NamedTuple):
+    """Data of a picture: one quantity over a PARAM, with its unit and the trends of all cases."""
+
+    quantity: str
+    unit: str
+    trends: Sequence[Trend]
+
+
+@style.sheet()
+def trends(panels: Sequence[TrendPanel], over: str, path: Path) -> None:
+    """Draw a panel for each quantity: the median of each case, of several records also the band of the 16
+    and 84 % fractiles, and thin lines for the records if there is one case; see `incremental`.
+    """
+    figure, all_axes = style.panels(len(panels), "", (4.2, 3.2))
+    for axes, panel in zip(all_axes, panels):
+        style.grid(axes, over, f"{panel.quantity.replace('_', ' ')} [{panel.unit or '-'}]")
+        for k, trend in enumerate(panel.trends[: style.LINES]):
+            look = style.stroke(k)
+            if len(trend.records) > 1:
+                low, _, high = trend.fractiles
+                axes.fill_between(trend.x, low, high, color=look["color"], alpha=0.15, linewidth=0.0)
+                if len(panel.trends) == 1:
+                    for x, y in trend.records:
+                        axes.plot(x, y, "-", color="0.75", linewidth=0.6)
+            word = "median" if len(trend.records) > 1 else ""
+            label = ", ".join(filter(None, [trend.title, word]))
+            axes.plot(trend.x, trend.fractiles[1], **{**look, "markersize": 3.5}, label=label or None)
+        axes.set_ylim(bottom=0.0)
+    if any(axes.get_legend_handles_labels()[1] for axes in all_axes):
+        style.legend_below(figure, all_axes)
+    style.save(figure, path)
 
 
 @style.sheet()
