@@ -30,6 +30,7 @@ TWO_RUNS: Final = "runs_storeys.png"
 TUTORIAL: Final = "tutorial_contact_force.png"
 TRENDS: Final = "sweep_trends.png"
 AT_PEAK: Final = ("deformed", "diagrams")
+ALL_FILES: Final = {*FILES.values(), TWO_RUNS, TUTORIAL, TRENDS}
 RESOLUTION: Final = 80  #: dots per inch
 COLOURS: Final = 48  #: of a file, which keeps it small
 FILM_WIDTH: Final = 440  #: dots

@@ -72,7 +72,7 @@ def test_a_drift_above_a_tenth_of_its_height_is_told(tmp_path):
 
 def test_a_drift_of_just_a_tenth_is_not_beyond_it():
     ratios = [("below", 0.05), ("at", LARGEST_DRIFT), ("above", 0.2)]
-    history = SimpleNamespace(storey_drift_ratios=lambda: ratios)
+    history = SimpleNamespace(drift_ratios=lambda: ratios)
     assert [(c.name, c.value) for c in drifts(None, history, None)] == [("drift ratio of above", 20.0)]
 
 
@@ -272,12 +272,39 @@ def test_a_bearing_is_no_storey(tmp_path):
         deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=3.0, base=base))
         results = results_of(deck)
         ratio = dict(zip(*(results.table("drift_envelope")[c] for c in ("name", "ratio_max"))))
-        assert ratio["bearing"] > 0.02 > ratio["storey"]
+        assert ratio["storey"] < 0.02 and (np.isnan(ratio["bearing"]) or ratio["bearing"] > 0.02)
+        assert np.isnan(ratio["bearing"]) == (storey == 2) == results.holds("bearings")
         told = dict(results.table("overview").tolist())["largest storey drift ratio"]
         assert told.endswith(f", building 1 storey {storey}")
         assert results.table("building_summary")["drift_storey"][0] == storey
         leans = "drift of building 1 storey 1 at the end" in looks(results)
         assert leans == (name == "bearing") and abs(results.history("storey/drift")[-1, 0]) > 0.005
+
+
+def test_a_bearing_that_is_marked_has_its_displacement_in_lengths(tmp_path):
+    """However high the layer, its drift is no ratio of a storey."""
+    text = (
+        DECK.replace("1 0 0 FIX", "5 0 -2 FIX=XYR\n 1 0 0 FIX")
+        .replace("1 0 0 FIX=XYR", "1 0 0 FIX=YR")
+        .replace("1 COL 1 2", "1 COL 1 2\n 3 ISOLATOR 5 1")
+        .replace("PROPS", "PROPS\n ISOLATOR SPRING KX=300 FX=20 RULE=BILINEAR R=0.1 BEARING=YES")
+        .replace("2,3 100", "1,2,3 100")
+        .replace('"storey" 1 2', '"storey" 1 2\n "isolator" 5 1')
+    )
+    deck = tmp_path / "model.inp"
+    deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=3.0))
+    results = results_of(deck)
+    (row,) = results.table("bearings")
+    (layer, storey) = results.table("storey_envelope")
+    ratios = results.history("storey/drift")[:, 0]
+    assert row["displacement"] == pytest.approx(2.0 * np.abs(ratios).max(), rel=1e-3)
+    assert row["residual"] == pytest.approx(2.0 * ratios[-1]) and row["shear"] == layer["shear"]
+    assert np.isnan(layer["drift"]) and storey["drift"] > 0.0
+    assert results.table("building_summary")["drift_storey"][0] == 2
+    by_name = {r["name"]: r for r in results.table("drift_envelope")}
+    assert np.isnan(by_name["isolator"]["ratio_max"]) and by_name["storey"]["ratio_max"] > 0.0
+    assert "layer of bearings" in first_page(results)
+    assert "drift of building 1 storey 1 at the end" not in looks(results)
 
 
 def test_a_slider_alone_is_no_storey(tmp_path):
@@ -291,7 +318,8 @@ def test_a_slider_alone_is_no_storey(tmp_path):
     deck = tmp_path / "model.inp"
     deck.write_text(text.format(units="kN m s", g=9.81, h=0.2, x=5.0, k=1e6, a=-3.0))
     results = results_of(deck)
-    assert results.table("drift_envelope")["ratio_max"][0] > LARGEST_DRIFT
+    (drift,) = results.table("drift_envelope")
+    assert np.isnan(drift["ratio_max"]) and max(drift["max"], -drift["min"]) > LARGEST_DRIFT * 0.2
     assert not looks(results)
 
 

@@ -29,6 +29,7 @@ from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
+from pound_solve.structure.buildings import BEARING, marked_bearings
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
@@ -39,7 +40,6 @@ CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: allowed height of a crest between two steps, at ten steps per period
 DISPLACEMENT_ROUNDING = 1e-13  #: fraction of the size of a structure below which displacements are zero
-BEARING = 0.25  #: fraction of the height of the highest storey below which a drift belongs to a bearing
 ROWS = 1000  #: approximate rows of stored histories, if OUTPUT gives no interval
 
 SPEC = Spec(
@@ -240,28 +240,29 @@ class HistoryResult:
             )
 
     def drift_ratios(self) -> list[tuple[str, float]]:
-        """Return the name and the largest absolute ratio of every drift; NaN if it has no height."""
+        """Return the name and the largest absolute ratio of every drift; NaN if it has no height, or is
+        that of a bearing.
+        """
+        model = self.system.structure.model
+        bearings = {frozenset(ends) for ends in marked_bearings(model)}
+        known = (
+            h >= self._lowest_storey and frozenset((card["I"], card["J"])) not in bearings
+            for card, h in zip(model.drifts, drift_heights(model))
+        )
         return [
-            (name, max(abs(e.high), abs(e.low)) / height)
-            for name, e, height in zip(
-                self.items.drifts.names,
-                self.returned.peaks.monitored,
-                drift_heights(self.system.structure.model),
+            (name, max(abs(e.high), abs(e.low)) / h if is_storey else math.nan)
+            for name, e, h, is_storey in zip(
+                self.items.drifts.names, self.returned.peaks.monitored, drift_heights(model), known
             )
         ]
 
-    def storey_drift_ratios(self) -> list[tuple[str, float]]:
-        """Return the known `drift_ratios` of storeys, without those of bearings."""
-        heights, least = drift_heights(self.system.structure.model), self._lowest_storey
-        return [drift for drift, h in zip(self.drift_ratios(), heights) if h >= least]
-
     def storey_drifts(self) -> list[StoreyDrift]:
-        """Return the largest drift ratio of every storey of the buildings, without those of bearings."""
+        """Return the largest drift ratio of every storey of the buildings, without layers of bearings."""
         largest = self.recorder.envelopes.sums["drift"].largest()
         return [
             StoreyDrift(b.name, n, ratio, t)
             for (b, n), (ratio, t) in zip(storeys(self.items.buildings), largest)
-            if b.levels[n] - b.levels[n - 1] >= self._lowest_storey
+            if n not in b.bearings
         ]
 
     @property

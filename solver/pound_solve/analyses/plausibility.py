@@ -9,10 +9,8 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-import numpy as np
-
 from pound_deck.model import Model
-from pound_solve.analyses.history import BEARING, HistoryResult
+from pound_solve.analyses.history import HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.check import Check, Subject, at_least, beyond
 from pound_solve.integrate.protocol import Outcome
@@ -35,7 +33,7 @@ LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Yield a check for drifts beyond a tenth of their height."""
-    for name, ratio in history.storey_drift_ratios():
+    for name, ratio in history.drift_ratios():
         if ratio > LARGEST_DRIFT:
             remark = "check units, masses and strengths"
             yield beyond(RESPONSE, f"drift ratio of {name}", 100 * ratio, 100 * LARGEST_DRIFT, remark, "%")
@@ -185,9 +183,11 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
     model, drifts = structure.model, list(zip(storeys(history.items.buildings), residual))
     yielded = {model.elements[r.spring.element].i for r in history.springs if r.ductility > 1.0}
     for building in history.items.buildings:
-        heights = np.diff(building.levels)
-        high = heights >= BEARING * heights.max(initial=0.0)
-        residuals = [(abs(x), storey) for (b, storey), x in drifts if b is building and high[storey - 1]]
+        residuals = [
+            (abs(x), storey)
+            for (b, storey), x in drifts
+            if b is building and storey not in building.bearings
+        ]
         most, storey = max(residuals, default=(0.0, 0))
         if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
             name = f"drift of {building.name} storey {storey} at the end"

@@ -25,6 +25,7 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
+BEARING = 0.25  #: fraction of the height of the highest storey below which a storey is a layer of bearings
 SAME_LEVEL = 1e-3  #: fraction of a building's height by which nodes of one level may differ in height
 #: least mass of a floor, as a share of the mass of the building's heaviest level
 MIN_FLOOR_MASS_RATIO = 0.1
@@ -71,6 +72,8 @@ class Building:
         Of all its nodes along x, or along y if there is none along x [F T^2/L].
     reach : float
         Largest distance along x or y of its nodes from the middle of its base [L].
+    bearings : frozenset of int
+        Storeys, from 1, that are layers of bearings (see `bearing_layers`).
     """
 
     name: str
@@ -81,6 +84,7 @@ class Building:
     floors: tuple[Floor, ...]
     mass: float
     reach: float
+    bearings: frozenset[int] = frozenset()
 
     @property
     def levels(self) -> list[float]:
@@ -134,8 +138,33 @@ def buildings(structure: Structure) -> list[Building]:
         name = card.label if card else f"building {i}"
         points = (structure.model.nodes[n] for n in nodes)
         reach = max(max(abs(n.x - axis), abs(n.y - stack.base)) for n in points)
-        ordered.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass, reach))
+        levels = [stack.base, *(f.level for f in floors)]
+        bearings = bearing_layers(structure.model, nodes, levels)
+        ordered.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass, reach, bearings))
     return ordered
+
+
+def bearing_layers(model: Model, nodes: Collection[int], levels: Sequence[float]) -> frozenset[int]:
+    """Storeys of a building that are layers of bearings: those with a SPRING that has BEARING=YES, and
+    those lower than `BEARING` of its highest storey.  They may move by more than their height: their drifts
+    are stated as lengths.
+    """
+    heights = np.diff(levels)
+    low = {n for n, h in enumerate(heights, 1) if h < BEARING * heights.max()}
+    for i, j in marked_bearings(model):
+        if i in nodes and j in nodes:
+            middle = 0.5 * (model.nodes[i].y + model.nodes[j].y)
+            low.add(sum(level < middle for level in levels))
+    return frozenset(low & set(range(1, len(levels))))
+
+
+def marked_bearings(model: Model) -> list[tuple[int, int]]:
+    """Nodes of the springs that are marked as bearings."""
+    return [
+        (e.i, e.j)
+        for e in model.elements.values()
+        if e.j is not None and model.props[e.prop].values.get("BEARING") == "YES"
+    ]
 
 
 class Levels:

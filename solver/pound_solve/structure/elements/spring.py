@@ -172,6 +172,14 @@ SPEC = Spec(
             doc="hysteresis rule: one for all components, or three for x, y, rotation",
         ),
         *DAMAGE,
+        Field(
+            "BEARING",
+            Kind.WORD,
+            default="NO",
+            words=("YES", "NO"),
+            doc="a bearing of an isolated building: the storey that it crosses is a layer of bearings, "
+            "whose drift is stated as a length",
+        ),
     ),
     reference="",
     impl=build,

@@ -9,6 +9,8 @@ from pound_solve.report.plot.moments import moment
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
+TITLE_WIDTH = 12  #: characters in an inch of a picture's width
+
 
 def deformed(results: Results, choice: Choice) -> Any:
     """Draw the displacements at an instant, by default that of the largest one."""
@@ -26,9 +28,9 @@ def deformed(results: Results, choice: Choice) -> Any:
     s.draw(axes, color="0.8", linewidth=0.8)
     s.draw(axes, moved, color=style.BLUE, linewidth=1.3)
     s.draw_contacts(axes, moved)
-    axes.set_title(
-        f"displacements and gaps {displaced.factor:.3g} times as large; grey: at rest; red: contacts"
-    )
+    s.draw_supports(axes)
+    title = f"displacements and gaps {displaced.factor:.3g} times as large; grey: at rest; red: contacts"
+    axes.set_title(style.wrapped(title, int(TITLE_WIDTH * s.shape()[0])))
     return figure
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from pound_solve.results.columns import UNIT, extreme_columns
@@ -17,7 +18,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     seen, units = run.history.recorder.envelopes.sums, run.model.units
     drift, force, motion = (list(seen[name].rows()) for name in ("drift", "storey", "acceleration"))
     for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
-        yield b.name, i, "drift ratio", "-", *drift[n]
+        yield b.name, i, "drift ratio", "-", *((math.nan,) * 4 if i in b.bearings else drift[n])
         yield b.name, i, "shear", units.text("F"), *force[2 * n]
         yield b.name, i, "floor acceleration", units.text("L/T^2"), *motion[n]
 
@@ -36,6 +37,7 @@ TABLE = Table(
     ),
     rows=rows,
     remark=how_sampled,
-    note="The quantities are those of the table of storeys, positive along x.",
+    note="The quantities are those of the table of storeys, positive along x. A layer of bearings has no "
+    "drift ratio.",
     group="quantity",
 )

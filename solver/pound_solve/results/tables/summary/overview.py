@@ -97,7 +97,7 @@ def response(run: RunRecord) -> Iterator[Row]:
         worst = max(storeys, key=lambda d: d.ratio)
         where = f"{worst.building} storey {worst.storey}"
         yield "largest storey drift ratio", f"{100.0 * worst.ratio:.3g} %, {where}"
-    elif drifts := history.storey_drift_ratios():
+    elif drifts := [drift for drift in history.drift_ratios() if not math.isnan(drift[1])]:
         name, ratio = max(drifts, key=lambda drift: drift[1])
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"
     if history.items.contacts:

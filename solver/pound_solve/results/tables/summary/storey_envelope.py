@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from pound_solve.results.columns import time_column
@@ -19,7 +20,8 @@ def rows(run: RunRecord) -> Iterator[Row]:
     last = run.stored("storey/drift")[-1] if len(drift) else ()
     for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
         height, floor = b.levels[i] - b.levels[i - 1], b.floors[i - 1]
-        peaks = *drift[n], float(last[n]), *force[2 * n], *force[2 * n + 1], *motion[n]
+        drifts = (math.nan,) * 3 if i in b.bearings else (*drift[n], float(last[n]))
+        peaks = *drifts, *force[2 * n], *force[2 * n + 1], *motion[n]
         yield b.name, i, floor.level, height, floor.mass, *peaks
 
 
@@ -34,7 +36,13 @@ TABLE = Table(
         Column("level", "floor\nlevel", "L", "given", doc="height of the floor above the storey"),
         Column("height", "", "L", "given", doc="height of the storey"),
         Column("mass", "floor\nmass", "F*T^2/L", "num", doc="mass of that floor along x"),
-        Column("drift", "drift\nratio", "-", "short", doc="largest absolute drift ratio"),
+        Column(
+            "drift",
+            "drift\nratio",
+            "-",
+            "short",
+            doc="largest absolute drift ratio, NaN for a layer of bearings",
+        ),
         time_column("t_drift", "at time", "time of the largest drift"),
         Column("residual", "drift at\nthe end", "-", "short", doc="drift ratio at the end of the history"),
         Column("shear", "", "F", "num", doc="largest absolute shear"),
