@@ -61,8 +61,8 @@ def branches_begin_clear_of_their_exits(law: Law, reach: float) -> None:
         walk = Walk(law).move(*turning_points(seed, reach))
         for (before, _, _), (state, d, _) in pairwise(walk.visits):
             for e in law.branch(state).events if state is not before else ():
-                size = abs(e.d_factor) * reach + abs(e.constant)
-                assert e.d_factor * d + e.constant <= 1e-12 * size, ("an exit is above zero", before, state)
+                size = abs(e.on_d) * reach + abs(e.constant)
+                assert e.on_d * d + e.constant <= 1e-12 * size, ("an exit is above zero", before, state)
 
 
 def tangent_is_the_slope_of_the_force(law: Law, reach: float) -> None:

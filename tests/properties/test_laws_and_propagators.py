@@ -93,7 +93,7 @@ def test_a_pressed_contact_without_tension_only_pushes(
 ) -> None:
     law = Law(kelvin_voigt.RULE, (k, c, gap))
     branch = law.branch((kelvin_voigt.PRESSED, 0.0, 0.0, ()))
-    held = all(e.d_factor * d + e.v_factor * v + e.constant <= 0.0 for e in branch.events)
+    held = all(e.on_d * d + e.on_v * v + e.constant <= 0.0 for e in branch.events)
     size = k * (abs(d) + abs(gap)) + c * abs(v)
     assert not held or branch.force(d, v) >= -1e-15 * size
 

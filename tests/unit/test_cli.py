@@ -128,7 +128,7 @@ def exit_status(words):
         (["motions", "{deck}", "--dt", "1e-20"], 2, "a file holds from one to 1e+07"),
         (["study", "{deck}", "--steps", "nan"], 2, "nan is no finite number: --steps takes numbers"),
         (["study", "{deck}", "--steps", "1e-31"], 2, "--steps: DT is 1e-31, but must be"),
-        (["study", "{deck}", "--steps", "0.1,1e-20"], 2, "DT=1e-20 asks for more than 1e+08 steps"),
+        (["study", "{deck}", "--steps", "0.1,1e-20"], 2, "DT=1e-20 requires more than 1e+08 steps"),
         (["study", "{deck}", "--tols", "0.5"], 2, "--tols: TOL is 0.5, but must be at least 1e-09 and"),
         (["spectrum", "{deck}", "--periods", "1e-29"], 2, "the period 1e-29 is too short"),
         (["sweep", "{deck}", "--damping", "0"], 2, "--damping belongs to --motions"),

@@ -72,7 +72,7 @@ class Impact:
             for e in law.branch(state).events:
 
                 def rise(t: float, y: Any, e: Any = e) -> float:
-                    return e.d_factor * (y[0] - y[1]) + e.v_factor * (y[2] - y[3]) + e.constant
+                    return e.on_d * (y[0] - y[1]) + e.on_v * (y[2] - y[3]) + e.constant
 
                 rise.terminal, rise.direction = True, 1.0  # type: ignore[attr-defined]
                 crossings.append(rise)

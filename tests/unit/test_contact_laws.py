@@ -139,7 +139,7 @@ def let_go(built: Built, gap: float = 0.0) -> tuple[float, float, float]:
     event = built.law.branch(state(PRESSED)).events[0]
 
     def value(t: float) -> float:
-        return event.d_factor * (u(t) + gap) + event.v_factor * v(t) + event.constant
+        return event.on_d * (u(t) + gap) + event.on_v * v(t) + event.constant
 
     # bracket the first rise through zero
     t = 1e-3
@@ -214,16 +214,16 @@ def test_touch_release_and_second_touch() -> None:
     branch = law.branch(pressed)
     assert branch.name == "pressed"
     assert branch.force(0.6, -1.0) == pytest.approx(100.0 * 0.1 - 4.0)  # k overlap + c rate
-    assert branch.events[0].d_factor * 0.6 - branch.events[0].v_factor * -1.0 < 0.0
+    assert branch.events[0].on_d * 0.6 - branch.events[0].on_v * -1.0 < 0.0
     # let go at overlap 0.1 (rate -2.5: force zero): its spring still has half of 100 * 0.1^2
     released = law.transition(pressed, 0, 0.6)
     assert released == state(RELEASED, 0.6, pytest.approx(0.5))
     assert law.stored(released, 0.6) == pytest.approx(0.5) and law.dissipated(released, 0.6) == 0.0
     assert law.force(released, 0.6, -2.5)[0] == 0.0
     back, parted = law.branch(released).events
-    assert back.d_factor * 0.6 + back.v_factor * -2.5 + back.constant == pytest.approx(0.0)
-    assert back.d_factor * 0.6 + back.v_factor * -2.0 + back.constant > 0.0  # slower: pressed again
-    assert parted.d_factor * 0.6 + parted.constant == pytest.approx(-0.1)
+    assert back.on_d * 0.6 + back.on_v * -2.5 + back.constant == pytest.approx(0.0)
+    assert back.on_d * 0.6 + back.on_v * -2.0 + back.constant > 0.0  # slower: pressed again
+    assert parted.on_d * 0.6 + parted.constant == pytest.approx(-0.1)
     # at overlap 0.05 the rest of that is lost, pressed again or not; parted, all is
     assert law.dissipated(released, 0.55) == pytest.approx(0.5 - 0.125)
     again = law.transition(released, 0, 0.55)

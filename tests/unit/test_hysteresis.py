@@ -228,7 +228,7 @@ def test_elasto_plastic_is_bilinear_without_hardening() -> None:
 
 def test_one_slack_value_holds_both_ways() -> None:
     law = rule("BILINEAR_SLACK", R=0.1, SLACK=(0.7,), GROW="YES")
-    assert [(e.d_factor, e.constant) for e in law.branch(law.start()).events] == [(1.0, -0.7), (-1.0, -0.7)]
+    assert [(e.on_d, e.constant) for e in law.branch(law.start()).events] == [(1.0, -0.7), (-1.0, -0.7)]
     wider = Walk(law).move(4.0, 0.0)  # yields at 2.7 by 1.3: f = 20 + 1.3, so 0.7 + 1.17 is the edge now
     assert wider.law.branch(wider.state).events[0].constant == pytest.approx(-0.7 - 0.9 * 1.3)
 

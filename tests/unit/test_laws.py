@@ -243,26 +243,22 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
             assert law.branch(state) == law.branch(tuple(state))
             sign = 1.0 if goal > d else -1.0
             for n, event in enumerate(law.branch(state).events):
-                if event.d_factor * sign <= 0.0:
+                if event.on_d * sign <= 0.0:
                     continue
-                where = -event.constant / event.d_factor
+                where = -event.constant / event.on_d
                 if not min(d, goal) < where < max(d, goal):
                     continue
                 after = law.transition(state, n, where)
                 entered.add(law.branch(after).name)
                 for again in law.branch(after).events:
                     # at rest, and moving on the way that led here
-                    size = abs(again.d_factor) * REACH + abs(again.constant)
-                    assert again.d_factor * where + again.constant <= 1e-12 * size
+                    size = abs(again.on_d) * REACH + abs(again.constant)
+                    assert again.on_d * where + again.constant <= 1e-12 * size
             after = drive(law, state, d, goal)
             assert after == drive(law, state, d, goal)
             state, d = after, goal
             branch, h = law.branch(state), 1e-7
-            if all(
-                abs(e.d_factor * d + e.constant) > 10 * h * abs(e.d_factor)
-                for e in branch.events
-                if e.d_factor
-            ):
+            if all(abs(e.on_d * d + e.constant) > 10 * h * abs(e.on_d) for e in branch.events if e.on_d):
                 ahead, behind = (law.force(drive(law, state, d, d + s * h), d + s * h)[0] for s in (1, -1))
                 force, stiffness, _ = law.force(state, d)
                 assert (ahead - behind) / (2 * h) == pytest.approx(stiffness, abs=1e-5 * k)

@@ -1,4 +1,4 @@
-"""Structures that cannot be meant are told by name, with the cure; those that can are not."""
+"""Structures that nobody can intend cause a warning with a remedy; those that somebody may do not."""
 
 from pathlib import Path
 

@@ -307,6 +307,20 @@ def test_a_bearing_that_is_marked_has_its_displacement_in_lengths(tmp_path):
     assert "drift of building 1 storey 1 at the end" not in looks(results)
 
 
+def test_a_low_storey_that_is_no_bearing_is_a_storey(tmp_path):
+    text = DECK.replace("1 COL 1 2", "1 COL 1 2\n 3 TALL 2 4").replace(
+        " 3 {x} {h} FIX=YR", " 3 {x} {h} FIX=YR\n 4 0 {h}+6 FIX=YR"
+    )
+    text = text.replace("PROPS", "PROPS\n TALL SPRING KX=4000").replace("2,3 100", "2 TO 4 100")
+    deck = tmp_path / "model.inp"
+    for word, count in (("", 1), ("BEARING=NO", 0)):
+        marked = text.replace(" COL SPRING", f" COL SPRING {word}")
+        deck.write_text(marked.format(units="kN m s", g=9.81, h=1.0, x=5.0, k=1e5, a=1.0))
+        results = results_of(deck)
+        assert len(results.table("bearings")) == count
+        assert np.isnan(results.table("storey_envelope")["drift"][0]) == bool(count)
+
+
 def test_a_slider_alone_is_no_storey(tmp_path):
     """The storey above it has no line under DRIFT, but a height."""
     text = (

@@ -109,7 +109,7 @@ def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
         for ductility, limit in zip(reached, (limits[0], limits[-1])):
             if ductility > limit:
                 name = f"ductility of {spring.component} of element {spring.element}"
-                remark = f"beyond DULT the rule {spring.rule} is not known"
+                remark = f"beyond DULT the rule {spring.rule} is not calibrated"
                 yield beyond(RESPONSE, name, ductility, limit, remark)
 
 

@@ -123,7 +123,7 @@ def _check_settings(plan: Plan, end: float) -> None:
             if wrong := out_of_limits(value, field):
                 raise MethodStudyError(f"{option}: {item} {wrong}")
     if plan.steps and end / min(plan.steps) > MOST_STEPS:
-        raise MethodStudyError(f"--steps: DT={min(plan.steps):g} asks for more than {MOST_STEPS:g} steps")
+        raise MethodStudyError(f"--steps: DT={min(plan.steps):g} requires more than {MOST_STEPS:g} steps")
 
 
 class _Bench:

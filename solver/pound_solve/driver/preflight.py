@@ -77,7 +77,7 @@ def too_many_steps(structure: Structure) -> list[Diagnostic]:
             stored = ("EVERY", "rows", model.output["EVERY"], MOST_ROWS, model.output.place("EVERY"))
             for item, what, length, most, place in (asked, stored):
                 if length is not None and end / length > most:
-                    message = f"{item}={length:g} asks for {end / length:.3g} {what}, more than {most:g}"
+                    message = f"{item}={length:g} requires {end / length:.3g} {what}, more than {most:g}"
                     hint = f"over {end:g} {model.units.time} it is at least {rounded_up(end / most):g}"
                     diagnostics.append(Diagnostic("P345", message, place, hint))
     return diagnostics

@@ -71,7 +71,7 @@ def force_jumps(before: Branch, after: Branch, d: float) -> bool:
     A jump within the rounding of the forces that the branch `before` reaches does not count: if nothing has
     moved yet, `d` itself is rounding.
     """
-    ends = [abs(e.constant / e.d_factor) for e in before.events if e.d_factor != 0.0]
+    ends = [abs(e.constant / e.on_d) for e in before.events if e.on_d != 0.0]
     reach = max(abs(d), *ends, 0.0)
     terms = sum(abs(b.stiffness * reach) + abs(b.force0) for b in (before, after))
     return abs(before.force(d, 0.0) - after.force(d, 0.0)) > LOST_FORCE * terms
@@ -81,10 +81,10 @@ def fraction_to_event(event: EventFunction, d: float, move: float) -> float:
     """Return the fraction of the change `move` of a law's deformation from `d` at which an event occurs;
     infinite if it does not.
     """
-    if event.d_factor == 0.0:
-        return 0.0 if event.v_factor * move > 0.0 else np.inf
-    rise, value = event.d_factor * move, event.d_factor * d + event.constant
-    return max(-value, 0.0) / rise if event.v_factor == 0.0 and rise > 0.0 else np.inf
+    if event.on_d == 0.0:
+        return 0.0 if event.on_v * move > 0.0 else np.inf
+    rise, value = event.on_d * move, event.on_d * d + event.constant
+    return max(-value, 0.0) / rise if event.on_v == 0.0 and rise > 0.0 else np.inf
 
 
 def first_event_on_path(branches: Sequence[Branch], d: Array, move: Array) -> tuple[float, int, int]:

@@ -1,11 +1,11 @@
 """Force laws as automata: the common ground of hysteresis rules and contact laws.
 
-A law is always on one of its *branches*.  A branch has up to three *event functions* ``g = a d + b v + g0``
-of the deformation ``d`` and its rate ``v``; where one of them rises through zero, a *transition* to another
-branch takes place.  On most branches the force is linear, ``f = k d + c v + f0``; a law with a `curve`
-computes the force itself.  Integrators need nothing else from a law, and laws do not depend on the
-integrators.  The state (the branch and the *internal variables*) is immutable, so a trial step can be
-discarded.
+A law is always on one of its *branches*.  A branch has up to three *event functions*
+``on_d d + on_v v + constant`` of the deformation ``d`` and its rate ``v``; where one of them rises through
+zero, a *transition* to another branch takes place.  On most branches the force is linear, ``f = k d + c v +
+f0``; a law with a `curve` computes the force itself.  Integrators need nothing else from a law, and laws do
+not depend on the integrators.  The state (the branch and the *internal variables*) is immutable, so a trial
+step can be discarded.
 
 The functions of a Rule take and return plain numbers and tuples of fixed length, so that `jit` can compile
 the same source.
@@ -208,10 +208,10 @@ class Rule:
 
 
 class EventFunction(NamedTuple):
-    """An event occurs where ``d_factor * d + v_factor * v + constant`` rises through zero."""
+    """An event occurs where ``on_d * d + on_v * v + constant`` rises through zero."""
 
-    d_factor: float
-    v_factor: float
+    on_d: float
+    on_v: float
     constant: float
 
 
@@ -324,7 +324,7 @@ def consistent(law: Law, state: State, d: float, v: float) -> State:
     """
     for _ in range(10):
         events = law.branch(state).events
-        passed = [n for n, e in enumerate(events) if e.d_factor * d + e.v_factor * v + e.constant > 0.0]
+        passed = [n for n, e in enumerate(events) if e.on_d * d + e.on_v * v + e.constant > 0.0]
         if not passed:
             break
         state = law.transition(state, passed[0], d, v)
@@ -387,12 +387,12 @@ def event_place(event: EventFunction, at: float, d1: float, direction: float, v:
     """Return the deformation of an event on a straight path from `at` to `d1` at the rate `v`, or None if
     it does not occur.  A reversal occurs at once if the path runs against the branch.
     """
-    a, b, c = event
-    g, slope = a * at + b * v + c, a * direction
-    if b and not a and not c:
-        return at if b * direction > 0 else None
-    if g >= 0 and (slope > 0 or (slope == 0 and g > 0)):
+    on_d, on_v, constant = event
+    value, slope = on_d * at + on_v * v + constant, on_d * direction
+    if on_v and not on_d and not constant:
+        return at if on_v * direction > 0 else None
+    if value >= 0 and (slope > 0 or (slope == 0 and value > 0)):
         return at
-    if slope > 0 and a * d1 + b * v + c > 0:
-        return at - g / slope * direction
+    if slope > 0 and on_d * d1 + on_v * v + constant > 0:
+        return at - value / slope * direction
     return None

@@ -145,25 +145,26 @@ def buildings(structure: Structure) -> list[Building]:
 
 
 def bearing_layers(model: Model, nodes: Collection[int], levels: Sequence[float]) -> frozenset[int]:
-    """Storeys of a building that are layers of bearings: those with a SPRING that has BEARING=YES, and
-    those lower than `BEARING` of its highest storey.  They may move by more than their height: their drifts
-    are stated as lengths.
+    """Storeys of a building that are layers of bearings: those lower than `BEARING` of its highest storey,
+    unless a SPRING in them has BEARING=NO, and those with a SPRING that has BEARING=YES.  They may move by
+    more than their height: their drifts are stated as lengths.
     """
     heights = np.diff(levels)
-    low = {n for n, h in enumerate(heights, 1) if h < BEARING * heights.max()}
-    for i, j in marked_bearings(model):
-        if i in nodes and j in nodes:
-            middle = 0.5 * (model.nodes[i].y + model.nodes[j].y)
-            low.add(sum(level < middle for level in levels))
-    return frozenset(low & set(range(1, len(levels))))
+    layers = {n for n, h in enumerate(heights, 1) if h < BEARING * heights.max()}
+    for word, change in (("NO", layers.discard), ("YES", layers.add)):
+        for i, j in marked_bearings(model, word):
+            if i in nodes and j in nodes:
+                middle = 0.5 * (model.nodes[i].y + model.nodes[j].y)
+                change(sum(level < middle for level in levels))
+    return frozenset(layers & set(range(1, len(levels))))
 
 
-def marked_bearings(model: Model) -> list[tuple[int, int]]:
-    """Nodes of the springs that are marked as bearings."""
+def marked_bearings(model: Model, word: str = "YES") -> list[tuple[int, int]]:
+    """Nodes of the springs whose BEARING is the word."""
     return [
         (e.i, e.j)
         for e in model.elements.values()
-        if e.j is not None and model.props[e.prop].values.get("BEARING") == "YES"
+        if e.j is not None and model.props[e.prop].values.get("BEARING") == word
     ]
 
 

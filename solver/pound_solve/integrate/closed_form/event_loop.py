@@ -152,7 +152,7 @@ class EventDrivenRun(ABC):
         `kernels.ties.note_rests`).
         """
         event = self.branches[law].events[event_index]
-        turns = event.d_factor == 0.0 and event.v_factor != 0.0
+        turns = event.on_d == 0.0 and event.on_v != 0.0
         if not turns or self.laws[law].role.collides or not self._on_massless[law]:
             return
         for i in np.flatnonzero(self._on_massless).tolist():

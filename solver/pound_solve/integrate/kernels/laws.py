@@ -82,9 +82,9 @@ def enter_branch(laws: Laws, rules: RuleFunctions, i: int) -> None:
     tangent.stiffness[i], tangent.damping[i], tangent.offset[i] = b[0], damping, b[2]
     coefficients, n_events = laws.events.coefficients, 0
     for e in range(coefficients.shape[1]):
-        x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
-        coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2] = x, y, z
-        if x != 0.0 or y != 0.0:
+        on_d, on_v, constant = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
+        coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2] = on_d, on_v, constant
+        if on_d != 0.0 or on_v != 0.0:
             n_events = e + 1
     laws.events.n_events[i] = n_events
 
@@ -293,18 +293,18 @@ def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: floa
     """Return the deformation of event `e` of law `i` on such a path; NaN if the event is not met."""
     coefficients = laws.events.coefficients
     sign = 1.0 if end >= start else -1.0
-    a, b, c = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
-    if a != 0.0:
-        c += b * rate
-    value, slope = a * start + c, a * sign
-    rounding = EVENT_TOLERANCE * abs(a) * laws.largest.deformation[i]
-    if laws.definition.contact[i] and a != 0.0 and a * end + c <= rounding:
+    on_d, on_v, constant = coefficients[i, e, 0], coefficients[i, e, 1], coefficients[i, e, 2]
+    if on_d != 0.0:
+        constant += on_v * rate
+    value, slope = on_d * start + constant, on_d * sign
+    rounding = EVENT_TOLERANCE * abs(on_d) * laws.largest.deformation[i]
+    if laws.definition.contact[i] and on_d != 0.0 and on_d * end + constant <= rounding:
         return np.nan
-    if b != 0.0 and a == 0.0 and c == 0.0:
-        return np.nan if b * sign <= 0.0 or end == start else start
+    if on_v != 0.0 and on_d == 0.0 and constant == 0.0:
+        return np.nan if on_v * sign <= 0.0 or end == start else start
     if value >= 0.0 and (slope > 0.0 or (slope == 0.0 and value > 0.0)):
         return start
-    if slope > 0.0 and a * end + c > 0.0:
+    if slope > 0.0 and on_d * end + constant > 0.0:
         place: float = start - value / slope * sign
         return place
     return np.nan

@@ -203,18 +203,17 @@ def expand_series(sim: Simulation, series: Series, piece: Piece, h: float) -> tu
     n_powers = len(piece.coefs)
     begin_series(sim, series, piece, h)
     control.largest_kinetic = max(control.largest_kinetic, kinetic_of_term(linear, series, 1, h))
-    most, k, tail, last, control.quadrature_degree = control.largest_kinetic, 0, 0.0, 0.0, UNCHECKED_TERMS
+    control.quadrature_degree = UNCHECKED_TERMS
+    most, tail, last = control.largest_kinetic, 0.0, 0.0
+    k = 0
     while k + 2 <= MAX_DEGREE:
-        while True:
-            next_term(sim, series, k, h, n_powers)
-            k += 1
-            if (k + 1) % UNCHECKED_TERMS == 0:
-                break
+        next_term(sim, series, k, h, n_powers)
+        k += 1
+        if (k + 1) % UNCHECKED_TERMS != 0:
+            continue
         degree = k + 1
-        tail, last = (
-            energy_of_term(linear, series, degree, h),
-            energy_of_term(linear, series, degree - 1, h),
-        )
+        tail = energy_of_term(linear, series, degree, h)
+        last = energy_of_term(linear, series, degree - 1, h)
         if most == 0.0:  # from rest
             most = max(energy_of_term(linear, series, 2, h), last, tail)
         if tail + last > UNSEEN_ENERGY * most:

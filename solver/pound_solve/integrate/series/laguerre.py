@@ -24,8 +24,8 @@ class Laguerre(Taylor):
     """One run; see the module docstring."""
 
     exact = False
-    words = f"LAGUERRE, implicit series of {LAST_TERM} terms"
-    asking = "TOL"
+    description = f"LAGUERRE, implicit series of {LAST_TERM} terms"
+    limited_by = "TOL"
 
     def remedy(self) -> str:
         """Return advice on what requires fewer steps."""

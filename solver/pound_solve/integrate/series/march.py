@@ -241,7 +241,7 @@ def step_to_goal(
             if why != DONE:
                 return why
         degree, fit = expand_step(sim, series, piece, h)
-        if not fit >= smallest_part(series):  # far too large terms are no information on the motion
+        if not fit >= smallest_part(series):  # terms that large say nothing about the motion
             shorten_step(control, h, fit)
             pause -= 1  # or a run that shortens its steps without end could not be interrupted
             continue
@@ -347,19 +347,19 @@ def march(sim: Simulation, rules: RuleFunctions, series: Series, goals: Goals) -
     run = sim.run
     pause = next_pause(sim.step, run)
     while run.goal < len(goals.times):
-        goal = run.goal
-        piece, before = piece_of(goals, goal), piece_of(goals, max(goal - 1, 0))
+        n_goal = run.goal
+        piece, before = piece_of(goals, n_goal), piece_of(goals, max(n_goal - 1, 0))
         if run.started == 0:
             store_sample_at_goal(sim, rules, series, piece)
         # the excitation may have a kink here, or jump
         why = settle_after_jump(sim, rules, series, before, piece)
         if why != DONE:
             return why
-        why = reach_goal(sim, rules, series, piece, goals.times[goal], pause)
+        why = reach_goal(sim, rules, series, piece, goals.times[n_goal], pause)
         if why != DONE:
             return why
         run.goal += 1
-        if goals.sampled[goal]:
+        if goals.sampled[n_goal]:
             from_modes(sim.laws, series.modal, sim.step)
             store_sample_at_goal(sim, rules, series, piece)
             if run.n_samples == len(sim.buffers.time):

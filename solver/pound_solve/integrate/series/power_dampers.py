@@ -33,7 +33,7 @@ from pound_solve.laws.functions import RuleFunctions, power_law_of
 from pound_solve.numerics.types import Array, Flags
 
 SLOW_RATE = 1e-10  #: fraction of the largest rate, or of the force there, below which it is linear
-SLOW_RATE_OF_UNIT = 1e-12  #: the same, of the rate one
+SLOW_RATE_OF_UNIT = 1e-12  #: the same as a multiple of the unit of rates
 DEAD_BAND = 1e-3  #: fraction of this rate between the two events, lest they follow one another
 #: fraction of a rate that Newton's iteration changes last: it leaves the square of that
 RATE_CONVERGED = 1e-6

@@ -107,8 +107,8 @@ class Taylor(KernelEngine):
 
     exact = True
     keeps_steps = False
-    words = "TAYLOR, power series"
-    asking = "the fastest mode"  #: cause of short steps, for messages
+    description = "TAYLOR, power series"
+    limited_by = "the fastest mode"  #: cause of short steps, for messages
 
     def __init__(
         self,
@@ -119,7 +119,7 @@ class Taylor(KernelEngine):
     ) -> None:
         length = float(problem.start.times[-1]) - problem.begin
         solved = Scheme(0.0, 0.0) if tolerance is None else Scheme(1.0, 1.0)  # nothing, or C and K
-        super().__init__(problem, solved, length, self.words)
+        super().__init__(problem, solved, length, self.description)
         self.contacts, self.most = contacts, most
         self.sim.run.branches_changed = 1
         self.control: state.StepControl = record(state.StepControl)
@@ -296,7 +296,7 @@ class Taylor(KernelEngine):
         done, steps = float(self.sim.run.time - self.times[0]), int(self.sim.run.steps)
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
-            why = f"{self.asking} asks for {count} steps (now {self.control.next_length:.3g} long)"
+            why = f"{self.limited_by} requires {count} steps (now {self.control.next_length:.3g} long)"
             raise self.stop("A502", why + self.remedy())
 
     def remedy(self) -> str:
@@ -310,7 +310,7 @@ class Taylor(KernelEngine):
         """Return the `Stop` that explains why the kernel has returned early."""
         if why == STEP_TOO_SHORT:
             return self.stop(
-                "A502", f"{self.asking} requires steps shorter than the resolution of the time"
+                "A502", f"{self.limited_by} requires steps shorter than the resolution of the time"
             )
         if why == UNRESTRAINED:
             return self.stop("A501", self._explain_massless())

@@ -326,10 +326,10 @@ def advance(
     if run.started == 0:
         take_first_sample(sim, rules)
     while run.goal < len(goals.times):
-        goal = run.goal
-        h, piece = lengths[goal], piece_of(goals, goal)
+        n_goal = run.goal
+        h, piece = lengths[n_goal], piece_of(goals, n_goal)
         begin_goal(sim, scheme, piece, h)
-        while run.step < steps[goal]:
+        while run.step < steps[n_goal]:
             crowded = len(buffers.log) - run.n_transitions < room or run.n_ties > len(buffers.ties) // 2
             # steps whose motion has room: one step may be cut into many parts
             more = len(buffers.motion_time) // 2 - run.n_motions
@@ -339,11 +339,11 @@ def advance(
             if why != DONE:
                 return why
             most = min(pause - run.steps, more)
-            why = take_steps(sim, rules, scheme, piece, h, goals.times[goal], steps[goal], most)
+            why = take_steps(sim, rules, scheme, piece, h, goals.times[n_goal], steps[n_goal], most)
             if why != DONE:
                 return why
-        run.time = goals.times[goal]
-        why = end_goal(sim, rules, goals.sampled[goal])
+        run.time = goals.times[n_goal]
+        why = end_goal(sim, rules, goals.sampled[n_goal])
         if why != DONE:
             return why
     return DONE

@@ -25,12 +25,17 @@ Internal variables: the largest deformations :math:`d_{un} - g` of both sides (m
 :math:`d - f/k_u` of the present unloading line; the branch and the deformation at its upper end and at its
 lower end.
 
-References ---------- Stewart WG (1987), The seismic design of plywood sheathed shear walls, PhD thesis,
-University of Canterbury; Ruaumoko's rule 9.  The power law of the reloading line is that stated by Folz B
-and Filiatrault A (2001), Cyclic analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441, in which
-:math:`r_p` is a separate parameter (their r4).  Our choices: deformations in the power law are measured
-from the slackness; the reloading line is never flatter than the line from the intercept :math:`F_i` to its
-target; and the connection can fail.
+The power law of the reloading line is that of Folz and Filiatrault (2001), in which :math:`r_p` is a
+separate parameter (their r4).  Our choices: deformations in the power law are measured from the slackness;
+the reloading line is never flatter than the line from the intercept :math:`F_i` to its target; and the
+connection can fail.
+
+References
+----------
+Stewart WG (1987), The seismic design of plywood sheathed shear walls, PhD thesis, University of
+Canterbury; Ruaumoko's rule 9.
+
+Folz B, Filiatrault A (2001), Cyclic analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> GroundMoti
     if misfit > tol:
         raise RecordError(
             "R405",
-            f"the spectrum is met to {100 * misfit:.2g} % only, TOL={tol:g} asks for {100 * tol:g} %",
+            f"the spectrum is met to {100 * misfit:.2g} % only, TOL={tol:g} requires {100 * tol:g} %",
             "give another SEED, a longer STRONG, a smoother SPECTRUM or a larger TOL",
             "TOL",
         )

@@ -25,8 +25,8 @@ class SecantLaw(Law):
     def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
         """Return the state after that event of the branch, at deformation `d` and rate `v`."""
         *internal, farthest, secant = state[3]
-        d_factor, _, constant = self.branch(state).events[event_index]
-        if d_factor == 0.0 == constant and abs(d) > farthest:
+        on_d, _, constant = self.branch(state).events[event_index]
+        if on_d == 0.0 == constant and abs(d) > farthest:
             farthest, secant = abs(d), max(self.force(state, d)[0] / d, 0.0)
         at, d0, work, m = super().transition((*state[:3], tuple(internal)), event_index, d, v)
         return at, d0, work, (*m, farthest, secant)

@@ -175,10 +175,10 @@ SPEC = Spec(
         Field(
             "BEARING",
             Kind.WORD,
-            default="NO",
+            default=None,
             words=("YES", "NO"),
             doc="a bearing of an isolated building: the storey that it crosses is a layer of bearings, "
-            "whose drift is stated as a length",
+            "whose drift is stated as a length; omitted: one if lower than a quarter of the highest storey",
         ),
     ),
     reference="",

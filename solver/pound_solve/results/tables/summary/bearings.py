@@ -41,5 +41,5 @@ TABLE = Table(
     rows=rows,
     remark=how_sampled,
     note="A layer of bearings is a storey with a SPRING that has BEARING=YES, or one lower than a quarter "
-    "of the highest storey of its building.",
+    "of the highest storey of its building and without BEARING=NO.",
 )
