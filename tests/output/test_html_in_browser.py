@@ -69,7 +69,7 @@ def shown(
 
 
 def column(tab: Any, table: str, number: int) -> list[str]:
-    return tab.locator(f"#{table} tbody tr td:nth-child({number})").all_inner_texts()
+    return tab.locator(f"table.{table} tbody tr td:nth-child({number})").all_inner_texts()
 
 
 def test_a_click_on_a_head_sorts_the_table_and_a_third_one_restores_it(shown: Any) -> None:
@@ -77,10 +77,10 @@ def test_a_click_on_a_head_sorts_the_table_and_a_third_one_restores_it(shown: An
     before = column(tab, "collisions", 7)
     numbers = [float(text) for text in before]
     assert len(numbers) > 3 and numbers not in (sorted(numbers), sorted(numbers, reverse=True))
-    head = tab.locator("#collisions th:nth-child(7) button")
+    head = tab.locator("table.collisions th:nth-child(7) button")
     head.click()
     assert [float(text) for text in column(tab, "collisions", 7)] == sorted(numbers)
-    assert tab.locator("#collisions th:nth-child(7)").get_attribute("aria-sort") == "ascending"
+    assert tab.locator("table.collisions th:nth-child(7)").get_attribute("aria-sort") == "ascending"
     head.click()
     assert [float(text) for text in column(tab, "collisions", 7)] == sorted(numbers, reverse=True)
     head.click()
@@ -90,14 +90,14 @@ def test_a_click_on_a_head_sorts_the_table_and_a_third_one_restores_it(shown: An
 
 def test_texts_sort_too_and_rows_stay_whole(shown: Any) -> None:
     tab, *_ = shown
-    rows = tab.locator("#nodes tbody tr").all_inner_texts()
-    tab.locator("#options th:nth-child(1) button").focus()
+    rows = tab.locator("table.nodes tbody tr").all_inner_texts()
+    tab.locator("table.options th:nth-child(1) button").focus()
     tab.keyboard.press("Enter")
     texts = column(tab, "options", 1)
     assert texts == sorted(texts, key=str.lower)
-    tab.locator("#nodes th:nth-child(2) button").click()
-    tab.locator("#nodes th:nth-child(2) button").click()
-    assert tab.locator("#nodes tbody tr").all_inner_texts() == rows[::-1]
+    tab.locator("table.nodes th:nth-child(2) button").click()
+    tab.locator("table.nodes th:nth-child(2) button").click()
+    assert tab.locator("table.nodes tbody tr").all_inner_texts() == rows[::-1]
 
 
 def test_pictures_zoom_and_return(shown: Any) -> None:
@@ -123,11 +123,129 @@ def test_pictures_zoom_and_return(shown: Any) -> None:
     assert not complaints
 
 
+@pytest.fixture
+def fresh(shown: Any) -> Iterator[Any]:
+    """The page in a tab of its own."""
+    tab, *_ = shown
+    other = tab.context.browser.new_page(viewport={"width": 1300, "height": 900})
+    other.goto(tab.url)
+    other.wait_for_selector("#p1 .main-svg")
+    yield other
+    other.close()
+
+
+def test_all_kinds_of_numbers_sort(fresh: Any) -> None:
+    """Exponents, signs, infinity and units count; texts come after numbers, cells without a value last."""
+    cells = ["2", "-", "1.5E-03", "all", "-3E+02", "nan", "inf", "10.5 s", "-0.25", "-inf", "12.000"]
+    upwards = ["-inf", "-3E+02", "-0.25", "1.5E-03", "2", "10.5 s", "12.000", "inf", "all"]
+    downwards = [*upwards[-2::-1], "all"]
+    fill = """(column, cells) => column.forEach((cell, k) => { cell.textContent = cells[k] ?? "-"; })"""
+    fresh.locator("table.options tbody td:nth-child(2)").evaluate_all(fill, cells)
+    head = fresh.locator("table.options th:nth-child(2) button")
+    for expected in (upwards, downwards):
+        head.click()
+        texts = column(fresh, "options", 2)
+        assert texts[: len(expected)] == expected and set(texts[len(expected) :]) == {"-", "nan"}
+
+
+#: numbers that stand in more than one line
+BROKEN = """() => {
+  const broken = [];
+  const texts = document.createTreeWalker(document.querySelector("main"), NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const node = texts.currentNode;
+    if (node.parentElement.closest(".picture")) continue;
+    for (const match of node.data.matchAll(/(?<![\\w.-])-?\\d[\\d.]*(e[-+]\\d+)?/gi)) {
+      const range = document.createRange();
+      range.setStart(node, match.index);
+      range.setEnd(node, match.index + match[0].length);
+      const tops = new Set([...range.getClientRects()].map((box) => Math.round(box.top)));
+      if (tops.size > 1) broken.push(match[0]);
+    }
+  }
+  return broken;
+}"""
+
+
+def test_numbers_stay_whole_and_the_page_does_not_move_sideways(fresh: Any) -> None:
+    boxes = "boxes => boxes.filter((box) => box.scrollWidth > box.clientWidth).length"
+    for width in (1300, 700, 400):
+        fresh.set_viewport_size({"width": width, "height": 900})
+        fresh.wait_for_timeout(500)
+        assert fresh.evaluate("document.documentElement.scrollWidth") == width
+        assert fresh.evaluate(BROKEN) == []
+    assert fresh.locator(".wide").evaluate_all(boxes) > 0, "tables move in their boxes"
+
+
+def test_names_of_curves_stand_below_a_narrow_picture(fresh: Any) -> None:
+    places = """() => [...document.querySelectorAll(".picture")].filter((p) => p.querySelector(".legend"))
+      .map((p) => [".legend", ".nsewdrag"].map((part) => p.querySelector(part).getBoundingClientRect()))
+      .map(([names, curves]) => [names.left >= curves.right, names.top >= curves.bottom, curves.width])"""
+    beside, below = [], []
+    for width, kind in ((1300, beside), (400, below)):
+        fresh.set_viewport_size({"width": width, "height": 900})
+        fresh.wait_for_timeout(500)
+        kind += fresh.evaluate(places)
+    assert len(beside) == len(below) > 1
+    assert all(right and not under for right, under, _ in beside)
+    assert all(under and not right and room > 250 for right, under, room in below)
+
+
+def test_pictures_over_time_show_the_same_time(fresh: Any) -> None:
+    ranges = """() => [...document.querySelectorAll(".picture")]
+      .map((p) => [p.layout.xaxis.title.text, p.layout.xaxis.range])"""
+
+    def spans() -> tuple[set[tuple[float, ...]], list[list[float]]]:
+        now = fresh.evaluate(ranges)
+        times = {tuple(span) for title, span in now if title.startswith("time")}
+        return times, [span for title, span in now if not title.startswith("time")]
+
+    assert sum(title.startswith("time") for title, _ in fresh.evaluate(ranges)) > 3
+    (whole,), others = spans()
+    energies = "[...document.querySelectorAll('figure')].find((f) => f.textContent.startsWith('Energies'))"
+    zoom = f"change => Plotly.relayout({energies}.querySelector('.picture'), change).then(() => null)"
+    fresh.evaluate(zoom, {"xaxis.range[0]": 1.5, "xaxis.range[1]": 2.25})
+    fresh.wait_for_timeout(500)
+    assert spans() == ({(1.5, 2.25)}, others), "those of other axes stay"
+    fresh.evaluate(zoom, {"xaxis.range": list(whole)})
+    fresh.wait_for_timeout(500)
+    assert spans() == ({whole}, others)
+
+
+def test_paper_shows_all_and_keeps_rows_and_pictures_whole(fresh: Any) -> None:
+    style = "(parts, name) => [...new Set(parts.map((part) => getComputedStyle(part)[name]))]"
+    fresh.evaluate("dispatchEvent(new Event('beforeprint'))")
+    fresh.emulate_media(media="print")
+    fresh.set_viewport_size({"width": 703, "height": 1000})  # A4 without its margins
+    fresh.evaluate("dispatchEvent(new Event('beforeprint'))")
+    fresh.wait_for_timeout(500)
+    assert fresh.evaluate("document.documentElement.scrollWidth") == 703, "nothing is cut, or shrunk"
+    for parts, name, value in (
+        ("nav", "display", "none"),
+        (".modebar", "display", "none"),
+        ("thead", "display", "table-header-group"),
+        ("th button", "display", "contents"),
+        ("tr", "breakInside", "avoid"),
+        ("figure", "breakInside", "avoid"),
+        ("h2, h3", "breakAfter", "avoid"),
+        (".wide", "overflow", "visible"),
+    ):
+        assert fresh.locator(parts).evaluate_all(style, name) == [value], parts
+    widths = "pictures => [...new Set(pictures.map((picture) => picture.clientWidth))]"
+    assert fresh.locator(".picture .svg-container").evaluate_all(widths) == [690]
+    fresh.emulate_media(media="screen")
+    fresh.set_viewport_size({"width": 1300, "height": 900})
+    fresh.evaluate("dispatchEvent(new Event('afterprint'))")
+    fresh.wait_for_timeout(500)
+    assert 690 not in fresh.locator(".picture .svg-container").evaluate_all(widths)
+    assert not fresh.locator("table[style*=font]").count()
+
+
 def test_no_request_leaves_and_none_could(shown: Any, server: tuple[str, list[str]]) -> None:
     """Runs last: its attempts are complaints of the browser."""
     tab, requests, complaints = shown
     assert [url.partition(":")[0] for url in requests] == ["file"]
-    assert tab.locator("#contact_summary tbody td").first.inner_text() == EVIL.replace(
+    assert tab.locator("table.contact_summary tbody td").first.inner_text() == EVIL.replace(
         "http://nowhere.example", server[0]
     )
     tried = "u => fetch(u).then(() => 'it came', () => 'refused')"

@@ -165,7 +165,7 @@ def test_nothing_is_loaded_from_outside(results: Results) -> None:
     assert {tag for tag, _ in read.tags} <= {
         "html", "head", "meta", "title", "style", "script", "body", "nav", "a", "main", "section", "div",
         "h1", "h2", "h3", "p", "table", "thead", "tbody", "tr", "th", "td", "button", "br", "figure",
-        "figcaption",
+        "figcaption", "span",
     }  # fmt: skip
     for tag, own in read.tags:
         assert not own.keys() & {"src", "srcset", "style", "data", "action", "background", "poster"}, (
@@ -191,6 +191,33 @@ def test_texts_of_a_deck_are_no_markup(results: Results) -> None:
     assert read.tables["contact_summary"][1][0] == EVIL
     names = [t["name"] for figure in json.loads(read.scripts[1]) for t in figure["traces"]]
     assert not [name for name in names if "<" in name]
+
+
+def test_columns_of_numbers_stand_to_the_right(done: Results) -> None:
+    number = re.compile(r"-?|-?(\d+\.?\d*(e[-+]?\d+)?|inf)", re.I)
+    columns = 0
+    for table in re.findall("<tbody>(.*?)</tbody>", page(done), re.S):
+        rows = [re.findall(r'<td class="(\w+)">(.*?)</td>', row) for row in table.split("</tr>")[:-1]]
+        for cells in zip(*rows):
+            (kind,) = {kind for kind, _ in cells}
+            columns += kind == "number"
+            assert kind == "number" or not all(number.fullmatch(text) for _, text in cells), cells
+    assert columns > 20
+
+
+def test_numbers_and_dates_with_hyphens_and_units_stay_in_one_piece() -> None:
+    deck = DECK.replace("Two masses & a <wall>", "Run 2").replace(EVIL, "1E-5 of 2026-01-31")
+    with run(Deck(deck)) as results:
+        text = page(results)
+    assert "<span>1E-5</span> of <span>2026-01-31</span></td>" in text
+    assert re.search(r"peak<br>force<br><span>\[kN\]</span></button>", text)
+
+
+def test_pictures_over_time_are_marked(results: Results) -> None:
+    drawn = pictures(results)
+    assert {p.time for p in drawn} == {True, False}
+    assert all(p.time == p.x.startswith("time [") for p in drawn)
+    assert [p.as_json()["time"] for p in drawn] == [p.time for p in drawn]
 
 
 def test_pictures_show_the_numbers_of_the_file(results: Results) -> None:

@@ -7,6 +7,7 @@ and its script, and a policy in its head forbids the browser to fetch anything.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Collection, Iterator, Sequence
 from html import escape
 from importlib.resources import files
@@ -24,6 +25,11 @@ POLICY: Final = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "form-action 'none'; base-uri 'none'"
 )
+
+#: a cell that is a number, or has no value
+_NUMBER: Final = re.compile(r"-?|[-+]?(\d+\.?\d*(E[-+]?\d+)?|inf)", re.I)
+#: numbers and dates that a browser would break at their hyphens
+_HYPHENATED: Final = re.compile(r"(?<![\w.])\d[\d.]*(E-\d+|(-\d+){2})(?![\w-])", re.I)
 
 
 class _PageSection(NamedTuple):
@@ -122,7 +128,7 @@ def _table(results: Results, table: Table[Any], number: str, limit: int | None) 
     yield f"<h3>{number} {escape(table.title)}</h3>\n"
     yield from parts
     notes = (table.note, results.note(table.name))
-    yield from (f'<p class="note">{escape(text)}</p>\n' for text in notes if text)
+    yield from (f'<p class="note">{_text(text)}</p>\n' for text in notes if text)
 
 
 def _part(results: Results, part: ReportTable) -> Iterator[str]:
@@ -131,18 +137,32 @@ def _part(results: Results, part: ReportTable) -> Iterator[str]:
     if not columns:
         return
     if part.title:
-        yield f"<p>{escape(part.title)}</p>\n"
+        yield f'<p class="part">{escape(part.title)}</p>\n'
     yield f'<div class="wide"><table class="{part.table.name}">\n<thead><tr>'
-    kinds = ["text" if c.is_text else "number" for c in columns]
+    kinds = ["text" if c.is_text and not _are_numbers(cells[c.name]) else "number" for c in columns]
     for column, kind in zip(columns, kinds):
-        head = escape(heads[column.name]).replace("\n", "<br>")
+        head = "<br>".join(map(_head_line, heads[column.name].split("\n")))
         yield f'<th class="{kind}" aria-sort="none"><button type="button">{head}</button></th>'
     yield "</tr></thead>\n<tbody>\n"
     starts = set(accumulate(blocks[:-1])) if len(blocks) < len(part.rows) else set()
     for place, row in enumerate(zip(*(cells[c.name] for c in columns))):
         yield '<tr class="block">' if place in starts else "<tr>"
-        yield from (f'<td class="{kind}">{escape(cell)}</td>' for kind, cell in zip(kinds, row))
+        yield from (f'<td class="{kind}">{_text(cell)}</td>' for kind, cell in zip(kinds, row))
         yield "</tr>\n"
     yield "</tbody></table></div>\n"
     if part.more:
         yield f'<p class="note">{escape(part.more)}</p>\n'
+
+
+def _are_numbers(cells: Sequence[str]) -> bool:
+    return all(map(_NUMBER.fullmatch, cells))
+
+
+def _head_line(line: str) -> str:
+    """HTML of a line of a head; a unit stays in one piece."""
+    return f"<span>{escape(line)}</span>" if line.startswith("[") else escape(line)
+
+
+def _text(text: str) -> str:
+    """HTML of a text, in which numbers stay in one piece."""
+    return _HYPHENATED.sub(r"<span>\g<0></span>", escape(text))

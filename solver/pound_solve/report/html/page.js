@@ -1,19 +1,31 @@
 "use strict";
 
-// A click on the head of a column sorts its table: upwards, downwards, then as it was.
-// Cells without a number stay at the end.
-function sorted(rows, column, way) {
-  const key = (row) => row.cells[column].textContent;
-  const numeric = rows[0].cells[column].className === "number";
-  const compare = (a, b) => {
-    if (!numeric) return way * key(a).localeCompare(key(b), "en", { numeric: true });
-    const [p, q] = [Number.parseFloat(key(a)), Number.parseFloat(key(b))];
-    if (Number.isNaN(p) || Number.isNaN(q)) return Number.isNaN(p) - Number.isNaN(q);
-    return way * (p - q);
-  };
-  return [...rows].sort(compare);
+const PAPER = 690; // width of a picture on paper [px]: A4 within the margins of page.css
+const PRINT_SIZE = 8 / 10.5; // of texts on paper to those on the screen, see page.css
+const LEAST = 0.8; // size to which a table shrinks before its texts are wrapped
+const BESIDE = 600; // least width of a picture with the names of its curves beside it [px]
+const ROW = 19; // height of a line of names [px]
+
+// What a cell is sorted by: the number that it begins with, then its text. Cells that begin with a text
+// come after those with a number, and cells without a value last.
+function sortKey(row, column) {
+  const text = row.cells[column].textContent.trim();
+  const [start] = /^[-+]?(\d+\.?\d*(e[-+]?\d+)?|inf\b)/i.exec(text) ?? [""];
+  const value = Number(start.replace(/inf/i, "Infinity"));
+  const none = ["", "-", "nan"].includes(text.toLowerCase());
+  return { row, text, value, rank: none ? 2 : Number(start === "") };
 }
 
+function sorted(rows, column, way) {
+  const compare = (a, b) => {
+    if (a.rank !== b.rank) return a.rank - b.rank;
+    if (a.value !== b.value) return way * (a.value < b.value ? -1 : 1);
+    return way * a.text.localeCompare(b.text, "en", { numeric: true });
+  };
+  return rows.map((row) => sortKey(row, column)).sort(compare).map((key) => key.row);
+}
+
+// A click on the head of a column sorts its table: upwards, downwards, then as it was.
 for (const table of document.querySelectorAll("table")) {
   const body = table.tBodies[0];
   const original = [...body.rows];
@@ -26,22 +38,96 @@ for (const table of document.querySelectorAll("table")) {
   }));
 }
 
-const figures = document.getElementById("figures");
-if (figures) {
-  JSON.parse(figures.textContent).forEach((figure, number) => {
-    const axis = (title, more) => ({ title: { text: title }, zeroline: false, gridcolor: "#e3e6e9", ...more });
-    const layout = {
-      margin: { l: 70, r: 20, t: 10, b: 50 },
-      hovermode: figure.equal ? "closest" : "x unified",
-      xaxis: axis(figure.x),
-      yaxis: axis(figure.y, figure.equal ? { scaleanchor: "x", scaleratio: 1 } : {}),
-      showlegend: figure.traces.length > 1,
+// A table wider than the paper is printed smaller; first its texts stay whole, then they are wrapped.
+function shrinkTables() {
+  for (const table of document.querySelectorAll("table")) {
+    table.classList.add("measured");
+    const scaleTo = (width) => {
+      table.style.width = width;
+      return PAPER / (table.offsetWidth * PRINT_SIZE);
     };
-    // ten colours, and other dashes for the next ten
-    const dash = (place) => ["solid", "dash", "dot", "dashdot"][Math.floor(place / 10) % 4];
-    const traces = figure.traces.map((trace, place) => ({
-      type: "scatter", ...trace, line: { width: 1.5, dash: dash(place), ...trace.line },
-    }));
-    Plotly.newPlot(`p${number + 1}`, traces, layout, { displaylogo: false, responsive: true, scrollZoom: true });
-  });
+    const scale = Math.min(scaleTo("min-content"), Math.max(LEAST, scaleTo("max-content")));
+    table.style.width = "";
+    table.classList.remove("measured");
+    if (scale < 1) table.style.fontSize = `${Math.floor(100 * scale)}%`;
+  }
 }
+
+function restoreTables() {
+  for (const table of document.querySelectorAll("table")) table.style.fontSize = "";
+}
+
+// Layout of a picture of a width: the names of the curves beside it, or below.
+function arranged(figure, width, height = width < BESIDE ? 320 : 400) {
+  if (width >= BESIDE || !figure.named) {
+    const legend = { orientation: "v", x: 1.02, y: 1, yanchor: "top", yref: "paper", maxheight: 1 };
+    return { width, height, margin: { l: 70, r: 20, t: 10, b: 50 }, legend };
+  }
+  const longest = Math.max(...figure.traces.map((trace) => trace.name.length));
+  const columns = Math.max(1, Math.floor((width - 70) / (6.5 * longest + 45)));
+  const names = ROW * Math.min(12, Math.ceil(figure.traces.length / columns)) + 10;
+  const legend = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container", maxheight: names };
+  return { width, height: height + names, margin: { l: 60, r: 10, t: 30, b: 55 + names }, legend };
+}
+
+const roomOf = (figure) => figure.place.parentElement.clientWidth;
+
+function draw(figure, touch) {
+  const axis = (title, more) => ({ title: { text: title }, zeroline: false, gridcolor: "#e3e6e9", ...more });
+  // ten colours, and other dashes for the next ten
+  const dash = (place) => ["solid", "dash", "dot", "dashdot"][Math.floor(place / 10) % 4];
+  const traces = figure.traces.map((trace, place) => ({
+    type: "scatter", ...trace, line: { width: 1.5, dash: dash(place), ...trace.line },
+  }));
+  const layout = {
+    ...arranged(figure, roomOf(figure)),
+    hovermode: figure.equal ? "closest" : "x unified",
+    dragmode: touch ? false : "zoom", // a finger moves the page
+    xaxis: axis(figure.x, figure.range ? { range: [...figure.range] } : {}),
+    yaxis: axis(figure.y, figure.equal ? { scaleanchor: "x", scaleratio: 1 } : {}),
+    showlegend: figure.named,
+  };
+  Plotly.newPlot(figure.place, traces, layout, { displaylogo: false, scrollZoom: !touch });
+}
+
+// All pictures over time show the same time as the one that was zoomed.
+function link(figures) {
+  let following = false;
+  const follow = async (leader, change) => {
+    if (following || !Object.keys(change).some((key) => key.startsWith("xaxis."))) return;
+    following = true;
+    const range = leader.place.layout.xaxis.range;
+    const others = figures.filter((figure) => figure !== leader);
+    await Promise.all(others.map((f) => Plotly.relayout(f.place, { "xaxis.range": [...range] })));
+    following = false;
+  };
+  for (const figure of figures) figure.place.on("plotly_relayout", (change) => follow(figure, change));
+}
+
+function fit(figures, width, height) {
+  for (const figure of figures) {
+    Plotly.relayout(figure.place, arranged(figure, width ?? roomOf(figure), height));
+  }
+}
+
+function drawAll(figures) {
+  const overTime = figures.filter((figure) => figure.time);
+  const times = overTime.flatMap((f) => f.traces.flatMap((trace) => [trace.x[0], trace.x.at(-1)])).filter(Number.isFinite);
+  const range = [Math.min(...times), Math.max(...times)]; // of numbers: an empty curve has none
+  const touch = matchMedia("(pointer: coarse)").matches;
+  figures.forEach((figure, number) => {
+    figure.place = document.getElementById(`p${number + 1}`);
+    figure.named = figure.traces.length > 1;
+    if (figure.time) figure.range = range;
+    draw(figure, touch);
+  });
+  link(overTime);
+  addEventListener("resize", () => fit(figures));
+  addEventListener("beforeprint", () => fit(figures, PAPER, 280)); // three on a page
+  addEventListener("afterprint", () => fit(figures));
+}
+
+addEventListener("beforeprint", shrinkTables);
+addEventListener("afterprint", restoreTables);
+const data = document.getElementById("figures");
+if (data) drawAll(JSON.parse(data.textContent));

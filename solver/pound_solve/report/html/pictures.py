@@ -63,6 +63,8 @@ class PlotlyPicture(NamedTuple):
         Curves in the format of plotly.js.
     equal : bool
         Whether both axes have the same scale.
+    time : bool
+        Whether the X axis is time, which all such pictures show alike.
     """
 
     title: str
@@ -71,10 +73,12 @@ class PlotlyPicture(NamedTuple):
     y: str
     traces: list[Trace]
     equal: bool = False
+    time: bool = False
 
     def as_json(self) -> dict[str, Any]:
         """Picture as data for the script of the page."""
-        return {"x": _plain(self.x), "y": _plain(self.y), "traces": self.traces, "equal": self.equal}
+        axes = {"x": _plain(self.x), "y": _plain(self.y), "equal": self.equal, "time": self.time}
+        return axes | {"traces": self.traces}
 
 
 def pictures(results: Results) -> list[PlotlyPicture]:
@@ -163,7 +167,8 @@ def _courses(results: Results) -> Iterator[PlotlyPicture]:
             traces += _peaks(results)
             note = f"The marks are the peaks in the table of collisions. {note}".strip()
         unit = results.history_units(name)[chosen[0]]
-        yield PlotlyPicture(title, note, f"time [{results.units.time}]", f"{axis} [{unit}]", traces)
+        x, y = f"time [{results.units.time}]", f"{axis} [{unit}]"
+        yield PlotlyPicture(title, note, x, y, traces, time=True)
 
 
 def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
