@@ -220,6 +220,10 @@ def test_pictures_over_time_are_marked(results: Results) -> None:
     assert [p.as_json()["time"] for p in drawn] == [p.time for p in drawn]
 
 
+def round_7(value: float) -> float:
+    return float(f"{value:.7g}")
+
+
 def test_pictures_show_the_numbers_of_the_file(results: Results) -> None:
     drawn = {p.title: p for p in pictures(results)}
     assert {
@@ -230,10 +234,11 @@ def test_pictures_show_the_numbers_of_the_file(results: Results) -> None:
         "Forces of springs and hinges",
     } <= set(drawn)
     force, *marks = drawn["Contact forces"].traces
-    t, rows = results.course("contact/force")
-    np.testing.assert_allclose(force["x"], t, rtol=1e-6)
-    np.testing.assert_allclose(force["y"], rows[:, 0], rtol=1e-6)
+    t, rows = results.course("contact/force", jumps=True)
     table = results.table("collisions")
+    curve = set(zip(force["x"], force["y"]))
+    assert curve >= {(round_7(x), round_7(y)) for x, y in zip(t, rows[:, 0])}
+    assert curve >= set(zip(marks[0]["x"], marks[0]["y"])), "the curve passes through the true peaks"
     np.testing.assert_allclose(marks[0]["y"], table["peak_force"], rtol=1e-6)
     np.testing.assert_allclose(marks[0]["x"], table["t_peak"], rtol=1e-6)
     loop = drawn["Forces of springs and hinges"].traces[0]
@@ -249,18 +254,51 @@ def test_profiles_show_both_sides_of_every_storey() -> None:
     with run(Deck(deck)) as results:
         drawn = {p.title: p for p in pictures(results)}
         extremes, levels = results.table("storey_extremes"), results.table("storey_envelope")["level"]
-    for quantity, title in (
-        ("drift ratio", "Extreme drift ratios over the height"),
-        ("shear", "Extreme storey shears over the height"),
-        ("floor acceleration", "Extreme floor accelerations over the height"),
+    edges = np.array([np.append(0.0, levels[:-1]), levels]).T.ravel()  # of the storeys, from the ground
+    for quantity, title, factor in (
+        ("drift ratio", "Extreme drift ratios over the height", 100.0),
+        ("shear", "Extreme storey shears over the height", 1.0),
     ):
-        own = extremes[extremes["quantity"] == quantity]
+        rows = extremes[extremes["quantity"] == quantity]
         right, left = drawn[title].traces
         assert (right["name"], left["name"]) == ("building 1, to the right", "building 1, to the left")
-        np.testing.assert_allclose(right["x"], own["max"], rtol=1e-6)
-        np.testing.assert_allclose(left["x"], own["min"], rtol=1e-6)
-        np.testing.assert_allclose([right["y"], left["y"]], [levels, levels], rtol=1e-6)
-        assert right["line"]["color"] == left["line"]["color"] and len(own) == 3
+        np.testing.assert_allclose(right["x"], np.repeat(factor * rows["max"], 2), rtol=1e-6)
+        np.testing.assert_allclose(left["x"], np.repeat(factor * rows["min"], 2), rtol=1e-6)
+        np.testing.assert_allclose([right["y"], left["y"]], [edges, edges], rtol=1e-6)
+        assert right["line"]["color"] == left["line"]["color"] and len(rows) == 3
+    rows = extremes[extremes["quantity"] == "floor acceleration"]
+    right, left = drawn["Extreme total floor accelerations over the height"].traces
+    np.testing.assert_allclose(right["x"], [4.0, *rows["max"]], rtol=1e-3)  # the amplitude at the base
+    np.testing.assert_allclose(left["x"], [-4.0, *rows["min"]], rtol=1e-3)
+    np.testing.assert_allclose([right["y"], left["y"]], [[0.0, *levels]] * 2, rtol=1e-6)
+
+
+def test_modes_have_their_periods_and_one_is_visible(results: Results) -> None:
+    (picture,) = [p for p in pictures(results) if p.title == "Mode shapes"]
+    rest, *shapes = picture.traces
+    names = [f"mode {m['mode']}, {m['period']:.4g} s" for m in results.table("modes")]
+    assert [s["name"] for s in shapes] == names and picture.equal
+    assert [s.get("visible", True) for s in shapes] == [True, "legendonly"]
+    for shape in shapes:
+        moved = [abs(x - x0) for x, x0 in zip(shape["x"], rest["x"]) if x is not None]
+        assert max(moved) == pytest.approx(0.08 * (max(filter(None, rest["x"])) - 0.0), rel=1e-5)
+
+
+def test_springs_that_yielded_have_the_colour_of_their_ductility(results: Results) -> None:
+    (picture,) = [p for p in pictures(results) if p.title == "Ductilities of springs and hinges"]
+    table = results.table("spring_envelope")
+    ductility = {f"{r['element']} {r['component']}": float(r["ductility"]) for r in table}
+    assert max(ductility.values()) > 1.0
+    discs = {text: t["name"] for t in picture.traces[1:] for text in t["text"]}
+    for label, value in ductility.items():
+        name = discs[f"{label}: ductility {value:.4g}"]
+        low, _, high = name.partition(" to ")
+        if name.startswith("above"):
+            assert value > float(name.split()[1])
+        elif high:
+            assert float(low) < value <= float(high)
+        else:
+            assert name == "not yielded" and value <= 1.0
 
 
 def test_a_long_curve_keeps_its_extremes() -> None:

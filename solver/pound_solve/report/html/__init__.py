@@ -14,7 +14,8 @@ from importlib.resources import files
 from itertools import accumulate
 from typing import Any, Final, NamedTuple
 
-from pound_solve.report.html.pictures import PlotlyPicture, pictures
+from pound_solve.report.html.picture import PlotlyPicture
+from pound_solve.report.html.pictures import pictures
 from pound_solve.report.text import ReportTable, formatted, incomplete, shown
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES

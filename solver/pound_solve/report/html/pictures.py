@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
-from html import escape
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final
 
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.report.plot.geometry import NOWHERE, DrawnStructure, apart, broken_line, displacements
+from pound_solve.report.html.picture import PlotlyPicture, Trace, numbers, plain
+from pound_solve.report.html.structures import mode_shapes, structure, yielded
+from pound_solve.report.plot.courses import of_contact, with_peaks
+from pound_solve.report.plot.pictures import base_shear, storeys
 from pound_solve.results import Results
 
 MOST_POINTS: Final = 4000  #: most points of a curve in time, else extremes of short intervals
@@ -26,16 +27,13 @@ COURSES: Final = (
     ("storey/acceleration", "", "Total accelerations of the floors", "acceleration"),
     ("storey/shear", "", "Shears of the storeys", "shear"),
     ("building/base", "shear X", "Base shears", "base shear"),
+    ("building/base", "moment", "Overturning moments", "overturning moment"),
     ("contact/force", "", "Contact forces", "contact force"),
     ("contact/gap", "", "Gaps", "gap"),
     ("energy", "", "Energies", "energy"),
 )
-#: quantity in the table of storey extremes, title, name of the axis
-PROFILES: Final = (
-    ("drift ratio", "Extreme drift ratios over the height", "drift ratio"),
-    ("floor acceleration", "Extreme floor accelerations over the height", "floor acceleration"),
-    ("shear", "Extreme storey shears over the height", "storey shear"),
-)
+#: both sides of a profile: name and dashes
+SIDES: Final = (("to the right", "solid"), ("to the left", "dash"))
 COLOURS: Final = (
     "#1f77b4",
     "#ff7f0e",
@@ -47,108 +45,48 @@ COLOURS: Final = (
     "#7f7f7f",
 )  #: colours of buildings; both sides of one have the same
 
-Trace: TypeAlias = dict[str, Any]
-
-
-class PlotlyPicture(NamedTuple):
-    """One picture.
-
-    Attributes
-    ----------
-    title, note : str
-        Above and below it.
-    x, y : str
-        Names of the axes with their units.
-    traces : list of dict
-        Curves in the format of plotly.js.
-    equal : bool
-        Whether both axes have the same scale.
-    time : bool
-        Whether the X axis is time, which all such pictures show alike.
-    """
-
-    title: str
-    note: str
-    x: str
-    y: str
-    traces: list[Trace]
-    equal: bool = False
-    time: bool = False
-
-    def as_json(self) -> dict[str, Any]:
-        """Picture as data for the script of the page."""
-        axes = {"x": _plain(self.x), "y": _plain(self.y), "equal": self.equal, "time": self.time}
-        return axes | {"traces": self.traces}
-
 
 def pictures(results: Results) -> list[PlotlyPicture]:
     """Return all pictures for which the results have data."""
     makers: tuple[Callable[[Results], Iterator[PlotlyPicture]], ...] = (
-        _structure, _profiles, _courses, _loops, _capacity,
+        structure, mode_shapes, _profiles, _courses, yielded, _loops, _capacity,
     )  # fmt: skip
     return [picture for make in makers for picture in make(results) if picture.traces]
 
 
-def _structure(results: Results) -> Iterator[PlotlyPicture]:
-    """Picture of the structure, undeformed and at the instant of its largest displacement."""
-    if not results.holds("nodes"):
-        return
-    s, note, shift = DrawnStructure(results, apart()), "", dict[int, Array]()
-    traces: list[Trace] = []
-    if results.holds("node/u"):
-        displaced = displacements(results)
-        s, shift = displaced.structure, displaced.shift(displaced.row)
-        note = (
-            f"The displacements are those at {results.time[displaced.row]:.6g} {s.units.time}, "
-            f"when the largest is {displaced.largest:.5g} {s.units.length}. "
-            f"Displacements and gaps are drawn {displaced.factor:.3g} times as large."
-        )
-        traces.append(_line("displaced", s.path(shift), "#0b4f8a"))
-    traces.insert(0, _line("at rest", s.path(), "#b0b0b0"))
-    ends = [s.ends(c, shift) for c in s.contacts]
-    marked = {"mode": "lines+markers", "marker": {"symbol": "square-open", "size": 9, "color": "#b3301e"}}
-    traces.append(_line("contacts", broken_line((tip, end) for _, tip, end in ends), "#b3301e") | marked)
-    arms = [(start, tip) for start, tip, _ in ends if not np.array_equal(start, tip)]
-    traces.append(_line("rigid arms of contacts", broken_line(arms), "#b3301e"))
-    place = {n: xy + shift.get(n, NOWHERE) for n, xy in s.place.items()}
-    traces.append(
-        {
-            "name": "nodes", "mode": "markers", "marker": {"size": 5, "color": "#333"},
-            "x": _numbers(xy[0] for xy in place.values()), "y": _numbers(xy[1] for xy in place.values()),
-            "text": [f"node {n}" for n in place], "hoverinfo": "text",
-        }
-    )  # fmt: skip
-    length = s.units.length
-    kept = [t for t in traces if t["x"]]
-    yield PlotlyPicture("Structure", note, f"X [{length}]", f"Y [{length}]", kept, equal=True)
-
-
-def _line(name: str, points: Array, colour: str) -> Trace:
-    """A line with gaps through points, shape (2, n)."""
-    x, y = map(_numbers, points)
-    return {"name": name, "mode": "lines", "line": {"color": colour}, "x": x, "y": y, "hoverinfo": "skip"}
-
-
 def _profiles(results: Results) -> Iterator[PlotlyPicture]:
-    """Pictures of the largest and smallest values of the storeys over the height of each building."""
-    if not (results.holds("storey_envelope") and results.holds("storey_extremes")):
+    """Pictures of the extremes of the storeys over the height of each building."""
+    if not all(map(results.holds, storeys.SPEC.needs)):
         return
-    table, length = results.table("storey_extremes"), results.units.length
-    levels = {(r["building"], r["storey"]): r["level"] for r in results.table("storey_envelope")}
-    for quantity, title, name in PROFILES:
+    units = results.units
+    for quantity, (name, dimension, _) in storeys.PROFILES.items():
         traces = []
-        rows = table[table["quantity"] == quantity]
-        for n, building in enumerate(dict.fromkeys(rows["building"])):
-            storeys = rows[rows["building"] == building]
-            y = _numbers(levels[building, storey] for storey in storeys["storey"])
-            colour = COLOURS[n % len(COLOURS)]
-            for side, column, dash in (("to the right", "max", "solid"), ("to the left", "min", "dash")):
-                line = {"color": colour, "dash": dash}
-                label = f"{_plain(building)}, {side}"
-                curve = {"name": label, "mode": "lines+markers", "line": line, "y": y}
-                traces.append(curve | {"x": _numbers(storeys[column])})
-        unit = rows["unit"][0] if len(rows) else ""
-        yield PlotlyPicture(title, "", f"{name} [{unit}]", f"level [{length}]", traces)
+        for n, building in enumerate(storeys.buildings(results)):
+            curves = zip(SIDES, _profile(results, building, quantity))
+            for (side, dash), (values, heights) in curves:
+                line = {"color": COLOURS[n % len(COLOURS)], "dash": dash}
+                points = {"x": numbers(values), "y": numbers(heights)}
+                # marks that nobody sees keep lines off the border
+                look = {"mode": "lines+markers", "marker": {"opacity": 0}, "line": line}
+                traces.append({"name": f"{plain(building)}, {side}"} | look | points)
+        unit = dimension if dimension == "%" else units.text(dimension)
+        axes = f"{name} [{unit}]", f"height [{units.length}]"
+        yield PlotlyPicture(f"Extreme {name}s over the height", "", *axes, traces)
+
+
+def _profile(results: Results, building: str, quantity: str) -> Iterator[tuple[Array, Array]]:
+    """Yield values and heights for the largest and the smallest values: of whole storeys, or for
+    accelerations those of the base and the floors.
+    """
+    table, factor = results.table("storey_envelope"), storeys.PROFILES[quantity][2]
+    rows = table[table["building"] == building]
+    feet, floors = rows["level"] - rows["height"], rows["level"]
+    bases = storeys.base_acceleration(results, building)
+    for values, base in zip(storeys.extremes(results, building, quantity), bases):
+        if quantity == "floor acceleration":
+            yield np.append(base, values), np.append(feet[0], floors)
+        else:
+            yield factor * np.repeat(values, 2), np.column_stack([feet, floors]).ravel()
 
 
 def _courses(results: Results) -> Iterator[PlotlyPicture]:
@@ -156,23 +94,34 @@ def _courses(results: Results) -> Iterator[PlotlyPicture]:
     for name, component, title, axis in COURSES:
         if not results.holds(name) or name not in results.histories:
             continue
-        (t, values), labels = results.course(name), results.labels(name)
+        if component and results.holds("base_envelope") and not base_shear.moves(results, component):
+            continue
+        (t, values), labels = results.course(name, jumps=True), results.labels(name)
         kinds = results.coordinates(name)["component"] if component else labels
         chosen = [k for k, kind in enumerate(kinds) if not component or kind == component][:MOST_CURVES]
+        if not chosen:
+            continue
         size = [float(np.abs(values[:, k]).max()) for k in chosen]
         shown = {chosen[k] for k in np.argsort(size)[::-1][:MOST_SHOWN]}
-        traces = [_curve(labels[k], *thinned(t, values[:, k]), k in shown) for k in chosen]
         note = "" if len(shown) == len(chosen) else "A click on a name shows its curve, or hides it."
+        traces = []
+        for k in chosen:
+            points = t, values[:, k]
+            if name == "contact/force":
+                points = with_peaks(*points, of_contact(results, labels[k]))
+            traces.append(_curve(labels[k], *thinned(*points), k in shown))
         if name == "contact/force":
             traces += _peaks(results)
             note = f"The marks are the peaks in the table of collisions. {note}".strip()
+        if name == "contact/gap":
+            note = f"Below zero a contact is pressed. {note}".strip()
         unit = results.history_units(name)[chosen[0]]
         x, y = f"time [{results.units.time}]", f"{axis} [{unit}]"
         yield PlotlyPicture(title, note, x, y, traces, time=True)
 
 
 def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
-    curve = {"name": _plain(name), "mode": "lines", "x": _numbers(x), "y": _numbers(y)}
+    curve = {"name": plain(name), "mode": "lines", "x": numbers(x), "y": numbers(y)}
     return curve if shown else curve | {"visible": "legendonly"}
 
 
@@ -183,8 +132,8 @@ def _peaks(results: Results) -> Iterator[Trace]:
         hard = table[np.isfinite(table["peak_force"])]
         yield {
             "name": "peaks", "mode": "markers", "marker": {"symbol": "x", "size": 6, "color": "#333"},
-            "x": _numbers(hard["t_peak"]), "y": _numbers(hard["peak_force"]),
-            "text": [_plain(c) for c in hard["contact"]],
+            "x": numbers(hard["t_peak"]), "y": numbers(hard["peak_force"]),
+            "text": [plain(c) for c in hard["contact"]],
         }  # fmt: skip
 
 
@@ -231,13 +180,3 @@ def thinned(t: Array, values: Array) -> tuple[Array, Array]:
         keep |= {start + int(np.argmin(window)), start + int(np.argmax(window))}
     chosen = sorted(keep)
     return t[chosen], values[chosen]
-
-
-def _numbers(values: Any) -> list[float | None]:
-    """Numbers rounded to seven digits, enough for any screen; None for one that is not finite."""
-    return [float(f"{v:.7g}") if math.isfinite(v) else None for v in values]
-
-
-def _plain(text: str) -> str:
-    """Text escaped so that plotly.js interprets none of it as markup."""
-    return escape(text, quote=False)
