@@ -103,7 +103,8 @@ def test_texts_sort_too_and_rows_stay_whole(shown: Any) -> None:
 def test_pictures_zoom_and_return(shown: Any) -> None:
     tab, _, complaints = shown
     assert tab.locator(".picture .main-svg").count() >= 2 * tab.locator(".picture").count()
-    place = "#p2"
+    titles = tab.locator("figure h3").all_inner_texts()
+    place, last = f"#p{titles.index('Ground acceleration') + 1}", f"#p{titles.index('Energies') + 1}"
     tab.locator(place).scroll_into_view_if_needed()
     span = f"() => document.querySelector('{place}')._fullLayout.xaxis.range"
     low, high = tab.evaluate(span)
@@ -117,9 +118,11 @@ def test_pictures_zoom_and_return(shown: Any) -> None:
     near, far = tab.evaluate(span)
     assert near == pytest.approx(low + 0.25 * (high - low), abs=0.01 * (high - low))
     assert far == pytest.approx(low + 0.5 * (high - low), abs=0.01 * (high - low))
+    follower = span.replace(place, last)
+    assert tab.evaluate(follower) == [near, far]
     tab.mouse.dblclick(box["x"] + 0.5 * box["width"], y)
     tab.wait_for_timeout(300)
-    assert tab.evaluate(span) == pytest.approx([low, high])
+    assert tab.evaluate(span) == pytest.approx([low, high]) == tab.evaluate(follower)
     assert not complaints
 
 
@@ -210,6 +213,36 @@ def test_pictures_over_time_show_the_same_time(fresh: Any) -> None:
     fresh.evaluate(zoom, {"xaxis.range": list(whole)})
     fresh.wait_for_timeout(500)
     assert spans() == ({whole}, others)
+
+
+def test_pictures_over_time_are_in_line(fresh: Any) -> None:
+    """But those with long names."""
+    edges = """() => [...document.querySelectorAll(".picture")]
+      .filter((p) => p.layout.xaxis.title.text.startsWith("time"))
+      .filter((p) => p.data.every((trace) => trace.name.length < 24))
+      .map((p) => p.querySelector(".nsewdrag").getBoundingClientRect())
+      .map((box) => [Math.round(box.left), Math.round(box.right)].join())"""
+    places = fresh.evaluate(edges)
+    assert len(places) > 2 and len(set(places)) == 1
+
+
+def test_the_wheel_moves_the_page_and_zooms_with_a_key(fresh: Any) -> None:
+    fresh.locator("#p4").scroll_into_view_if_needed()
+    span = "() => document.querySelector('#p4').layout.xaxis.range"
+    start = fresh.evaluate("scrollY"), fresh.evaluate(span)
+    box = fresh.locator("#p4 .nsewdrag").bounding_box()
+    fresh.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    fresh.mouse.wheel(0, -100)
+    fresh.wait_for_timeout(500)
+    assert fresh.evaluate("scrollY") == start[0] - 100 and fresh.evaluate(span) == start[1]
+    box = fresh.locator("#p4 .nsewdrag").bounding_box()
+    fresh.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    fresh.keyboard.down("Control")
+    fresh.mouse.wheel(0, -100)
+    fresh.keyboard.up("Control")
+    fresh.wait_for_timeout(500)
+    (low, high), (near, far) = start[1], fresh.evaluate(span)
+    assert far - near < 0.99 * (high - low)
 
 
 def test_paper_shows_all_and_keeps_rows_and_pictures_whole(fresh: Any) -> None:

@@ -4,6 +4,7 @@ const PAPER = 690; // width of a picture on paper [px]: A4 within the margins of
 const PRINT_SIZE = 8 / 10.5; // of texts on paper to those on the screen, see page.css
 const LEAST = 0.8; // size to which a table shrinks before its texts are wrapped
 const BESIDE = 600; // least width of a picture with the names of its curves beside it [px]
+const NAMES = 210; // room for names beside pictures over time, whose axes are in line then [px]
 const ROW = 19; // height of a line of names [px]
 
 // What a cell is sorted by: the number that it begins with, then its text. Cells that begin with a text
@@ -61,13 +62,14 @@ function restoreTables() {
 function arranged(figure, width, height = width < BESIDE ? 320 : 400) {
   if (width >= BESIDE || !figure.named) {
     const legend = { orientation: "v", x: 1.02, y: 1, yanchor: "top", yref: "paper", maxheight: 1 };
-    return { width, height, margin: { l: 70, r: 20, t: 10, b: 50 }, legend };
+    const right = figure.time && width >= BESIDE ? NAMES : 20;
+    return { width, height, margin: { l: 70, r: right, t: 10, b: 50 }, legend };
   }
   const longest = Math.max(...figure.traces.map((trace) => trace.name.length));
-  const columns = Math.max(1, Math.floor((width - 70) / (6.5 * longest + 45)));
+  const columns = Math.max(1, Math.floor((width - 80) / (6.5 * longest + 45)));
   const names = ROW * Math.min(12, Math.ceil(figure.traces.length / columns)) + 10;
   const legend = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container", maxheight: names };
-  return { width, height: height + names, margin: { l: 60, r: 10, t: 30, b: 55 + names }, legend };
+  return { width, height: height + names, margin: { l: 70, r: 10, t: 30, b: 55 + names }, legend };
 }
 
 const roomOf = (figure) => figure.place.parentElement.clientWidth;
@@ -88,6 +90,10 @@ function draw(figure, touch) {
     yaxis: axis(figure.y, figure.equal ? { scaleanchor: "x", scaleratio: 1 } : {}),
     showlegend: figure.named,
   };
+  // a wheel without the key Ctrl moves the page, or the names if there are many
+  figure.place.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.target.closest(".legend")) event.stopPropagation();
+  }, { capture: true });
   Plotly.newPlot(figure.place, traces, layout, { displaylogo: false, scrollZoom: !touch });
 }
 

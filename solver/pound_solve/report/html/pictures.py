@@ -68,7 +68,7 @@ def _profiles(results: Results) -> Iterator[PlotlyPicture]:
                 points = {"x": numbers(values), "y": numbers(heights)}
                 # marks that nobody sees keep lines off the border
                 look = {"mode": "lines+markers", "marker": {"opacity": 0}, "line": line}
-                traces.append({"name": f"{plain(building)}, {side}"} | look | points)
+                traces.append({"name": plain(f"{building}, {side}")} | look | points)
         unit = dimension if dimension == "%" else units.text(dimension)
         axes = f"{name} [{unit}]", f"height [{units.length}]"
         yield PlotlyPicture(f"Extreme {name}s over the height", "", *axes, traces)
