@@ -226,6 +226,11 @@ def test_pictures_over_time_are_in_line(fresh: Any) -> None:
     assert len(places) > 2 and len(set(places)) == 1
 
 
+def test_numbers_at_axes_have_no_prefixes(fresh: Any) -> None:
+    texts = fresh.locator(".xtick text, .ytick text").all_text_contents()
+    assert len(texts) > 30 and not [text for text in texts if set(text) - set("0123456789.\u2212+E")]
+
+
 def test_the_wheel_moves_the_page_and_zooms_with_a_key(fresh: Any) -> None:
     fresh.locator("#p4").scroll_into_view_if_needed()
     span = "() => document.querySelector('#p4').layout.xaxis.range"

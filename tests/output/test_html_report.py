@@ -273,6 +273,17 @@ def test_profiles_show_both_sides_of_every_storey() -> None:
     np.testing.assert_allclose([right["y"], left["y"]], [[0.0, *levels]] * 2, rtol=1e-6)
 
 
+def test_forces_over_overlaps_are_those_of_closed_contacts(results: Results) -> None:
+    (picture,) = [p for p in pictures(results) if p.title == "Contact forces over overlaps"]
+    (curve,) = picture.traces
+    gap, force = (results.course(f"contact/{name}", jumps=True)[1][:, 0] for name in ("gap", "force"))
+    points = {(x, y) for x, y in zip(curve["x"], curve["y"]) if x is not None}
+    pressed = (gap <= 0.0) | (force != 0.0)
+    assert points == {(round_7(-g), round_7(f)) for g, f in zip(gap[pressed], force[pressed])}
+    closures = np.count_nonzero(np.diff(np.append(0, pressed)) == 1)
+    assert curve["x"].count(None) == curve["y"].count(None) == closures - 1 > 2
+
+
 def test_modes_have_their_periods_and_one_is_visible(results: Results) -> None:
     (picture,) = [p for p in pictures(results) if p.title == "Mode shapes"]
     rest, *shapes = picture.traces

@@ -76,7 +76,7 @@ const roomOf = (figure) => figure.place.parentElement.clientWidth;
 
 function draw(figure, touch) {
   const axis = (title, more) => ({ title: { text: title }, gridcolor: "#e3e6e9",
-    zeroline: !figure.equal, zerolinecolor: "#999", ...more });
+    exponentformat: "E", minexponent: 5, zeroline: !figure.equal, zerolinecolor: "#999", ...more });
   // ten colours, and other dashes for the next ten
   const dash = (place) => ["solid", "dash", "dot", "dashdot"][Math.floor(place / 10) % 4];
   const traces = figure.traces.map((trace, place) => ({

@@ -49,7 +49,7 @@ COLOURS: Final = (
 def pictures(results: Results) -> list[PlotlyPicture]:
     """Return all pictures for which the results have data."""
     makers: tuple[Callable[[Results], Iterator[PlotlyPicture]], ...] = (
-        structure, mode_shapes, _profiles, _courses, yielded, _loops, _capacity,
+        structure, mode_shapes, _profiles, _courses, _overlaps, yielded, _loops, _capacity,
     )  # fmt: skip
     return [picture for make in makers for picture in make(results) if picture.traces]
 
@@ -135,6 +135,28 @@ def _peaks(results: Results) -> Iterator[Trace]:
             "x": numbers(hard["t_peak"]), "y": numbers(hard["peak_force"]),
             "text": [plain(c) for c in hard["contact"]],
         }  # fmt: skip
+
+
+def _overlaps(results: Results) -> Iterator[PlotlyPicture]:
+    """Picture of contact forces against overlaps, of all contacts that closed."""
+    if not (results.holds("contact/force") and results.holds("contact/gap")):
+        return
+    forces, gaps = (results.course(f"contact/{name}", jumps=True)[1] for name in ("force", "gap"))
+    labels, units = results.labels("contact/force"), results.units
+    hardest = np.argsort(-forces.max(axis=0, initial=0.0), kind="stable").tolist()
+    closed = [k for k in hardest if forces[:, k].max(initial=0.0) > 0.0][:MOST_LOOPS]
+    traces = [_curve(labels[k], *_pressed(gaps[:, k], forces[:, k]), n == 0) for n, k in enumerate(closed)]
+    note = "At first the one with the largest force is shown. " if len(closed) > 1 else ""
+    note += "The corners are those of the stored instants."
+    x, y = f"overlap [{units.length}]", f"contact force [{units.force}]"
+    yield PlotlyPicture("Contact forces over overlaps", note, x, y, traces)
+
+
+def _pressed(gap: Array, force: Array) -> tuple[Array, Array]:
+    """Overlaps and forces of a contact while it is closed, NaN between closures."""
+    rows = np.flatnonzero((gap <= 0.0) | (force != 0.0))
+    breaks = np.flatnonzero(np.diff(rows) > 1) + 1
+    return np.insert(-gap[rows], breaks, np.nan), np.insert(force[rows], breaks, np.nan)
 
 
 def _loops(results: Results) -> Iterator[PlotlyPicture]:
