@@ -197,7 +197,9 @@ def test_columns_of_numbers_stand_to_the_right(done: Results) -> None:
     number = re.compile(r"-?|-?(\d+\.?\d*(e[-+]?\d+)?|inf)", re.I)
     columns = 0
     for table in re.findall("<tbody>(.*?)</tbody>", page(done), re.S):
-        rows = [re.findall(r'<td class="(\w+)">(.*?)</td>', row) for row in table.split("</tr>")[:-1]]
+        rows = [
+            re.findall(r'<td class="(\w+)(?: long)?">(.*?)</td>', row) for row in table.split("</tr>")[:-1]
+        ]
         for cells in zip(*rows):
             (kind,) = {kind for kind, _ in cells}
             columns += kind == "number"

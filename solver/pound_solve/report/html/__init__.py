@@ -27,6 +27,7 @@ POLICY: Final = (
     "form-action 'none'; base-uri 'none'"
 )
 
+_LONG: Final = 22  #: characters from which on a text is wrapped on a narrow screen
 #: a cell that is a number, or has no value
 _NUMBER: Final = re.compile(r"-?|[-+]?(\d+\.?\d*(E[-+]?\d+)?|inf)", re.I)
 #: numbers and dates that a browser would break at their hyphens
@@ -148,7 +149,7 @@ def _part(results: Results, part: ReportTable) -> Iterator[str]:
     starts = set(accumulate(blocks[:-1])) if len(blocks) < len(part.rows) else set()
     for place, row in enumerate(zip(*(cells[c.name] for c in columns))):
         yield '<tr class="block">' if place in starts else "<tr>"
-        yield from (f'<td class="{kind}">{_text(cell)}</td>' for kind, cell in zip(kinds, row))
+        yield from map(_cell, kinds, row)
         yield "</tr>\n"
     yield "</tbody></table></div>\n"
     if part.more:
@@ -157,6 +158,11 @@ def _part(results: Results, part: ReportTable) -> Iterator[str]:
 
 def _are_numbers(cells: Sequence[str]) -> bool:
     return all(map(_NUMBER.fullmatch, cells))
+
+
+def _cell(kind: str, text: str) -> str:
+    kind += " long" if len(text) >= _LONG else ""
+    return f'<td class="{kind}">{_text(text)}</td>'
 
 
 def _head_line(line: str) -> str:

@@ -66,7 +66,7 @@ function arranged(figure, width, height = width < BESIDE ? 320 : 400) {
     return { width, height, margin: { l: 70, r: right, t: 10, b: 50 }, legend };
   }
   const longest = Math.max(...figure.traces.map((trace) => trace.name.length));
-  const columns = Math.max(1, Math.floor((width - 80) / (6.5 * longest + 45)));
+  const columns = Math.max(1, Math.floor((width - 80) / (6.5 * longest + 50)));
   const names = ROW * Math.min(12, Math.ceil(figure.traces.length / columns)) + 10;
   const legend = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container", maxheight: names };
   return { width, height: height + names, margin: { l: 70, r: 10, t: 30, b: 55 + names }, legend };
@@ -75,8 +75,10 @@ function arranged(figure, width, height = width < BESIDE ? 320 : 400) {
 const roomOf = (figure) => figure.place.parentElement.clientWidth;
 
 function draw(figure, touch) {
-  const axis = (title, more) => ({ title: { text: title }, gridcolor: "#e3e6e9",
-    exponentformat: "E", minexponent: 5, zeroline: !figure.equal, zerolinecolor: "#999", ...more });
+  const axis = (title, more) => ({
+    title: { text: title }, gridcolor: "#e3e6e9", zeroline: !figure.equal, zerolinecolor: "#999",
+    exponentformat: "E", minexponent: 5, ...more,
+  });
   // ten colours, and other dashes for the next ten
   const dash = (place) => ["solid", "dash", "dot", "dashdot"][Math.floor(place / 10) % 4];
   const traces = figure.traces.map((trace, place) => ({
@@ -84,6 +86,7 @@ function draw(figure, touch) {
   }));
   const layout = {
     ...arranged(figure, roomOf(figure)),
+    separators: ".", // none between thousands
     hovermode: figure.equal ? "closest" : "x unified",
     dragmode: touch ? false : "zoom", // a finger moves the page
     xaxis: axis(figure.x, figure.range ? { range: [...figure.range] } : {}),
