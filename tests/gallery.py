@@ -42,14 +42,14 @@ def draw() -> None:
     """Draw all of them into the folder of the manual's pictures."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        style = folder / "small.mplstyle"
-        style.write_text(f"savefig.dpi: {RESOLUTION}\n", "utf-8")
+        small = folder / "small.mplstyle"
+        small.write_text(f"savefig.dpi: {RESOLUTION}\n", "utf-8")
         call(FRAMES, "-o", folder / "pounding")
         call(FRAMES, "-o", folder / "apart", "--set", "pounding=0")
         call(PUSHED, "-o", folder)
         call(STUDIED, "-o", folder)
         call("study", STUDIED, "--methods", "EXACT,NEWMARK,CENTRAL", "-o", folder)
-        look = "--as", "png", "--style", style, "-o", folder / "drawn"
+        look = "--as", "png", "--style", small, "-o", folder / "drawn"
         frames, apart = (folder / run / f"{FRAMES.stem}.h5" for run in ("pounding", "apart"))
         call("plot", frames, *look)
         call("plot", frames, *AT_PEAK, "--at-peak", "largest", *look)

@@ -27,7 +27,7 @@ def pushed(text: str, card: str, swap=lambda s: s) -> pushover.PushoverResult:
     s = swap(assemble(model_of(f"{text}\nANALYSIS\n STATIC\n PUSHOVER {card}\n")))
     state = static.solve(s)
     (own,) = (c for c in s.model.analyses if c.spec.name == "PUSHOVER")
-    assert not pushover.mistakes(s)
+    assert not pushover.mistaken_cards(s)
     return pushover.push(s.stressed(state.axial), state, own)
 
 

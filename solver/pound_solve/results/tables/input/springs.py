@@ -8,11 +8,12 @@ from math import nan
 from pound_solve.results.columns import ELEMENT
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.structure.elements.base import Role
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each spring and hinge with a hysteresis rule."""
+    from pound_solve.structure.elements.base import Role  # not needed to read a report
+
     units = run.model.units
     for s in run.structure.laws:
         if s.role is Role.SPRING:
