@@ -289,7 +289,7 @@ def test_only_a_stiffness_below_zero_snaps_through(hardening: float, snaps: bool
             law_springs=[SimpleNamespace(law=law)],
             law_state=lambda i, state=state: state,
             latest=[[0, 0, 1, 5.0]],
-            state=SimpleNamespace(time=5.0),
+            sim=SimpleNamespace(run=SimpleNamespace(time=5.0)),
         )
         assert KernelEngine._softens(stub) is snaps
 
@@ -318,7 +318,7 @@ def test_a_falling_branch_counts_where_the_law_has_been_on_it_at_this_instant(fa
         law_springs=[SimpleNamespace(law=law)],
         law_state=lambda i: (0,),
         latest=[[0, *change, 5.0] for change in changes],
-        state=SimpleNamespace(time=5.0),
+        sim=SimpleNamespace(run=SimpleNamespace(time=5.0)),
     )
     assert KernelEngine._softens(stub) is falls
 
