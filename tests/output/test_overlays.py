@@ -213,6 +213,8 @@ def test_hinges_and_loads_stand_where_they_act(runs: list[Results]) -> None:
         ),
         (["{inp}", "{h5}"], "is a deck: runs are drawn over each other from their results files"),
         (["{h5}", "--set", "gap=1"], "--set and --records belong to a deck"),
+        (["{h5}", "{h5}", "gaps", "--member", "floor"], "--member belongs to pictures of one run"),
+        (["{h5}", "--over", "gap"], "--over belongs to a sweep"),
         (["{h5}", "nonsense"], "there is no picture nonsense: choose from summary"),
     ],
 )

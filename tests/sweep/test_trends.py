@@ -74,9 +74,15 @@ def test_the_verb_plot_draws_a_sweep(tmp_path: Path, capsys: Any) -> None:
     pytest.importorskip("matplotlib")
     path = tmp_path / "sweep.h5"
     write(sweep_of(), path)
-    for words, status in (([], 0), (["contact_force", "--over", "gap"], 0), (["--over", "k"], 2)):
-        assert main(["plot", str(path), *words]) == status
-    out, err = capsys.readouterr()
-    assert out.splitlines() == [str(tmp_path / "sweep_trends.svg")] * 2 and "there are: gap" in err
+    for words, told in (
+        ([], ""),
+        (["contact_force", "--over", "gap"], ""),
+        (["--over", "k"], "there are: gap"),
+        (["--as", "gif"], "the picture of a sweep is written as svg, png, pdf"),
+        (["--time", "0"], "--time does not belong to the picture of a sweep"),
+    ):
+        assert main(["plot", str(path), *words]) == (2 if told else 0)
+        out, err = capsys.readouterr()
+        assert out == ("" if told else f"{tmp_path / 'sweep_trends.svg'}\n") and told in err
     text = (tmp_path / "sweep_trends.svg").read_text("utf-8")
     assert "pga 0.4, median" in text and "contact force [kN]" in text and ">gap<" in text

@@ -26,6 +26,8 @@ EXAMPLES = (
 )
 NO_MATPLOTLIB = 'pictures need matplotlib: pip install "pound-solve[plot]"'
 OF_A_DECK = ("frame", "loads")  #: pictures that need no run
+#: options of runs and decks
+OF_RUNS = ("member", "time", "at_peak", "between", "style", "set", "records")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -80,6 +82,8 @@ def execute(args: argparse.Namespace) -> int:
             print(f"{picture.name:<14} {picture.shows}")
         return common.DONE
     if Sweep.is_of(args.file):
+        if wrong := _wrong_of_sweep(args):
+            return common.complain(wrong, common.MISTAKES)
         return _trends(args)
     args.pictures = [word for word in args.words if word in plot.PICTURES or not _is_file(word)]
     args.files = [args.file, *(word for word in args.words if word not in args.pictures)]
@@ -96,6 +100,16 @@ def execute(args: argparse.Namespace) -> int:
             return _draw(runs, args, choice)
     except ImportError:
         return common.complain(NO_MATPLOTLIB, common.MISTAKES)
+
+
+def _wrong_of_sweep(args: argparse.Namespace) -> str:
+    """Message on an option that the picture of a sweep does not have; empty without one."""
+    for option in OF_RUNS:
+        if getattr(args, option) not in (None, []):
+            return f"--{option.replace('_', '-')} does not belong to the picture of a sweep"
+    if args.ending and args.ending not in IMAGE_FORMATS:
+        return f"the picture of a sweep is written as {', '.join(IMAGE_FORMATS)}"
+    return ""
 
 
 def _trends(args: argparse.Namespace) -> int:
@@ -145,6 +159,11 @@ def _wrong(args: argparse.Namespace, choice: Choice) -> str:
 
     if args.decks and len(args.files) > 1:
         return f"{args.decks[0]} is a deck: runs are drawn over each other from their results files (.h5)"
+    if args.over:
+        return f"--over belongs to a sweep, and {args.file} is none"
+    if len(args.files) > 1 and (options := choice.stated - {"between"}):
+        option = sorted(options)[0].replace("_", "-")
+        return f"--{option} belongs to pictures of one run: name one file"
     if (args.set or args.records) and not args.decks:
         return f"--set and --records belong to a deck, and {args.file} is none"
     for name in args.pictures:
