@@ -257,16 +257,22 @@ def test_the_overview_names_the_largest_of_all(tmp_path):
     assert (summary["drift"], summary["drift_storey"]) == (100 * ratio, 1)
 
 
-def test_a_bearing_is_no_storey(tmp_path):
-    """It moves further than it is high, and may stay there; drift ratios are those of the storey above."""
-    text = (
+def on_a_bearing(drift: str, item: str = "") -> str:
+    """The deck with a bearing below, from the level {base} up to the foot, whose drift has that name."""
+    label = drift.upper()
+    return (
         DECK.replace("1 0 0 FIX", "5 0 {base} FIX=XYR\n 1 0 0 FIX")
         .replace("1 0 0 FIX=XYR", "1 0 0 FIX=YR")
-        .replace("1 COL 1 2", "1 COL 1 2\n 3 BEARING 5 1")
-        .replace("PROPS", "PROPS\n BEARING SPRING KX=300 FX=20 RULE=BILINEAR R=0.1")
+        .replace("1 COL 1 2", f"1 COL 1 2\n 3 {label} 5 1")
+        .replace("PROPS", f"PROPS\n {label} SPRING KX=300 FX=20 RULE=BILINEAR R=0.1 {item}")
         .replace("2,3 100", "1,2,3 100")
-        .replace('"storey" 1 2', '"storey" 1 2\n "bearing" 5 1')
+        .replace('"storey" 1 2', f'"storey" 1 2\n "{drift}" 5 1')
     )
+
+
+def test_a_bearing_is_no_storey(tmp_path):
+    """It moves further than it is high, and may stay there; drift ratios are those of the storey above."""
+    text = on_a_bearing("bearing")
     for base, name, storey in ((-0.2, "storey", 2), (-2.0, "bearing", 1)):
         deck = tmp_path / "model.inp"
         deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=3.0, base=base))
@@ -283,16 +289,9 @@ def test_a_bearing_is_no_storey(tmp_path):
 
 def test_a_bearing_that_is_marked_has_its_displacement_in_lengths(tmp_path):
     """However high the layer, its drift is no ratio of a storey."""
-    text = (
-        DECK.replace("1 0 0 FIX", "5 0 -2 FIX=XYR\n 1 0 0 FIX")
-        .replace("1 0 0 FIX=XYR", "1 0 0 FIX=YR")
-        .replace("1 COL 1 2", "1 COL 1 2\n 3 ISOLATOR 5 1")
-        .replace("PROPS", "PROPS\n ISOLATOR SPRING KX=300 FX=20 RULE=BILINEAR R=0.1 BEARING=YES")
-        .replace("2,3 100", "1,2,3 100")
-        .replace('"storey" 1 2', '"storey" 1 2\n "isolator" 5 1')
-    )
+    text = on_a_bearing("isolator", "BEARING=YES")
     deck = tmp_path / "model.inp"
-    deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=3.0))
+    deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=3.0, base=-2.0))
     results = results_of(deck)
     (row,) = results.table("bearings")
     (layer, storey) = results.table("storey_envelope")

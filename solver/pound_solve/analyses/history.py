@@ -243,18 +243,13 @@ class HistoryResult:
         """Return the name and the largest absolute ratio of every drift; NaN if it has no height, or is
         that of a bearing.
         """
-        model = self.system.structure.model
+        model, least = self.system.structure.model, self._lowest_storey
         bearings = {frozenset(ends) for ends in marked_bearings(model)}
-        known = (
-            h >= self._lowest_storey and frozenset((card["I"], card["J"])) not in bearings
-            for card, h in zip(model.drifts, drift_heights(model))
-        )
-        return [
-            (name, max(abs(e.high), abs(e.low)) / h if is_storey else math.nan)
-            for name, e, h, is_storey in zip(
-                self.items.drifts.names, self.returned.peaks.monitored, drift_heights(model), known
-            )
-        ]
+        ratios = []
+        for card, h, e in zip(model.drifts, drift_heights(model), self.returned.peaks.monitored):
+            is_storey = h >= least and frozenset((card["I"], card["J"])) not in bearings
+            ratios.append((card["NAME"], max(abs(e.high), abs(e.low)) / h if is_storey else math.nan))
+        return ratios
 
     def storey_drifts(self) -> list[StoreyDrift]:
         """Return the largest drift ratio of every storey of the buildings, without layers of bearings."""

@@ -71,7 +71,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not words:
         print(f"pound-solve {__version__}: {PURPOSE}\n\n{listed(FIRST_STEPS)}")
         return DONE
-    if words and words[0] not in (*VERBS, "-h", "--help", "--version"):
+    if words[0] not in (*VERBS, "-h", "--help", "--version"):
         if _misspelt(words):
             near = get_close_matches(words[0], VERBS, 1)
             hint = f"; did you mean {near[0]}?" if near else ""

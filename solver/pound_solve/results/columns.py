@@ -10,6 +10,10 @@ ITEM = Column("item", doc="name of the value")
 VALUE = Column("value", doc="value with its unit, as text")
 DEFAULT = Column("default", " ", doc="`*` for a default value")
 UNIT = Column("unit", doc="unit of the numbers in this row")
+BUILDING = Column("building", doc="name of the building")
+STOREY = Column("storey", fmt="int", doc="number of the storey, from below")
+COMPONENT = Column("component", "comp.", doc="`X`, `Y` or `R` of a spring, `hinge I`, ... of a member")
+RULE = Column("rule", doc="hysteresis rule")
 CONTACT = Column("contact", doc="number or name of the contact element")
 
 

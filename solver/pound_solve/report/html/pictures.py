@@ -62,7 +62,7 @@ def _profiles(results: Results) -> Iterator[PlotlyPicture]:
     for quantity, (name, dimension, _) in storeys.PROFILES.items():
         traces = []
         for n, building in enumerate(storeys.buildings(results)):
-            curves = zip(SIDES, _profile(results, building, quantity))
+            curves = zip(SIDES, storeys.profile_points(results, building, quantity))
             for (side, dash), (values, heights) in curves:
                 line = {"color": COLOURS[n % len(COLOURS)], "dash": dash}
                 points = {"x": numbers(values), "y": numbers(heights)}
@@ -72,21 +72,6 @@ def _profiles(results: Results) -> Iterator[PlotlyPicture]:
         unit = dimension if dimension == "%" else units.text(dimension)
         axes = f"{name} [{unit}]", f"height [{units.length}]"
         yield PlotlyPicture(f"Extreme {name}s over the height", "", *axes, traces)
-
-
-def _profile(results: Results, building: str, quantity: str) -> Iterator[tuple[Array, Array]]:
-    """Yield values and heights for the largest and the smallest values: of whole storeys, or for
-    accelerations those of the base and the floors.
-    """
-    table, factor = results.table("storey_envelope"), storeys.PROFILES[quantity][2]
-    rows = table[table["building"] == building]
-    feet, floors = rows["level"] - rows["height"], rows["level"]
-    bases = storeys.base_acceleration(results, building)
-    for values, base in zip(storeys.extremes(results, building, quantity), bases):
-        if quantity == "floor acceleration":
-            yield np.append(base, values), np.append(feet[0], floors)
-        else:
-            yield factor * np.repeat(values, 2), np.column_stack([feet, floors]).ravel()
 
 
 def _courses(results: Results) -> Iterator[PlotlyPicture]:

@@ -80,11 +80,8 @@ def units_of_largest(
 def over_time(runs: Sequence[Results], panels: Sequence[TimePanel], choice: Choice, title: str = "") -> Any:
     """Figure of histories over time below each other, with a curve for each run that has them."""
     figure = style.figure(9.5, 2.0 * len(panels) + 0.9, title)
-    first = None
-    for n, panel in enumerate(panels):
-        axes = figure.add_subplot(len(panels), 1, n + 1, sharex=first)
-        first = first or axes
-        last = n == len(panels) - 1
+    for axes, panel in zip(style.stacked(figure, len(panels)), panels):
+        last = panel is panels[-1]
         time = f"time [{runs[0].units.time}]" if last else ""
         style.grid(axes, time, f"{panel.quantity}\n[{panel.unit}]")
         axes.set_title(panel.label, loc="left")

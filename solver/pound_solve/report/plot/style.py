@@ -156,6 +156,13 @@ def legend_below(picture: Any, all_axes: Sequence[Any]) -> None:
     picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=min(len(named), 4))
 
 
+def stacked(picture: Any, count: int) -> list[Any]:
+    """Add `count` axes below each other, which share the X axis."""
+    axes = [picture.add_subplot(count, 1, 1)]
+    axes += [picture.add_subplot(count, 1, n, sharex=axes[0]) for n in range(2, count + 1)]
+    return axes
+
+
 def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tuple[Any, Sequence[Any]]:
     """Make a figure of `count` axes in up to four columns."""
     columns = min(4, max(1, round(count**0.5 + 0.2)))

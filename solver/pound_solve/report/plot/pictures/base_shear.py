@@ -23,11 +23,8 @@ def base_shear(results: Results, choice: Choice) -> Any:
     if not shown:
         raise Nothing("forces on the ground")
     figure = style.figure(9.5, 2.4 * len(shown) + 0.4, results.title)
-    first = None
-    for n, quantity in enumerate(shown):
-        axes = figure.add_subplot(len(shown), 1, n + 1, sharex=first)
-        first = first or axes
-        panel(axes, results, quantity, choice, n == len(shown) - 1)
+    for axes, quantity in zip(style.stacked(figure, len(shown)), shown):
+        panel(axes, results, quantity, choice, quantity == shown[-1])
     return figure
 
 

@@ -24,22 +24,20 @@ def gaps(results: Results, choice: Choice) -> Any:
     columns = chosen_contacts(results, choice) or sorted(nearest.tolist())
     more = f": {len(columns)} of {len(names)}" if len(columns) < len(names) else ""
     figure = style.figure(9.0, 1.7 * len(columns) + 0.9, f"Gaps{more}; below zero the contact is pressed")
-    span, first = choice.span(results, t), None
-    for n, k in enumerate(columns):
-        axes = figure.add_subplot(len(columns), 1, n + 1, sharex=first)
-        first = first or axes
-        last = n == len(columns) - 1
+    span = choice.span(results, t)
+    for axes, k in zip(style.stacked(figure, len(columns)), columns):
+        last = k == columns[-1]
         style.grid(axes, f"time [{results.units.time}]" if last else "", f"gap [{unit}]")
         axes.plot(t[span], values[span, k], color=style.BLUE, linestyle="-", linewidth=1.0)
         axes.axhline(0.0, color=style.RED, linewidth=0.8)
-        axes.set_title(f"{names[k]}: {_told(results, names[k])}")
+        axes.set_title(f"{names[k]}: {_initial_and_smallest(results, names[k])}")
         axes.tick_params(labelbottom=last)
     if choice.between:
         figure.axes[-1].set_xlim(*choice.between)
     return figure
 
 
-def _told(results: Results, name: str) -> str:
+def _initial_and_smallest(results: Results, name: str) -> str:
     """Initial and smallest gap of a contact as text; the smallest one is that between samples too."""
     texts, unit = [], results.units.length
     for table, column, word in (

@@ -20,11 +20,8 @@ def histories(results: Results, choice: Choice) -> Any:
     if not wanted:
         raise Nothing("ground motions, no drifts, no contacts")
     figure = style.figure(9.5, 2.4 * len(wanted) + 0.5, results.title)
-    first = None
-    for n, name in enumerate(wanted):
-        axes = figure.add_subplot(len(wanted), 1, n + 1, sharex=first)
-        first = first or axes
-        courses.panel(axes, results, name, choice, n == len(wanted) - 1)
+    for axes, name in zip(style.stacked(figure, len(wanted)), wanted):
+        courses.panel(axes, results, name, choice, name == wanted[-1])
     return figure
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
@@ -89,21 +88,24 @@ def label_axes(axes: Any, results: Results, quantity: str) -> None:
 
 def profile(axes: Any, results: Results, name: str, quantity: str, look: Mapping[str, Any]) -> None:
     """Draw one profile of one building."""
-    table, factor = results.table("storey_envelope"), PROFILES[quantity][2]
-    storeys = table[table["building"] == name]
     sides: tuple[dict[str, str | None], ...] = ({"linestyle": "-"}, {"linestyle": "--", "label": None})
-    values_of_sides, bases = extremes(results, name, quantity), base_acceleration(results, name)
-    for values, base, dashes in zip(values_of_sides, bases, sides):
+    marker = "." if quantity == "floor acceleration" else ""
+    for (values, heights), dashes in zip(profile_points(results, name, quantity), sides):
+        axes.plot(values, heights, **{**look, **dashes, "marker": marker})
+
+
+def profile_points(results: Results, name: str, quantity: str) -> Iterator[tuple[Array, Array]]:
+    """Yield values and heights of a profile for the largest and the smallest values: of whole storeys, or
+    for accelerations those of the base and the floors.
+    """
+    table, factor = results.table("storey_envelope"), PROFILES[quantity][2]
+    rows = table[table["building"] == name]
+    feet, floors = rows["level"] - rows["height"], rows["level"]
+    for values, base in zip(extremes(results, name, quantity), base_acceleration(results, name)):
         if quantity == "floor acceleration":
-            at = [_base(storeys), *storeys["level"]]
-            axes.plot([base, *values], at, **{**look, **dashes, "marker": "."})
+            yield np.append(base, values), np.append(feet[0], floors)
         else:
-            steps = np.column_stack([storeys["level"] - storeys["height"], storeys["level"]]).ravel()
-            axes.plot(factor * np.repeat(values, 2), steps, **{**look, **dashes, "marker": ""})
-
-
-def _base(rows: NDArray[Any]) -> float:
-    return float(rows["level"][0] - rows["height"][0])
+            yield factor * np.repeat(values, 2), np.column_stack([feet, floors]).ravel()
 
 
 def extremes(results: Results, name: str, quantity: str) -> tuple[Array, Array]:

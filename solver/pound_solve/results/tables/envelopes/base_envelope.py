@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_solve.results.columns import UNIT, extreme_columns
+from pound_solve.results.columns import BUILDING, UNIT, extreme_columns
 from pound_solve.results.histories.buildings import BASE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_sampled
@@ -26,7 +26,7 @@ TABLE = Table(
     place=40,
     stages=(Stage.SAMPLES,),
     columns=(
-        Column("building", doc="name of the building"),
+        BUILDING,
         Column("quantity", doc="`shear X`, `force Y` or `moment`, which tips towards +x"),
         UNIT,
         *extreme_columns(""),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pound_solve.results.columns import UNIT, extreme_columns
+from pound_solve.results.columns import BUILDING, STOREY, UNIT, extreme_columns
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_sampled
 from pound_solve.results.schema import Column, Row, Stage, Table
@@ -29,8 +29,8 @@ TABLE = Table(
     place=50,
     stages=(Stage.SAMPLES,),
     columns=(
-        Column("building", doc="name of the building"),
-        Column("storey", fmt="int", doc="number of the storey, from below"),
+        BUILDING,
+        STOREY,
         Column("quantity", doc="`drift ratio`, `shear` or `floor acceleration`, of the floor above"),
         UNIT,
         *extreme_columns(""),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import nan
 
-from pound_solve.results.columns import ELEMENT
+from pound_solve.results.columns import COMPONENT, ELEMENT, RULE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -30,12 +30,12 @@ TABLE = Table(
     stages=(Stage.INPUT,),
     columns=(
         ELEMENT,
-        Column("component", "comp.", doc="`X`, `Y` or `R` of a spring, `hinge I`, ... of a member"),
-        Column("rule", doc="hysteresis rule"),
+        COMPONENT,
+        RULE,
         Column("stiffness", "initial\nstiffness", fmt="num", doc="initial stiffness"),
         Column("stiffness_unit", "unit", doc="unit of the stiffness in this row"),
-        Column("yield_plus", "yields\nat", fmt="num", doc="force of first yield, NaN for none"),
-        Column("yield_minus", "and at", fmt="num", doc="the same for negative deformations"),
+        Column("yield_plus", "yield\npositive", fmt="num", doc="force of first yield, NaN for none"),
+        Column("yield_minus", "yield\nnegative", fmt="num", doc="the same for negative deformations"),
         Column("unit", doc="unit of these forces"),
     ),
     rows=rows,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_solve.results.columns import ELEMENT
+from pound_solve.results.columns import COMPONENT, ELEMENT, RULE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_found
 from pound_solve.results.schema import Column, Row, Stage, Table
@@ -37,8 +37,8 @@ TABLE = Table(
     stages=(Stage.PEAKS,),
     columns=(
         ELEMENT,
-        Column("component", "comp.", doc="`X`, `Y` or `R` of a spring, `hinge I`, ... of a member"),
-        Column("rule", doc="hysteresis rule"),
+        COMPONENT,
+        RULE,
         Column("unit", "unit of\nforce", doc="unit of the forces in this row"),
         Column("force_max", "largest\nforce", fmt="short", doc="largest force or moment"),
         Column("force_min", "smallest\nforce", fmt="short", doc="smallest force or moment"),

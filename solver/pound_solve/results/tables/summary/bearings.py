@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_solve.results.columns import time_column
+from pound_solve.results.columns import BUILDING, STOREY, time_column
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_sampled
 from pound_solve.results.schema import Column, Row, Stage, Table
@@ -29,8 +29,8 @@ TABLE = Table(
     place=65,
     stages=(Stage.SAMPLES,),
     columns=(
-        Column("building", doc="name of the building"),
-        Column("storey", fmt="int", doc="number of the layer among the storeys, from below"),
+        BUILDING,
+        STOREY,
         Column("level", "floor\nlevel", "L", "given", doc="height of the floor above the layer"),
         Column("displacement", "largest\ndisp.", "L", "num", doc="largest absolute displacement across it"),
         time_column("t_displacement", "at time", "time of the largest displacement"),

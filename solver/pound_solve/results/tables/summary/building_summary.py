@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pound_solve.results.columns import time_column
+from pound_solve.results.columns import BUILDING, time_column
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -57,7 +57,7 @@ TABLE = Table(
     place=20,
     stages=(Stage.INPUT, Stage.MODAL, Stage.PEAKS),
     columns=(
-        Column("building", doc="name of the building"),
+        BUILDING,
         Column("storeys", fmt="int", doc="number of storeys"),
         Column(
             "period",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pound_solve.results.columns import time_column
+from pound_solve.results.columns import BUILDING, STOREY, time_column
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_sampled
 from pound_solve.results.schema import Column, Row, Stage, Table
@@ -31,8 +31,8 @@ TABLE = Table(
     place=60,
     stages=(Stage.SAMPLES,),
     columns=(
-        Column("building", doc="name of the building"),
-        Column("storey", fmt="int", doc="number of the storey, from below"),
+        BUILDING,
+        STOREY,
         Column("level", "floor\nlevel", "L", "given", doc="height of the floor above the storey"),
         Column("height", "", "L", "given", doc="height of the storey"),
         Column("mass", "floor\nmass", "F*T^2/L", "num", doc="mass of that floor along x"),

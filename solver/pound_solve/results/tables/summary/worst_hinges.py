@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from pound_solve.results.columns import ELEMENT
+from pound_solve.results.columns import ELEMENT, RULE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -74,7 +74,7 @@ TABLE = Table(
         ELEMENT,
         Column("component", "comp.", doc="as in the spring envelopes"),
         Column("location", "place", doc="building, column of a storey or beam of a floor, and its end"),
-        Column("rule", doc="hysteresis rule"),
+        RULE,
         Column("ductility", "ductility", "-", "short", doc="largest absolute deformation over yield"),
         Column(
             "ductility_other",
