@@ -16,6 +16,8 @@ GRAVITY = 900.0  #: on every floor [kN]
 KH, HARD = 2e6, 0.02
 STIFF = 1e11  #: of what stands for rigid [kN/m]
 TARGETS = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
+TURNS = (0.1, -0.05, 0.3, 0.0, 0.35)  #: of the pushover to and fro
+STEP = 0.0005
 
 
 def node(floor: int, line: int) -> int:
@@ -70,8 +72,18 @@ def build() -> None:
 
 
 def main() -> None:
-    """Print load factor by displacement."""
+    """Print load factor by displacement, for one push and for a push to and fro."""
     argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
+    load()
+    roof = node(STOREYS, 0)
+    go(roof, TARGETS)
+    load()
+    print()
+    go(roof, TURNS)
+
+
+def load() -> None:
+    """Build the frame, apply gravity, and prepare the push."""
     build()
     ops.constraints("Transformation")
     ops.numberer("RCM")
@@ -86,15 +98,17 @@ def main() -> None:
     ops.pattern("Plain", 2, 2)
     for floor in range(1, STOREYS + 1):
         ops.load(node(floor, 0), floor / 6.0, 0.0, 0.0)
-    roof, step = node(STOREYS, 0), 0.0005
-    ops.integrator("DisplacementControl", roof, 1, step)
-    ops.analysis("Static")
-    for n in range(1, round(TARGETS[-1] / step) + 1):
-        assert ops.analyze(1) == 0
-        for target in TARGETS:
-            if abs(n * step - target) < 1e-9:
-                shear = ops.getTime()
-                print(f"    ({target}, {shear:.8g}),")
+
+
+def go(roof: int, targets: tuple[float, ...]) -> None:
+    """Go from one displacement of the roof to the next, and print the load factor at each."""
+    now = 0.0
+    for target in targets:
+        ops.integrator("DisplacementControl", roof, 1, STEP if target > now else -STEP)
+        ops.analysis("Static")
+        assert ops.analyze(round(abs(target - now) / STEP)) == 0
+        now = target
+        print(f"    ({target}, {ops.getTime():.8g}),")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ results.
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
@@ -178,3 +179,27 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
         if n.fixed
     }
     return Solved(s, state, u, force, reaction)
+
+
+def hinged_frame() -> str:
+    """Three storeys, two bays and a leaning column: that of benchmarks/opensees_pushover.py."""
+    names = [[100 * i + j + 1 for j in range(4)] for i in range(4)]
+    deck = "GEOMETRY PDELTA\nNODES\n"
+    for i, floor in enumerate(names):
+        for j, n in enumerate(floor):
+            fix = "FIX=XYR" if i == 0 else f"SLAVED=X MASTER={floor[0]}" if j else ""
+            deck += f" {n} {6 * j} {3.5 * i} {fix}\n"
+    deck += "ELEMENTS\n"
+    for i, (low, high) in enumerate(itertools.pairwise(names), 1):
+        for j in range(3):
+            deck += f" {1000 * i + j} COL {low[j]} {high[j]}\n"
+        for j in range(2):
+            deck += f" {1000 * i + 500 + j} BEAM {high[j]} {high[j + 1]}\n"
+        deck += f" {1000 * i + 900} LEAN {low[3]} {high[3]}\n"
+    return f"""{deck}PROPS
+ COL FRAME E=2e8 A=0.03 I=6e-4 RULE=BILINEAR R=0.02 MI=900 MJ=900 KH=2e6
+ BEAM FRAME E=2e8 A=0.02 I=4e-4 RULE=BILINEAR R=0.02 MI=500 MJ=500 KH=2e6
+ LEAN FRAME E=2e8 A=1
+LOADS
+ 104,204,304 0 -900
+"""

@@ -54,7 +54,7 @@ def draw() -> None:
         call("plot", frames, *look)
         call("plot", frames, *AT_PEAK, "--at-peak", "largest", *look)
         call("plot", frames, "animation", "--as", "gif", "-o", folder / "drawn")
-        call("plot", folder / f"{PUSHED.stem}.h5", "capacity", *look)
+        call("plot", folder / f"{PUSHED.stem}.h5", "capacity", "performance", *look)
         call("plot", next(folder.glob("*study*.h5")), "study", *look)
         call("plot", frames, apart, "storeys", *look)
         call("plot", folder / f"{STUDIED.stem}.h5", "contact_force", *look)
@@ -63,7 +63,7 @@ def draw() -> None:
         call("sweep", folder / "suite" / "gaps.toml", "--quiet", "-o", folder / "sweep")
         call("plot", folder / "sweep" / "sweep.h5", *look)
         reduce(folder / "drawn" / TRENDS, FOLDER / TRENDS)
-        stems = {"capacity": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
+        stems = {"capacity": PUSHED.stem, "performance": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
         for picture, file in FILES.items():
             drawn = folder / "drawn" / f"{stems.get(picture, FRAMES.stem)}_{picture}{Path(file).suffix}"
             reduce(drawn, FOLDER / file)

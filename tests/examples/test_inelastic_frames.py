@@ -84,20 +84,26 @@ def test_periods_of_the_concrete_frame(run):
     np.testing.assert_allclose(results.table("modes")["period"], frame.periods(4, (1, 2, 3)), rtol=1e-8)
 
 
+def first_push(results):
+    """Capacity curve of the first PUSHOVER."""
+    curve = results.table("capacity_curve")
+    return curve[curve["push"] == 1]
+
+
 def test_mechanism_of_the_concrete_frame(run, tmp_path: Path):
     small = tmp_path / "small.inp"
     small.write_text(CONCRETE.read_text("utf-8").replace("GEOMETRY PDELTA", "GEOMETRY SMALL"), "utf-8")
     arm = 3.2 * (1 + 4 + 9) / 6
     _, results, _ = run(small, {"r": "0"})
-    assert results.table("capacity_curve")["base_shear"].max() == pytest.approx(2000 / arm, rel=1e-10)
+    assert first_push(results)["base_shear"].max() == pytest.approx(2000 / arm, rel=1e-10)
     # P-Delta: 2400 kN of weight on the storeys' drifts, no less than were they equal
     _, results, _ = run(CONCRETE, {"r": "0"})
-    end = results.table("capacity_curve")["base_shear"][-1]
+    end = first_push(results)["base_shear"][-1]
     assert end == pytest.approx(233.093, abs=5e-4)
     assert end < (2000 - 2400 * 0.1) / arm
     # and with hardening
     _, results, _ = run(CONCRETE)
-    assert results.table("capacity_curve")["base_shear"][-1] == pytest.approx(262.826, abs=5e-4)
+    assert first_push(results)["base_shear"][-1] == pytest.approx(262.826, abs=5e-4)
 
 
 def test_timber_frame_by_hand(run):

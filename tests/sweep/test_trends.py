@@ -84,5 +84,10 @@ def test_the_verb_plot_draws_a_sweep(tmp_path: Path, capsys: Any) -> None:
         assert main(["plot", str(path), *words]) == (2 if told else 0)
         out, err = capsys.readouterr()
         assert out == ("" if told else f"{tmp_path / 'sweep_trends.svg'}\n") and told in err
-    text = (tmp_path / "sweep_trends.svg").read_text("utf-8")
-    assert "pga 0.4, median" in text and "contact force [kN]" in text and ">gap<" in text
+    sheet = tmp_path / "own.mplstyle"
+    sheet.write_text("axes.facecolor: 123456\n")
+    assert main(["plot", str(path), "--style", str(sheet), "-o", str(tmp_path / "own")]) == 0
+    text = (tmp_path / "own" / "sweep_trends.svg").read_text("utf-8")
+    assert (
+        "#123456" in text and "pga 0.4, median" in text and "contact force [kN]" in text and ">gap<" in text
+    )

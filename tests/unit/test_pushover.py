@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
@@ -11,9 +10,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from decks import model_of
+from decks import hinged_frame, model_of
 from pound_solve import run
-from pound_solve.analyses import pushover, static
+from pound_solve.analyses import pushover, pushover_checks, static
 from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import BranchKind, Law, Rule, above, drive, linear
@@ -27,7 +26,7 @@ def pushed(text: str, card: str, swap=lambda s: s) -> pushover.PushoverResult:
     s = swap(assemble(model_of(f"{text}\nANALYSIS\n STATIC\n PUSHOVER {card}\n")))
     state = static.solve(s)
     (own,) = (c for c in s.model.analyses if c.spec.name == "PUSHOVER")
-    assert not pushover.mistaken_cards(s)
+    assert not pushover_checks.mistaken_cards(s)
     return pushover.push(s.stressed(state.axial), state, own)
 
 
@@ -562,27 +561,7 @@ def test_against_opensees():
     """Three storeys, two bays, bilinear hinges, P-Delta of a leaning column: OpenSees 3.7.1,
     benchmarks/opensees_pushover.py, whose rigid links of 1e11 leave 5e-7.
     """
-    names = [[100 * i + j + 1 for j in range(4)] for i in range(4)]
-    deck = "GEOMETRY PDELTA\nNODES\n"
-    for i, floor in enumerate(names):
-        for j, n in enumerate(floor):
-            fix = "FIX=XYR" if i == 0 else f"SLAVED=X MASTER={floor[0]}" if j else ""
-            deck += f" {n} {6 * j} {3.5 * i} {fix}\n"
-    deck += "ELEMENTS\n"
-    for i, (low, high) in enumerate(itertools.pairwise(names), 1):
-        for j in range(3):
-            deck += f" {1000 * i + j} COL {low[j]} {high[j]}\n"
-        for j in range(2):
-            deck += f" {1000 * i + 500 + j} BEAM {high[j]} {high[j + 1]}\n"
-        deck += f" {1000 * i + 900} LEAN {low[3]} {high[3]}\n"
-    deck += """PROPS
- COL FRAME E=2e8 A=0.03 I=6e-4 RULE=BILINEAR R=0.02 MI=900 MJ=900 KH=2e6
- BEAM FRAME E=2e8 A=0.02 I=4e-4 RULE=BILINEAR R=0.02 MI=500 MJ=500 KH=2e6
- LEAN FRAME E=2e8 A=1
-LOADS
- 104,204,304 0 -900
-"""
-    p = pushed(deck, "301 0.8 PATTERN=FORCES NODES=101,201,301 FORCES=1/6,2/6,3/6 STEPS=16")
+    p = pushed(hinged_frame(), "301 0.8 PATTERN=FORCES NODES=101,201,301 FORCES=1/6,2/6,3/6 STEPS=16")
     assert len(p.ladder) == 28 and p.unbalanced < 1e-13
     for d, shear in (
         (0.05, 573.6057),
@@ -653,7 +632,7 @@ def test_tables_and_report(tmp_path):
         (2, "X", 1.0, 1.0),
         (3, "X", 2.0, 2.0),
     ]
-    said = dict(results.table("pushover").tolist())
+    said = {row["item"]: row["value"] for row in results.table("pushover")}
     assert said["end"] == "the target displacement is reached"
     report = (tmp_path / "deck.rpt").read_text()
     heads = [

@@ -35,7 +35,8 @@ def deck(names: str, card: str, geometry: str = "SMALL", gap: float = GAP) -> st
 
 def curve(ran: Ran) -> np.ndarray:
     assert ran.status == "done", ran.message
-    return np.array([tuple(row) for row in ran.tables["capacity_curve"]], float)
+    columns = "displacement", "base_shear", "factor", "events"
+    return np.array([[row[c] for c in columns] for row in ran.tables["capacity_curve"]], float)
 
 
 def events(ran: Ran) -> list[tuple[object, ...]]:

@@ -3,17 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from pound_deck.model import Card
 from pound_solve.analyses.path_following import EquilibriumPath
+from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.numerics import modes
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import columns_of
 from pound_solve.structure.structure import Structure
 
+#: share of the mass-weighted shape below which the control node counts as a node at rest
+AT_REST: Final = 1e-9
 SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
+
+
+@dataclass(frozen=True)
+class EquivalentSystem:
+    r"""The oscillator that stands for a building in the N2 method (EN 1998-1:2004, B.2; Fajfar 2000).
+
+    The shape :math:`\phi` of the pattern is one at the control node:
+
+    .. math:: m^* = \sum_i m_i \phi_i, \qquad \Gamma = m^* \Big/ \sum_i m_i \phi_i^2
+
+    Attributes
+    ----------
+    mass : float
+        :math:`m^*` [F T^2/L].
+    factor : float
+        :math:`\Gamma`, displacement of the control node over that of the oscillator.
+    pushed_mass : float
+        Mass of the pushed nodes [F T^2/L].
+    """
+
+    mass: float
+    factor: float
+    pushed_mass: float
 
 
 class LoadPattern:
@@ -32,6 +60,8 @@ class LoadPattern:
         Present forces; zeros outside the pattern, and before the first mode is known.
     mass : float
         Mass of the pushed nodes [F T^2/L].
+    shape : ndarray, shape (n_free,), or None
+        Motion whose inertia the present forces are; None for FORCES and LOADS.
     """
 
     def __init__(self, structure: Structure, card: Card, building: Collection[int] | None) -> None:
@@ -48,6 +78,7 @@ class LoadPattern:
         self.pushed = pushed * self.along
         self.mass = float(self._share(np.ones(n)).sum())
         self.forces = np.zeros(n)
+        self.shape: Array | None = None
         if kind == "LOADS":
             (columns,) = columns_of(model, dofs.free, [building])
             self.forces[columns] = structure.loads[columns]
@@ -68,7 +99,24 @@ class LoadPattern:
         """Return forces proportional to mass times a shape, with unit sum."""
         p = self._share(shape)
         total = float(p.sum())
+        self.shape = shape
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
+
+    def equivalent(self, control: Array, path: EquilibriumPath) -> EquivalentSystem | None:
+        """Return the oscillator that stands for the pushed nodes; None without mass or if the control node
+        stays at rest.  FORCES and LOADS have no shape: the deflection of the first step replaces it.
+        """
+        try:
+            shape = path.rates(path.u, path.factor).displacement if self.shape is None else self.shape
+        except InstabilityError:
+            return None  # a mechanism, until a contact closes
+        at_control = float(control @ shape)
+        if abs(at_control) <= AT_REST * float(np.abs(shape).max(initial=0.0)) or not self.mass:
+            return None
+        phi = shape / at_control
+        share = self._share(phi)
+        mass, square = float(share.sum()), float(share @ (self.along * phi))
+        return EquivalentSystem(mass, mass / square, self.mass) if mass > 0.0 else None
 
     def follow(self, path: EquilibriumPath) -> Array:
         """Return the forces at the present point of a path; a modal PATTERN follows the present tangent

@@ -63,7 +63,7 @@ NEARLY_BALANCED, STALLED = 1e-11, 0.25
 SHORTEST_INCREMENT = 1e-9
 BRACKETED = 1e-12  #: fraction of an increment to which an event on it is bracketed
 NEAREST_TO_END = 0.01  #: distance of a false position from the ends of its bracket, lest it creep along one
-MAX_CHANGES = 10_000
+MAX_CHANGES = 10_000  #: largest number of transitions between two turns of the control
 MAX_RETURNS = 5  #: largest number of returns of all laws to the same branches at one point
 
 
@@ -158,7 +158,7 @@ class EquilibriumPath:
         ]
         *self._outer, self._product = np.array(pairs).reshape(-1, 4).T
         self.lead = np.zeros(len(self.laws)) if lead is None else lead
-        self.factor, self.changes = 0.0, 0
+        self.factor, self.changes, self._changes_before = 0.0, 0, 0
         self._visits: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
         self.corotational = structure.corotational.on(slice(n))
         self.curved = len(self.corotational) > 0 or any(s.law.curved for s in self.laws)
@@ -202,6 +202,10 @@ class EquilibriumPath:
     def tangent(self) -> Matrix:
         """Return the tangent stiffness, shape (n_free, n_free)."""
         return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
+
+    def turn(self, sign: float) -> None:
+        """Let the control grow (1.0) or decrease (-1.0) from here on."""
+        self.sign, self._changes_before = sign, self.changes
 
     def unbalanced(self) -> float:
         """Return the largest residual force as a fraction of the largest force applied so far."""
@@ -249,7 +253,7 @@ class EquilibriumPath:
         ):
             self._released = self._released + released * self.rows[i]
         self.changes += 1
-        if self.changes > MAX_CHANGES:
+        if self.changes - self._changes_before > MAX_CHANGES:
             raise InstabilityError(
                 f"more than {MAX_CHANGES} changes of state of springs and contacts", "A507"
             )

@@ -7,7 +7,7 @@ from math import ceil, floor, log10
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
-from pound_solve.analyses import pushover
+from pound_solve.analyses import pushover_checks
 from pound_solve.structure.buildings import misnamed_buildings
 from pound_solve.structure.checks.contacts import (
     duplicate_contacts,
@@ -135,8 +135,8 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     implausible_base_strengths,
     far_yielding_springs,
     *FRAME_CHECKS,
-    pushover.mistaken_cards,
-    pushover.distant_targets,
+    pushover_checks.mistaken_cards,
+    pushover_checks.distant_targets,
     too_many_steps,
     misnamed_buildings,
     unevenly_damped_buildings,

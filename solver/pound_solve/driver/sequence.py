@@ -218,7 +218,9 @@ class AnalysisSequence:
         self._write(Stage.MODAL)
 
     def _pushover(self, card: Card, state: static.StaticState) -> None:
-        self.record.pushover = pushed = pushover.push(self.record.structure, state, card)
+        pushovers = self.record.pushovers
+        pushed = pushover.push(self.record.structure, state, card, 1 + len(pushovers))
+        pushovers.append(pushed)
         self.record.checks.append(pushed.check)
         self._write(Stage.PUSHOVER)
         if pushed.failed:

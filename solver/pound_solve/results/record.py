@@ -41,8 +41,10 @@ class RunRecord:
         Reading of `time.perf_counter` when the run began.
     diaphragm_collisions : mapping
         The two diaphragms of every contact, keyed by the number of its law.
-    static, modal, pushover, history
+    static, modal, history
         Results of the analyses; each is set when its analysis is over.
+    pushovers : list of PushoverResult
+        Of the PUSHOVER cards so far.
     recorded, layout
         Recorded items of the history and its layout in the file; set when it starts.
     stored : callable
@@ -65,8 +67,8 @@ class RunRecord:
     diaphragm_collisions: Mapping[int, DiaphragmCollision]
     static: StaticResponse = field(init=False)
     modal: ModalResult = field(init=False)
-    pushover: PushoverResult = field(init=False)
     history: HistoryResult = field(init=False)
+    pushovers: list[PushoverResult] = field(default_factory=list)
     recorded: RecordedItems | None = None
     layout: Layout = field(default_factory=dict)
     stored: Callable[[str], Array] = field(init=False)

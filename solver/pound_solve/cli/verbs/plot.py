@@ -27,7 +27,7 @@ EXAMPLES = (
 NO_MATPLOTLIB = 'pictures need matplotlib: pip install "pound-solve[plot]"'
 OF_A_DECK = ("frame", "loads")  #: pictures that need no run
 #: options of runs and decks
-OF_RUNS = ("member", "time", "at_peak", "between", "style", "set", "records")
+OF_RUNS = ("member", "time", "at_peak", "between", "set", "records")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -81,6 +81,8 @@ def execute(args: argparse.Namespace) -> int:
         for picture in plot.PICTURES.values():
             print(f"{picture.name:<14} {picture.shows}")
         return common.DONE
+    if args.style:
+        opened(args.style).close()  # a pipe is refused before the work
     if Sweep.is_of(args.file):
         if wrong := _wrong_of_sweep(args):
             return common.complain(wrong, common.MISTAKES)
@@ -92,8 +94,6 @@ def execute(args: argparse.Namespace) -> int:
     choice = plot.Choice(tuple(args.member), args.time, args.at_peak, between, args.style)
     if wrong := _wrong(args, choice):
         return common.complain(wrong, common.MISTAKES)
-    if args.style:
-        opened(args.style).close()  # a pipe is refused before the work
     try:
         with ExitStack() as stack:
             runs = [stack.enter_context(_opened(file, args)) for file in args.files]
@@ -126,7 +126,7 @@ def _trends(args: argparse.Namespace) -> int:
         ready(folder)
         panels = trends.panels(sweep, args.over or "", args.words)
         over = args.over or trends.varied(sweep)[0]
-        suites.trends(panels, sweep.variables[over].doc.removeprefix(PARAM), path)
+        suites.trends(panels, sweep.variables[over].doc.removeprefix(PARAM), path, args.style)
     except CurveError as err:
         return common.complain(f"{args.file}: {err}", common.MISTAKES)
     except ImportError:

@@ -133,6 +133,12 @@ class GroundMotion:
     wave: float | None = None
 
     @property
+    def name(self) -> str:
+        """Name and component of the record, or the kind of the motion."""
+        words = [str(self.info[key]) for key in ("name", "component") if self.info.get(key)]
+        return " ".join(words) or str(self.info.get("kind") or "")
+
+    @property
     def directions(self) -> tuple[int, ...]:
         """Directions in which the motion may move a support: 0 x, 1 y, 2 rotation."""
         return (0, 1, 2) if self.direction == "R" else ("XY".index(self.direction),)

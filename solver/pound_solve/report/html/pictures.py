@@ -168,12 +168,21 @@ def _loops(results: Results) -> Iterator[PlotlyPicture]:
 
 
 def _capacity(results: Results) -> Iterator[PlotlyPicture]:
-    """Picture of the capacity curve of a pushover."""
-    if results.holds("capacity_curve"):
-        table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
-        curve = _curve("base shear", table["displacement"], table["base_shear"], True)
-        x, y = f"control displacement [{units['displacement']}]", f"base shear [{units['base_shear']}]"
-        yield PlotlyPicture("Capacity curve", "", x, y, [curve])
+    """Pictures of the capacity curves of pushovers, with the backbones of those that turn."""
+    if not results.holds("capacity_curve"):
+        return
+    table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
+    x, y = f"control displacement [{units['displacement']}]", f"base shear [{units['base_shear']}]"
+    numbers = sorted(set(table["push"].tolist()))
+    for push in numbers:
+        traces = [
+            _curve(name, rows["displacement"], rows["base_shear"], True)
+            for name, source in (("base shear", "capacity_curve"), ("backbone", "backbone"))
+            if results.holds(source)
+            and len(rows := results.table(source)[results.table(source)["push"] == push])
+        ]
+        title = f"Capacity curve {push}" if len(numbers) > 1 else "Capacity curve"
+        yield PlotlyPicture(title, "", x, y, traces)
 
 
 def thinned(t: Array, values: Array) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
@@ -102,10 +102,17 @@ class TrendPanel(NamedTuple):
     trends: Sequence[Trend]
 
 
-@style.sheet()
-def trends(panels: Sequence[TrendPanel], over: str, path: Path) -> None:
-    """Draw a panel for each quantity: the median of each case, of several records also the band of the 16
-    and 84 % fractiles, and thin lines for the records if there is one case; see `incremental`.
+def trends(panels: Sequence[TrendPanel], over: str, path: Path, sheet: Path | None = None) -> None:
+    """Draw a panel for each quantity over a PARAM, in the style of the program or of a sheet of the user;
+    see `incremental`.
+    """
+    with style.sheet(sheet):
+        style.save(_trends(panels, over), path)
+
+
+def _trends(panels: Sequence[TrendPanel], over: str) -> Any:
+    """Draw the median of each case, of several records also the band of the 16 and 84 % fractiles, and
+    thin lines for the records if there is one case.
     """
     figure, all_axes = style.panels(len(panels), "", (4.2, 3.2))
     for axes, panel in zip(all_axes, panels):
@@ -124,7 +131,7 @@ def trends(panels: Sequence[TrendPanel], over: str, path: Path) -> None:
         axes.set_ylim(bottom=0.0)
     if any(axes.get_legend_handles_labels()[1] for axes in all_axes):
         style.legend_below(figure, all_axes)
-    style.save(figure, path)
+    return figure
 
 
 @style.sheet()

@@ -58,7 +58,7 @@ def _rows(results: Results) -> list[Any]:
     """Functions that draw the panels: histories that the file has, else the capacity curve or moments."""
     if not len(results.time):
         if results.holds("capacity_curve"):
-            return [partial(capacity.curve, results=results)]
+            return [partial(capacity.curve, results=results, push=1)]
         return [partial(_moments, results=results)] if members(results) else []
     panels: list[Any] = []
     for name in ("ground", "drift", "base", "contact/force"):

@@ -15,9 +15,8 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each motion; a wave is one for each support."""
     for n, m in enumerate(run.motions, 1):
         i = m.info
-        name = " ".join(str(i[k]) for k in ("name", "component") if i.get(k)) or str(i.get("kind") or "")
         yield (
-            f"{n} {name}",
+            f"{n} {m.name}",
             "R (rad)" if m.direction == "R" else m.direction,
             "all" if m.supports is None else text_of(m.supports),
             str(i.get("format") or i.get("kind") or ""),

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from pound_solve.results.columns import LEG, PUSH
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
 
 def rows(run: RunRecord) -> list[Row]:
-    """The start, the stations, and the points at which springs, hinges and contacts changed."""
-    return [(p.displacement, p.shear, p.factor, p.changes) for p in run.pushover.curve]
+    """The starts of legs, the stations, and the points at which springs, hinges and contacts changed."""
+    return [
+        (pushed.number, p.leg, p.displacement, p.shear, p.factor, p.changes)
+        for pushed in run.pushovers
+        for p in pushed.curve
+    ]
 
 
 TABLE = Table(
@@ -17,6 +22,8 @@ TABLE = Table(
     place=30,
     stages=(Stage.PUSHOVER,),
     columns=(
+        PUSH,
+        LEG,
         Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
         Column(
             "base_shear",
@@ -29,6 +36,7 @@ TABLE = Table(
         Column("events", fmt="int", doc="changes of springs, hinges and contacts so far"),
     ),
     rows=rows,
+    group="push",
     note="Displacements and base shears include those of the static state.",
     limit=500,
 )

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from pound_solve.results.columns import ELEMENT
+from pound_solve.results.columns import ELEMENT, PUSH
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.path_following import Change
+    from pound_solve.analyses.pushover import CapacityPoint, PushoverResult
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each change of a spring, hinge or contact."""
-    laws = run.pushover.structure.laws
-    for p, c in run.pushover.ladder:
-        spring = laws[c.law]
+    for pushed, p, c in _events(run):
+        spring = pushed.structure.laws[c.law]
         yield (
+            pushed.number,
             p.changes,
             p.displacement,
             p.shear,
@@ -26,12 +31,17 @@ def rows(run: RunRecord) -> Iterator[Row]:
         )
 
 
+def _events(run: RunRecord) -> Iterator[tuple[PushoverResult, CapacityPoint, Change]]:
+    return ((pushed, *event) for pushed in run.pushovers for event in pushed.ladder)
+
+
 TABLE = Table(
     name="push_events",
     title="Events of the pushover",
     place=40,
     stages=(Stage.PUSHOVER,),
     columns=(
+        PUSH,
         Column("event", fmt="int", doc="number"),
         Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
         Column(
@@ -48,5 +58,6 @@ TABLE = Table(
         Column("after", "to", doc="branch after the event"),
     ),
     rows=rows,
+    group="push",
     limit=1000,
 )

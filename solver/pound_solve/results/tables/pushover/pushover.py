@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from pound_solve.results.columns import ITEM, VALUE
+from pound_solve.results.columns import ITEM, PUSH, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
+
+if TYPE_CHECKING:
+    from pound_deck.model import Units
+    from pound_solve.analyses.pushover import PushoverResult
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """Rows on the load pattern and control, the end of the analysis, and the capacity."""
-    pushed, units = run.pushover, run.model.units
+    for pushed in run.pushovers:
+        for item, value in _items(pushed, run.model.units):
+            yield pushed.number, item, value
+
+
+def _items(pushed: PushoverResult, units: Units) -> Iterator[tuple[str, str]]:
+    """Names and values of one pushover."""
     card, length, force = pushed.card, units.text("L"), units.text("F")
     top, end = max(pushed.curve, key=lambda p: abs(p.shear)), pushed.curve[-1]
     adaptive = ", adaptive" if card["ADAPTIVE"] == "YES" else ""
@@ -28,5 +39,11 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
 
 TABLE = Table(
-    name="pushover", title="Pushover", place=10, stages=(Stage.PUSHOVER,), columns=(ITEM, VALUE), rows=rows
+    name="pushover",
+    title="Pushovers",
+    place=10,
+    stages=(Stage.PUSHOVER,),
+    columns=(PUSH, ITEM, VALUE),
+    rows=rows,
+    group="push",
 )

@@ -65,15 +65,14 @@ def _few(texts: list[str], what: str) -> str:
 def ground_motion(run: RunRecord, motion: GroundMotion) -> str:
     """Text on a motion: its name and peak."""
     info, units = motion.info, run.model.units
-    name = " ".join(str(info[k]) for k in ("name", "component") if info.get(k)) or str(info.get("kind"))
     if motion.direction == "R":
-        return f"{name}: peak {info['pga']:.4g} rad/{units.time}^2"
+        return f"{motion.name}: peak {info['pga']:.4g} rad/{units.time}^2"
     share = info["pga"] / run.model.gravity
     misfit = ""
     if "misfit" in info:
         misfit = f"; its spectrum misses the given one by {100 * info['misfit']:.2g} % at most"
     peak = f"peak {info['pga']:.4g} {units.text('L/T^2')}, {share:.3g} of gravity"
-    return f"{name}: {peak}{_within(run, motion)}{misfit}"
+    return f"{motion.name}: {peak}{_within(run, motion)}{misfit}"
 
 
 def _within(run: RunRecord, motion: GroundMotion) -> str:

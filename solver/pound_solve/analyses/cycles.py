@@ -1,0 +1,110 @@
+r"""Loops of a pushover that turns: the work lost in each leg, and the backbone of the cycles.
+
+A leg from :math:`(d_1, V_1)` to :math:`(d_2, V_2)` encloses with its chord half the loop of a cycle whose
+legs are alike.  The equivalent damping of such a cycle is the loop over :math:`4\pi` times the elastic work
+of its amplitude (Jacobsen 1930; Chopra 2017, section 3.9):
+
+.. math:: \xi_{eq} = \frac{2A}{4\pi\,\tfrac12\,\frac{\Delta V}{2}\,\frac{\Delta d}{2}}
+                   = \frac{4A}{\pi\,\Delta V\,\Delta d}, \qquad
+          A = \int_{d_1}^{d_2}\Bigl(V - V_1 - \frac{\Delta V}{\Delta d}\,(d - d_1)\Bigr)\,\mathrm{d}d
+
+The first leg starts from the static state: it does not belong to a loop.
+
+The backbone joins, on each side of the static state, the ends of the legs that went further than all before
+them (FEMA 461, section 2.9.2, first cycle of each amplitude).
+
+References
+----------
+Chopra AK (2017), Dynamics of Structures, 5th edn, Pearson.
+FEMA 461 (2007), Interim testing protocols for determining the seismic performance characteristics of
+structural and nonstructural components, Applied Technology Council.
+Jacobsen LS (1930), Steady forced vibration as influenced by damping, Transactions ASME 52(15): 169-181.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from pound_solve.analyses.pushover import CapacityPoint, PushoverResult, targets
+
+
+class Leg(NamedTuple):
+    """Part of a path between two turns of the control displacement.
+
+    Attributes
+    ----------
+    end : CapacityPoint
+    largest : CapacityPoint
+        The largest base shear in the sense of the leg.
+    stiffness : float
+        Slope of the chord [F/L].
+    loop : float
+        Area between curve and chord [F L]; NaN for the first leg.
+    damping : float
+        Equivalent damping ratio of a cycle of such legs; NaN for the first leg.
+    """
+
+    end: CapacityPoint
+    largest: CapacityPoint
+    stiffness: float
+    loop: float
+    damping: float
+
+
+class BackbonePoint(NamedTuple):
+    """End of a leg that went further to its side than all before it.
+
+    Attributes
+    ----------
+    first : CapacityPoint
+    last : CapacityPoint
+        The end of the last leg to the same target.
+    cycles : int
+        Number of legs to it.
+    """
+
+    first: CapacityPoint
+    last: CapacityPoint
+    cycles: int
+
+
+def legs(pushed: PushoverResult) -> list[Leg]:
+    """Return the legs of a pushover."""
+    return [_leg(points) for points in pushed.legs()]
+
+
+def _leg(points: Sequence[CapacityPoint]) -> Leg:
+    start, end = points[0], points[-1]
+    d = np.array([p.displacement for p in points]) - start.displacement
+    v = np.array([p.shear for p in points]) - start.shear
+    sense = math.copysign(1.0, d[-1])
+    largest = max(points, key=lambda p: sense * p.shear)
+    if not d[-1]:  # it stopped where it began
+        return Leg(end, largest, math.nan, math.nan, math.nan)
+    stiffness, loop = float(v[-1] / d[-1]), math.nan
+    if start.leg > 1:
+        loop = float(0.5 * np.diff(d) @ (v[1:] + v[:-1]) - 0.5 * v[-1] * d[-1])
+    work = math.pi * float(v[-1] * d[-1])
+    return Leg(end, largest, stiffness, loop, 4.0 * loop / work if work else math.nan)
+
+
+def backbone(pushed: PushoverResult) -> list[BackbonePoint]:
+    """Return the backbone from the furthest point on the negative side to that on the positive side."""
+    origin = pushed.curve[0].displacement
+    complete = pushed.legs()[: -1 if pushed.failed else None]
+    ends = list(zip(targets(pushed.card), (points[-1] for points in complete)))
+    reached = {1.0: 0.0, -1.0: 0.0}
+    outer = list[BackbonePoint]()
+    for target, end in ends:
+        assert target is not None  # a load factor does not turn
+        away = target - origin
+        side = math.copysign(1.0, away)
+        if abs(away) > reached[side]:
+            reached[side] = abs(away)
+            alike = [p for t, p in ends if t == target]
+            outer.append(BackbonePoint(end, alike[-1], len(alike)))
+    return sorted(outer, key=lambda point: point.first.displacement)

@@ -1,0 +1,88 @@
+"""Table ``performance``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pound_solve.results.columns import PUSH
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.capacity_line import Demand
+    from pound_solve.analyses.load_pattern import EquivalentSystem
+    from pound_solve.analyses.pushover import PushoverResult
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each pushover with TC and each ground motion along its direction."""
+    from pound_solve.analyses.capacity_line import demands  # not needed to read a report
+
+    for pushed in run.pushovers:
+        for system, name, spectrum in demands(pushed, run.motions):
+            yield pushed.number, name, *_point(pushed, system, spectrum)
+
+
+def _point(pushed: PushoverResult, system: EquivalentSystem, spectrum: Demand) -> tuple[float, ...]:
+    """Performance point and the state of the building there; NaN and no changes if the curve has none."""
+    from pound_solve.analyses.capacity_line import CapacityCurve  # not needed to read a report
+
+    curve, start = CapacityCurve(pushed.curve), pushed.curve[0]
+    point = curve.performance(system, spectrum, pushed.card["TC"])
+    if point is None:
+        return *(math.nan,) * 6, 0
+    end, at_yield = point.line.end, point.line.yield_displacement
+    displacement = start.displacement + curve.sense * end
+    shear = start.shear + curve.sense * float(np.interp(end, curve.d, curve.v))
+    changes = sum(curve.sense * (p.displacement - start.displacement) <= end for p, _ in pushed.ladder)
+    return point.period, point.acceleration, point.reduction, end / at_yield, displacement, shear, changes
+
+
+def remark(run: RunRecord) -> str | None:
+    """Sentence on pushovers whose curves have no performance point."""
+    missing = sorted({row[0] for row in rows(run) if math.isnan(row[2])})
+    if not missing:
+        return None
+    named = f"pushover{'s' * (len(missing) > 1)} {', '.join(map(str, missing))}"
+    return f"The demand on {named} exceeds the curve, or the curve stiffens: push further, or use HISTORY."
+
+
+TABLE = Table(
+    name="performance",
+    title="Performance points by the N2 method",
+    place=16,
+    stages=(Stage.PUSHOVER,),
+    columns=(
+        PUSH,
+        Column("motion", doc="name of the ground motion"),
+        Column("period", "period\nT*", "T", "short", doc="of the equivalent oscillator"),
+        Column(
+            "acceleration",
+            "spectral\naccel.",
+            "L/T^2",
+            "short",
+            doc="of the elastic spectrum at that period",
+        ),
+        Column("reduction", "over\nyield", "-", "short", doc="that over the acceleration at yield"),
+        Column("ductility", "ductility", "-", "short", doc="displacement over that at yield"),
+        Column(
+            "displacement",
+            "control\ndispl.",
+            "L",
+            "num",
+            doc="of the control node, including the static one",
+        ),
+        Column("base_shear", "base\nshear", "F", "num", doc="of the curve there, including the static one"),
+        Column("changes", fmt="int", doc="changes of springs, hinges and contacts up to there"),
+    ),
+    rows=rows,
+    remark=remark,
+    note=(
+        "The curve is idealised up to the performance point itself; the spectra are those of the motions, "
+        "with the damping XI and the corner period TC of the card."
+    ),
+)

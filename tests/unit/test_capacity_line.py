@@ -1,0 +1,204 @@
+"""Idealised capacity, equivalent oscillator and performance point, by hand."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pound_solve import run
+from pound_solve.analyses.capacity_line import CapacityCurve
+from pound_solve.analyses.load_pattern import EquivalentSystem
+from pound_solve.analyses.pushover import CapacityPoint
+from pound_solve.results import Results
+
+
+def curve(*points: tuple[float, float]) -> CapacityCurve:
+    return CapacityCurve([CapacityPoint(d, v, v, 0, 1) for d, v in points])
+
+
+# the line
+
+
+def test_the_line_has_the_area_of_the_curve() -> None:
+    """Corners (0.1, 10), (0.3, 14), then down to 7 at 0.5: Vy = 14, E = 0.5 + 2.4."""
+    c = curve((0.0, 0.0), (0.1, 10.0), (0.3, 14.0), (0.5, 7.0))
+    line = c.line(c.strongest)
+    assert line is not None and (c.strongest, line.yield_shear) == (0.3, 14.0)
+    assert line.yield_displacement == pytest.approx(2 * (0.3 - 2.9 / 14), rel=1e-14)
+    # 80 % of 14 is left at 0.3 + 0.2 * 2.8/7
+    assert c.ultimate == pytest.approx(0.38, rel=1e-14)
+    # up to a displacement between the corners
+    line = c.line(0.2)
+    assert line is not None and line.yield_shear == pytest.approx(12.0, rel=1e-14)
+    assert line.yield_displacement == pytest.approx(2 * (0.2 - (0.5 + 0.05 * 22) / 12), rel=1e-13)
+
+
+def test_a_plateau_ends_where_it_is_left() -> None:
+    c = curve((0.0, 0.0), (0.1, 10.0), (0.4, 10.0), (0.6, 0.0))
+    assert c.strongest == 0.4 and c.ultimate == pytest.approx(0.44, rel=1e-14)
+    line = c.line(c.strongest)
+    assert line is not None and line.yield_displacement == pytest.approx(0.1, rel=1e-14)
+
+
+def test_the_static_state_is_the_origin_and_the_sense_that_of_the_push() -> None:
+    c, mirrored = curve((0.1, 2.0), (0.3, 8.0), (0.5, 8.0)), curve((0.1, 2.0), (-0.1, -4.0), (-0.3, -4.0))
+    for found in (c, mirrored):
+        assert found.d == pytest.approx([0.0, 0.2, 0.4]) and found.v == pytest.approx([0.0, 6.0, 6.0])
+    assert (c.sense, mirrored.sense) == (1.0, -1.0)
+
+
+def test_a_curve_that_stiffens_has_no_line() -> None:
+    """A contact closes at 0.2: the area is below that of a triangle."""
+    c = curve((0.0, 0.0), (0.2, 2.0), (0.4, 40.0))
+    assert c.line(0.4) is None and c.line(0.2) is not None
+    back = curve((0.0, 0.0), (0.2, 2.0), (0.1, 3.0), (0.4, 4.0))
+    assert back.line(0.4) is None and back.line(0.15) is None
+
+
+def test_an_elastic_curve_yields_at_its_end() -> None:
+    line = curve((0.0, 0.0), (1 / 3, 7.0)).line(1 / 3)
+    assert line is not None and line.yield_displacement == pytest.approx(1 / 3, rel=1e-12)
+
+
+# the performance point
+
+
+def plastic(stiffness: float = 100.0, strength: float = 10.0) -> CapacityCurve:
+    return curve((0.0, 0.0), (strength / stiffness, strength), (1.0, strength))
+
+
+def flat(level: float):
+    """Spectrum whose displacement is proportional to the square of the period."""
+    return lambda periods: np.full(len(periods), level)
+
+
+SYSTEM = EquivalentSystem(4.0, 1.25, 5.0)
+
+
+def test_equal_displacement_beyond_the_corner() -> None:
+    """T* = 2 pi sqrt(4/100) = 1.2566; Se = 8: Sd = 8 * 4/100 = 0.32, times 1.25 = 0.4."""
+    point = plastic().performance(SYSTEM, flat(8.0), 0.5)
+    assert point is not None and point.line.end == pytest.approx(0.4, rel=1e-11)
+    assert point.period == pytest.approx(2 * math.pi * 0.2, rel=1e-11)
+    assert point.reduction == pytest.approx(8 * 1.25 * 4 / 10, rel=1e-11)
+
+
+def test_more_than_equal_displacement_below_the_corner() -> None:
+    """q_u = 4, T* = 1.2566 = TC/2: d = 0.4/4 (1 + 3 * 2) = 0.7."""
+    point = plastic().performance(SYSTEM, flat(8.0), 2 * 2 * math.pi * 0.2)
+    assert point is not None and point.line.end == pytest.approx(0.7, rel=1e-11)
+
+
+def test_an_elastic_answer_needs_no_rule() -> None:
+    """Sd * factor = 0.05 < 0.1, on either side of the corner."""
+    for corner in (0.1, 10.0):
+        point = plastic().performance(SYSTEM, flat(1.0), corner)
+        assert point is not None and point.line.end == pytest.approx(0.05, rel=1e-11)
+        assert point.reduction == pytest.approx(1.0, rel=1e-11)
+
+
+def test_a_demand_beyond_the_curve_is_told() -> None:
+    assert plastic().performance(SYSTEM, flat(21.0), 0.5) is None
+    stiffening = curve((0.0, 0.0), (0.2, 2.0), (1.0, 400.0))
+    assert stiffening.performance(SYSTEM, flat(8.0), 0.5) is None
+
+
+@given(
+    hard=st.floats(0.0, 0.8),
+    level=st.floats(0.5, 12.0),
+    corner=st.floats(0.05, 4.0),
+    far=st.floats(1.0, 3.0),
+)
+def test_the_point_does_not_depend_on_the_target(
+    hard: float, level: float, corner: float, far: float
+) -> None:
+    """A curve that is pushed further has the same point; its line ends at it and has its displacement."""
+
+    def reaching(end: float) -> CapacityCurve:
+        return curve((0.0, 0.0), (0.1, 10.0), (end, 10.0 + 100.0 * hard * (end - 0.1)))
+
+    one, two = (reaching(end).performance(SYSTEM, flat(level), corner) for end in (4.0, 4.0 * far))
+    if one is not None:
+        assert two is not None and two.line.end == pytest.approx(one.line.end, rel=1e-9)
+        assert one.displacement == pytest.approx(one.line.end, rel=1e-9)
+
+
+# the equivalent oscillator, from decks
+
+STOREYS = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ELEMENTS
+ 1 A 1 2
+ 2 B 2 3
+PROPS
+ A SPRING KX=100 FX=5 RULE=BILINEAR R=0.2
+ B SPRING KX=80 FX=3 RULE=BILINEAR R=0.1
+WEIGHTS
+ 2 19.62
+ 3 9.81
+"""
+
+
+def ran(folder: Path, card: str, more: str = "") -> Results:
+    deck = folder / "deck.inp"
+    deck.write_text(f"{STOREYS}{more}ANALYSIS\n PUSHOVER {card}\n")
+    return run(deck, out=folder)
+
+
+@pytest.mark.parametrize(
+    ("card", "phi"),
+    [
+        ("3 0.5", (0.5, 1.0)),
+        ("2 0.5", (1.0, 2.0)),
+        ("3 0.5 PATTERN=UNIFORM", (1.0, 1.0)),
+        # forces 1 and 2: u2 = 3/100, u3 = u2 + 2/80
+        ("3 0.5 PATTERN=FORCES NODES=2,3 FORCES=1,2", (0.03 / 0.055, 1.0)),
+    ],
+)
+def test_mass_and_factor_of_the_oscillator(tmp_path: Path, card: str, phi: tuple[float, float]) -> None:
+    """Masses 2 and 1: m* = sum m phi, factor m* / sum m phi^2."""
+    (row,) = ran(tmp_path, card).table("capacity_line")
+    mass = 2 * phi[0] + phi[1]
+    assert row["mass"] == pytest.approx(mass, rel=1e-12)
+    assert row["participation"] == pytest.approx(mass / (2 * phi[0] ** 2 + phi[1] ** 2), rel=1e-12)
+    assert row["period"] == pytest.approx(2 * math.pi * math.sqrt(mass / row["stiffness"]), rel=1e-12)
+    assert row["shear_ratio"] == pytest.approx(row["yield_shear"] / 29.43, rel=1e-9)
+
+
+def test_an_elastic_frame_moves_as_the_spectrum_of_its_mode(tmp_path: Path) -> None:
+    """With the pattern of the first mode the oscillator is that mode: T* its period, the performance point
+    its modal displacement.
+    """
+    motion = "EQUAKE\n SINE AMPLITUDE=0.2 PERIOD=0.7 DURATION=3\n"
+    results = ran(tmp_path, "3 0.08 PATTERN=MODE TC=0.6", motion)
+    (line,), (point,) = results.table("capacity_line"), results.table("performance")
+    k, m = np.array([[180.0, -80.0], [-80.0, 80.0]]), np.diag([2.0, 1.0])
+    values, shapes = np.linalg.eig(np.linalg.solve(m, k))
+    n = int(np.argmin(values))
+    phi = shapes[:, n] / shapes[1, n]
+    assert line["participation"] == pytest.approx(phi @ m @ [1, 1] / (phi @ m @ phi), rel=1e-12)
+    period = 2 * math.pi / math.sqrt(values[n])
+    assert point["period"] == pytest.approx(period, rel=1e-9) and point["changes"] == 0
+    acceleration = point["acceleration"]
+    assert point["displacement"] == pytest.approx(
+        line["participation"] * acceleration / values[n], rel=1e-9
+    )
+    spectrum = results.table("push_spectra")
+    assert np.interp(period, spectrum["period"], spectrum["acceleration"]) == pytest.approx(
+        acceleration, rel=0.02
+    )
+
+
+def test_a_demand_beyond_the_curve_is_a_remark(tmp_path: Path) -> None:
+    results = ran(tmp_path, "3 0.1 TC=0.6", "EQUAKE\n SINE AMPLITUDE=20 PERIOD=0.7 DURATION=3\n")
+    (point,) = results.table("performance")
+    assert math.isnan(point["displacement"]) and point["changes"] == 0
+    assert "The demand on pushover 1 exceeds the curve" in (tmp_path / "deck.rpt").read_text()
