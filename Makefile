@@ -6,9 +6,10 @@
 # make kernels   compile the kernels for this checkout, as the wheel has them; the tests do it first
 # make fuzz N=1000   give the program N damaged decks, more runs, and what else a user gives it; SEED=0, build/fuzz
 # make wheel     build the wheel of this platform, kernels compiled: dist/
+# make extension   build the extension of VS Code, with Node.js: dist/
 # make docs      build the site: build/site/index.html
 # make docstrings   parse the docstrings of all modules, as the site does with those that it shows
-# All set up a virtual environment in $(VENV) first.
+# All but the extension set up a virtual environment in $(VENV) first.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -28,7 +29,7 @@ NO_COMPILER := There is no C compiler here, so that each process compiles what i
 # bytecode that is kept halves the time in which a process starts
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: example test test-all check test-night kernels fuzz lint manual wheel docs docstrings clean
+.PHONY: example test test-all check test-night kernels fuzz lint manual wheel extension docs docstrings clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -71,6 +72,10 @@ manual: $(VENV)/ready   # rewrite the pages that the program makes
 
 wheel: $(VENV)/ready
 	HATCH_BUILD_HOOK_ENABLE_CUSTOM=1 $(BIN)/python -m build --wheel
+
+extension:
+	mkdir -p dist
+	cd manual/editor/vscode && npm install --no-audit --no-fund && npm run package -- --out $(CURDIR)/dist/
 
 $(VENV)/ready-docs: $(VENV)/ready
 	$(PIP) -e ".[docs]"
