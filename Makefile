@@ -6,7 +6,7 @@
 # make kernels   compile the kernels for this checkout, as the wheel has them; the tests do it first
 # make fuzz N=1000   give the program N damaged decks, more runs, and what else a user gives it; SEED=0, build/fuzz
 # make wheel     build the wheel of this platform, kernels compiled: dist/
-# make extension   build the extension of VS Code, with Node.js: dist/
+# make extension   build the extension of VS Code, with Node.js: dist/pound-solve.vsix
 # make docs      build the site: build/site/index.html
 # make docstrings   parse the docstrings of all modules, as the site does with those that it shows
 # All but the extension set up a virtual environment in $(VENV) first.
@@ -75,7 +75,7 @@ wheel: $(VENV)/ready
 
 extension:
 	mkdir -p dist
-	cd manual/editor/vscode && npm install --no-audit --no-fund && npm run package -- --out $(CURDIR)/dist/
+	cd manual/editor/vscode && npm install && npm run package -- --out $(CURDIR)/dist/pound-solve.vsix
 
 $(VENV)/ready-docs: $(VENV)/ready
 	$(PIP) -e ".[docs]"

@@ -28,7 +28,9 @@ function activate(context) {
       if (document.languageId === LANGUAGE) pictures.forEach((picture) => picture.draw());
     }),
     vscode.workspace.onDidChangeConfiguration((change) => {
-      if (change.affectsConfiguration("pound-solve")) restart();
+      if (!change.affectsConfiguration("pound-solve")) return;
+      restart();
+      pictures.forEach((picture) => picture.draw());
     }),
   );
   restart();
@@ -49,15 +51,15 @@ function program() {
 }
 
 /**
- * Run pound-solve to its end, without input.
+ * Run the program to its end, without input.
+ * @param {string} command
  * @param {string[]} args
  * @param {{cwd?: string, signal?: AbortSignal}} [options]
  * @returns {Promise<string>} why it failed, in words; empty if it did not
  */
-function complaint(args, options = {}) {
-  const { command, records } = program();
+function complaint(command, args, options = {}) {
   return new Promise((resolve) => {
-    const child = execFile(command, [...args, ...records], options, (error, _, stderr) => {
+    const child = execFile(command, args, options, (error, _, stderr) => {
       if (typeof error?.code === "string") {
         // it did not start
         resolve(
@@ -79,17 +81,18 @@ function restart() {
 async function start() {
   await client?.dispose().catch(() => {}); // the old server may have ended by itself
   client = undefined;
+  const { command, records } = program();
+  const args = ["lsp", ...records];
   // without input the server ends at once; the client would not say what a server that fails complains of
-  const wrong = await complaint(["lsp"]);
+  const wrong = await complaint(command, args);
   if (wrong) {
     vscode.window.showErrorMessage(wrong, "Open Settings").then((chosen) => {
       if (chosen) vscode.commands.executeCommand("workbench.action.openSettings", "pound-solve.");
     });
     return;
   }
-  const { command, records } = program();
-  const server = { command, args: ["lsp", ...records] };
-  client = new LanguageClient("pound-solve", server, { documentSelector: [{ language: LANGUAGE }] });
+  const help = { documentSelector: [{ language: LANGUAGE }] };
+  client = new LanguageClient("pound-solve", { command, args }, help);
   await client.start();
 }
 
@@ -103,7 +106,8 @@ async function start() {
 async function saved(uri) {
   const shown = vscode.window.activeTextEditor?.document;
   const document = uri ? await vscode.workspace.openTextDocument(uri) : shown;
-  if (document?.uri.scheme === "file" && (!document.isDirty || (await document.save()))) return document.fileName;
+  const hasFile = document?.uri.scheme === "file";
+  if (hasFile && (!document.isDirty || (await document.save()))) return document.fileName;
   vscode.window.showWarningMessage("Open a deck and save it in a file first.");
   return "";
 }
@@ -115,9 +119,8 @@ async function runDeck(uri) {
   const { command, records } = program();
   // a process, not a line of a shell: no name needs quotes
   const run = new vscode.ProcessExecution(command, ["run", deck, ...records], { cwd: path.dirname(deck) });
-  const kind = { type: "pound-solve" };
-  const name = path.basename(deck);
-  await vscode.tasks.executeTask(new vscode.Task(kind, vscode.TaskScope.Workspace, name, "pound-solve", run));
+  const [kind, scope] = [{ type: "pound-solve" }, vscode.TaskScope.Workspace];
+  await vscode.tasks.executeTask(new vscode.Task(kind, scope, path.basename(deck), "pound-solve", run));
 }
 
 /** @param {vscode.Uri} [uri] */
@@ -141,7 +144,8 @@ class Picture {
     this.images = "";
     this.drawing = new AbortController();
     const where = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
-    this.panel = vscode.window.createWebviewPanel("pound-solve.picture", path.basename(deck), where);
+    const title = `Picture of ${path.basename(deck)}`;
+    this.panel = vscode.window.createWebviewPanel("pound-solve.picture", title, where);
     this.panel.webview.html = page("<p>Drawing ...</p>");
     this.panel.onDidDispose(() => {
       this.drawing.abort();
@@ -156,8 +160,9 @@ class Picture {
     const { signal } = this.drawing;
     const folder = await fs.mkdtemp(path.join(os.tmpdir(), "pound-solve-"));
     try {
-      const args = ["plot", path.basename(this.deck), "--out", folder, "--as", "svg"];
-      const wrong = await complaint(args, { cwd: path.dirname(this.deck), signal });
+      const { command, records } = program();
+      const args = ["plot", path.basename(this.deck), "--out", folder, "--as", "svg", ...records];
+      const wrong = await complaint(command, args, { cwd: path.dirname(this.deck), signal });
       const drawn = wrong ? this.images : await imagesIn(folder);
       if (signal.aborted) return;
       this.images = drawn;
@@ -191,11 +196,12 @@ function mistakes(wrong, images) {
 
 /** @param {string} body */
 function page(body) {
+  const allowed = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
   return `<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="${allowed}">
 <style>
 img { display: block; width: 100%; margin: 0 0 1em; background: white; }
 pre { white-space: pre-wrap; color: var(--vscode-errorForeground); }
