@@ -159,6 +159,21 @@ def test_a_table_under_the_name_of_another_is_told_in_this_version_only(tmp_path
         results.table("nodes")
 
 
+def test_a_table_of_another_version_without_a_column_of_this_one_is_not_drawn(tmp_path, capsys):
+    path = tmp_path / "a.h5"
+    sample.write(path)
+    with h5py.File(path, "r+") as file:
+        names = [name for name in file["tables/nodes"].dtype.names if name != "x"]
+        fewer = file["tables/nodes"][()][names]
+        del file["tables/nodes"]
+        file["tables/nodes"] = fewer
+        file.attrs["format_version"] = [1, 1]
+    with Results.open(path) as results:
+        assert not results.holds("nodes") and results.holds("elements")
+    assert main(["plot", str(path), "frame", "-o", str(tmp_path / "p")]) == 2
+    assert "nothing to draw: frame (no nodes)" in capsys.readouterr().err
+
+
 def test_a_table_that_a_verb_needs_and_a_file_lacks_is_named(tmp_path, capsys):
     path = tmp_path / "a.h5"
     sample.write(path)

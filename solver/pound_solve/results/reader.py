@@ -241,10 +241,14 @@ class Results:
 
     @_sound
     def holds(self, name: str) -> bool:
-        """Whether the history of that name has an instant or, failing a history, the table has a row."""
+        """Whether the history of that name has an instant or, failing a history, the table has a row and
+        the columns of this version.
+        """
         if name in self._datasets:
             return self._length > 0
-        return name in self.tables and len(self._table(name)) > 0
+        if name not in self.tables or not len(stored := self._table(name)):
+            return False
+        return name not in TABLES or {c.name for c in TABLES[name].columns} <= set(stored.dtype.names or ())
 
     @_sound
     def table(self, name: str) -> NDArray[Any]:
