@@ -239,6 +239,12 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         ("POUND", "HERTZDAMP", "K", "15050400", "kN/m^1.5", ""),
         ("POUND", "HERTZDAMP", "E", "0.65", "-", ""),
     ),
+    "interaction": (
+        ("COL3", 373.5, -226.0),
+        ("COL3", 2490.0, 0.0),
+        ("COL3", 373.5, 226.0),
+        ("COL3", -2490.0, 0.0),
+    ),
     "springs": (
         (101, "X", "ELASTO_PLASTIC", 210000.0, "kN/m", 1200.0, -1200.0, "kN"),
         (102, "hinge I", "TAKEDA", 48200.0, "kN*m/rad", 170.0, -260.0, "kN*m"),

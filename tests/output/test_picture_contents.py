@@ -77,6 +77,35 @@ OUTPUT
 """
 
 
+#: a steel column that yields under axial force and moment, and a beam whose hinge takes moments alone
+COLUMN = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3
+ 3 3 3 FIX=Y
+ELEMENTS
+ 7 COLUMN 1 2
+ 9 BEAM 2 3
+PROPS
+ COLUMN BEAM_COLUMN E=2e8 A=0.0106 I=8.1e-5 PY=2490 MP=226 LP=0.3 HINGES=I
+ BEAM FRAME E=2e8 A=0.01 I=1e-4 MI=150,-120 LP=0.2 PIN=J RULE=BILINEAR R=0.02
+WEIGHTS
+ 2 900
+LOADS
+ 2 0 -900
+DAMPING
+ RAYLEIGH XI=0.02 MODES=1,2
+EQUAKE
+ SINE DIRECTION=X AMPLITUDE=3 PERIOD=0.9
+ SINE DIRECTION=Y AMPLITUDE=2.5 PERIOD=0.11
+ANALYSIS
+ STATIC
+ HISTORY 2 METHOD=NEWMARK DT=0.001
+OUTPUT
+ EVERY=0.01
+"""
+
+
 #: a long row of masses, the last of which meets a wall
 ROW = """
 NODES
@@ -451,6 +480,37 @@ def test_one_spring_hinge_or_contact_is_drawn_by_any_of_its_names(pair: Results,
     assert "no spring or contact '17'" in said and "4 hinge J" in said and "floor 1" in said
     assert main(["plot", file, "diagrams", "--member", "floor 1"]) == 2
     assert "there are: members 1, 2, 3, 4, 11, 12" in capsys.readouterr().err
+
+
+def test_forces_of_a_hinge_lie_on_or_within_the_diagram_that_is_drawn(tmp_path: Path) -> None:
+    deck = tmp_path / "column.inp"
+    deck.write_text(COLUMN, encoding="utf-8")
+    with pound_solve.run(deck) as out:
+        column, beam = plot.picture(out, "interaction").axes
+        labels, forces = out.labels("spring/force"), out.history("spring/force")
+        table, springs = out.table("interaction"), out.table("springs")
+    assert (column.get_title(), beam.get_title()) == ("7 hinge I", "9 hinge I")
+    diagram, path, start, peak, yields = (np.array(x.get_data()).T for x in column.get_lines())
+    knee = 0.15 * 2490.0
+    by_hand = [(-226, -knee), (-226, knee), (0, -2490), (0, 2490), (226, -knee), (226, knee)]
+    assert sorted(np.round(diagram[:-1], 6).tolist()) == [list(corner) for corner in by_hand]
+    assert diagram[:-1] == pytest.approx(np.column_stack([table["moment"], table["axial"]]))
+    assert diagram[-1].tolist() == diagram[0].tolist()
+    # the springs of the hinge carry the axial force, and their levers are 0 and Mp / 0.85 Py
+    of_hinge = forces[:, [label.startswith("7 hinge I") for label in labels]]
+    assert path[:, 1] == pytest.approx(of_hinge.sum(axis=1), rel=1e-9, abs=1e-6)
+    m, n = np.abs(path).T
+    assert np.maximum(m / 226.0, 0.85 * m / 226.0 + n / 2490.0).max() == pytest.approx(1.0, abs=1e-9)
+    assert start.tolist() == [path[0].tolist()] and abs(start[0, 1] + 900.0) < 1.0
+    assert np.abs(peak[0, 0]) == m.max() and peak[0].tolist() in path.tolist()
+    # before the first mark every spring is below its strength
+    first = min(path.tolist().index(x) for x in yields.tolist())
+    limits = springs[springs["element"] == 7]
+    reached = (of_hinge >= limits["yield_plus"] - 1e-6) | (of_hinge <= limits["yield_minus"] + 1e-6)
+    assert first == np.flatnonzero(reached.any(axis=1))[0] > 0
+    assert [x.get_xdata()[0] for x in beam.get_lines()[:2]] == [150.0, -120.0]
+    moment = np.array(beam.get_lines()[2].get_xdata())
+    assert moment == pytest.approx(forces[:, labels.index("9 hinge I")], rel=1e-9, abs=1e-6)
 
 
 def test_wrong_times_and_options_are_told(pair: Results, capsys: Any) -> None:

@@ -62,7 +62,7 @@ def test_every_picture_is_drawn_and_repeats(
 ) -> None:
     names = plot.possible(results)
     assert {"frame", "histories", "energy", "contacts", "collisions"} <= set(names)
-    names = [name for name in names if name not in ("loads", "loops", "hinges", "diagrams")]
+    names = [name for name in names if name not in ("loads", "loops", "interaction", "hinges", "diagrams")]
     names = names[:count]  # springs alone, without loads
     first, left_out = plot.draw(results, names, tmp_path / "a", ending)
     again, _ = plot.draw(results, names, tmp_path / "b", ending)

@@ -13,7 +13,7 @@ from decks import solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError
-from pound_solve.structure.elements.beam_column import springs
+from pound_solve.structure.elements.beam_column import capacity, springs
 from verification.cases import run_text
 
 SECTION = "E=2e8 A=0.0106 I=8.1e-5"  # about HE 220 B: Py = 2490 kN, Mp = 226 kN m of S235
@@ -112,6 +112,7 @@ def test_every_symmetric_diagram_is_that_of_its_springs(corners):
     made = springs(corners)
     got = around(sum_of_segments(made.direction, made.strength, made.shift))
     assert got == pytest.approx(around(corners), rel=1e-9, abs=1e-7)
+    assert around(capacity(made)) == pytest.approx(got, rel=1e-9, abs=1e-7)
     assert made.skew < 1e-12 and np.abs(made.shift).max() < 1
 
 

@@ -115,6 +115,19 @@ def chosen_contacts(results: Results, choice: Choice, refused: bool = True) -> l
     return _columns(results, choice, "contact")
 
 
+def chosen_members(results: Results, choice: Choice) -> list[int]:
+    """Numbers of the members that the choice names, or of all.
+
+    Raises
+    ------
+    ChoiceError
+        It names something else.
+    """
+    refuse(results, choice, ("member",))
+    numbers = members(results)
+    return [numbers[k] for k in _columns(results, choice, "member")] or numbers
+
+
 @dataclass(frozen=True, slots=True)
 class MemberForces:
     """Forces along one member.
@@ -148,10 +161,9 @@ def lines(
     The extremes at the ends are the true ones; between the ends they are those at the stored instants, and
     what these lack at the ends is added in proportion.
     """
-    refuse(results, choice, ("member",))
-    if not members(results):
+    chosen = set(chosen_members(results, choice))
+    if not chosen:
         return
-    chosen = {members(results)[k] for k in _columns(results, choice, "member")} or set(members(results))
     extremes: Mapping[tuple[int, str], tuple[float, float]] = {}
     if row is not None:
         values = dict(zip(_ends(results), row[:, None]))

@@ -151,6 +151,19 @@ def springs(corners: Array) -> HingeSprings:
     return HingeSprings(direction, strength, shift, float(np.abs(wanted - made).max()))
 
 
+def capacity(hinge: HingeSprings) -> Array:
+    """Corners (N, M) of what the springs of a hinge carry together, anticlockwise, shape (2 n, 2) [F, F L]:
+    edge by edge from the lowest moment on.
+    """
+    edges = 2.0 * hinge.strength[:, None] * hinge.direction
+    upwards = (edges[:, 1] > 0.0) | ((edges[:, 1] == 0.0) & (edges[:, 0] > 0.0))
+    edges = np.where(upwards[:, None], edges, -edges)
+    edges = edges[np.argsort(np.arctan2(edges[:, 1], edges[:, 0]), kind="stable")]
+    lowest = (hinge.shift * hinge.strength) @ hinge.direction - 0.5 * edges.sum(axis=0)
+    corners: Array = lowest + np.cumsum(np.vstack([edges, -edges]), axis=0)
+    return corners
+
+
 def build(context: ElementContext) -> ElementParts:
     """Build the beam and the springs of its hinges."""
     p = context.prop
