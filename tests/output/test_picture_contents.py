@@ -559,6 +559,9 @@ def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, 
     factor = (frames * moved).sum() / (moved * moved).sum()
     assert frames == pytest.approx(factor * moved, abs=1e-4)
     assert f"drawn {factor:.3g} times" in film["captions"][0]
+    # all beams and columns of the pair bend; the page needs four numbers for each
+    assert film["members"] == [] and len(film["beams"]) == 6
+    assert np.shape(film["turned"]) == (len(frames), 4 * 6) and np.abs(film["turned"]).max() > 0.01
     # however short a collision, a frame shows it
     assert sum(np.diff([0, *(c[0] for c in film["closed"])]) > 0) >= 2
     again, _ = plot.draw(pair, ["animation"], tmp_path / "again", "html")

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from pound_solve.numerics.types import Array
 from pound_solve.report.html.picture import PlotlyPicture, Trace, numbers, plain
 from pound_solve.report.plot.geometry import (
-    NOWHERE,
     SHARE,
+    UNDISPLACED,
     DrawnStructure,
     apart,
     broken_line,
     displacements,
+    mode_shift,
 )
 from pound_solve.report.plot.pictures import hinges, modes
 from pound_solve.results import Results
@@ -30,7 +31,7 @@ def structure(results: Results) -> Iterator[PlotlyPicture]:
     """Picture of the structure, undeformed and at the instant of its largest displacement."""
     if not results.holds("nodes"):
         return
-    s, note, shift = DrawnStructure(results, apart()), "", dict[int, Array]()
+    s, note, shift = DrawnStructure(results, apart()), "", UNDISPLACED
     traces: list[Trace] = []
     if results.holds("node/u"):
         displaced = displacements(results)
@@ -47,7 +48,7 @@ def structure(results: Results) -> Iterator[PlotlyPicture]:
     traces.append(_line("contacts", broken_line((tip, end) for _, tip, end in ends), "#b3301e") | marked)
     arms = [(start, tip) for start, tip, _ in ends if not np.array_equal(start, tip)]
     traces.append(_line("rigid arms of contacts", broken_line(arms), "#b3301e"))
-    place = {n: xy + shift.get(n, NOWHERE) for n, xy in s.place.items()}
+    place = {n: xy + shift.at(n) for n, xy in s.place.items()}
     traces.append(
         {
             "name": "nodes", "mode": "markers", "marker": {"size": 5, "color": "#333"},
@@ -79,10 +80,8 @@ def mode_shapes(results: Results) -> Iterator[PlotlyPicture]:
     traces = [_line("at rest", s.path(), GREY)]
     for n, mode in enumerate(dict.fromkeys(shapes["mode"].tolist())):
         shape = shapes[shapes["mode"] == mode]
-        largest = float(np.hypot(shape["x"], shape["y"]).max())
-        factor = SHARE * s.size / largest if largest else 0.0
-        shift = {int(r["node"]): factor * np.array([r["x"], r["y"]]) for r in shape}
-        line = _line(f"mode {mode}, {periods[mode]:.4g} {s.units.time}", s.path(shift))
+        bent = s.path(mode_shift(shape, s.size))
+        line = _line(f"mode {mode}, {periods[mode]:.4g} {s.units.time}", bent)
         traces.append(line if n == 0 else line | {"visible": "legendonly"})
     note = "A click on a name shows its shape, or hides it. All shapes are drawn to one size."
     yield _of_structure("Mode shapes", note, s, traces[: MOST_MODES + 1])

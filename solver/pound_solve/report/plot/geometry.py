@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
+from pound_solve.report.plot.beams import Shift, beams
 from pound_solve.report.plot.neighbours import Contact, moves, reach
 from pound_solve.results import Results
 from pound_solve.structure.elements.base import axes as own_axes
@@ -20,10 +22,11 @@ APART = 0.03  #: distance of neighbours in pictures without displacements, likew
 PLATE = 0.012  #: half the length of the plate at the end of a contact's reach, likewise
 WALL = 0.035  #: half the length of a wall, and about its distance, as a fraction of that size
 HATCHES = 6
+HINGES = "spring/deformation"  #: history with the rotations of hinges
 INWARDS = 0.07  #: of a hinge from the end of its member, as a fraction of its length
 SLENDER = 0.15  #: least half of a picture's side, as a fraction of that size
 NOWHERE = np.zeros(2)
-UNDISPLACED: Mapping[int, Array] = MappingProxyType({})  #: no displacements
+UNDISPLACED: Final = Shift(MappingProxyType({}), MappingProxyType({}))  #: no displacements
 
 
 class DrawnStructure:
@@ -42,6 +45,8 @@ class DrawnStructure:
         Nodes [L].
     place : dict of int to ndarray, shape (2,)
         Nodes as they are drawn.
+    beams : dict of int to Beam
+        Members that bend, by element.
     contacts : list of Contact
     distances : dict of str to float
         Distance that each contact is drawn with, beyond its reach [L]; empty without `distance`.
@@ -60,6 +65,7 @@ class DrawnStructure:
         if "masses" in results.tables:
             self.mass = {int(m["node"]): max(m["mx"], m["my"]) for m in results.table("masses")}
         self.place = self.true
+        self.beams = beams(results, self.true)
         self.contacts = list(self._contacts(results))
         self._measure()
         self.distances: dict[str, float] = {}
@@ -87,34 +93,38 @@ class DrawnStructure:
         self.low, self.high = xy.min(axis=0), xy.max(axis=0)
         self.size = float(max(self.high - self.low)) or 1.0
 
-    def lines(self) -> list[tuple[int, int]]:
-        """Ends of all elements between two nodes but contacts."""
-        return [(int(e["i"]), int(e["j"])) for e in self.elements if e["j"] and e["kind"] != "CONTACT"]
+    def lines(self, without: Collection[int] = ()) -> list[tuple[int, int]]:
+        """Ends of all elements between two nodes but contacts, and `without` some others."""
+        return [
+            (int(e["i"]), int(e["j"]))
+            for e in self.elements
+            if e["j"] and e["kind"] != "CONTACT" and int(e["element"]) not in without
+        ]
 
-    def path(self, shift: Mapping[int, Array] = UNDISPLACED) -> Array:
-        """All elements between two nodes but contacts as one line with gaps, displaced by `shift` of every
-        node, shape (2, 3 n) [L].
+    def path(self, shift: Shift = UNDISPLACED) -> Array:
+        """All elements between two nodes but contacts as one line with gaps, displaced: members that bend
+        between nodes that move are curved, shape (2, n) [L].
         """
-        return broken_line(
-            (self.place[i] + shift.get(i, NOWHERE), self.place[j] + shift.get(j, NOWHERE))
-            for i, j in self.lines()
-        )
+        bent = [b for b in self.beams.values() if b.i in shift.nodes and b.j in shift.nodes]
+        curved = {b.element for b in bent}
+        straight = [
+            (self.place[i] + shift.at(i), self.place[j] + shift.at(j)) for i, j in self.lines(curved)
+        ]
+        return broken_line([*straight, *(b.line(self.place, shift) for b in bent)])
 
     def arm(self, contact: Contact) -> Array:
         """Reach of a contact from node I, shape (2,) [L]."""
         return reach(contact, self.place, self.distances.get(contact.name, 0.0))
 
-    def ends(
-        self, contact: Contact, shift: Mapping[int, Array] = UNDISPLACED
-    ) -> tuple[Array, Array, Array]:
+    def ends(self, contact: Contact, shift: Shift = UNDISPLACED) -> tuple[Array, Array, Array]:
         """Node I, the end of the contact's reach, and node J, displaced; a wall's J is its front."""
-        start = self.place[contact.i] + shift.get(contact.i, NOWHERE)
+        start = self.place[contact.i] + shift.at(contact.i)
         if not contact.j:
             return start, start, self.front(contact)
-        return start, start + self.arm(contact), self.place[contact.j] + shift.get(contact.j, NOWHERE)
+        return start, start + self.arm(contact), self.place[contact.j] + shift.at(contact.j)
 
-    def draw(self, axes: Any, shift: Mapping[int, Array] = UNDISPLACED, **look: Any) -> Any:
-        """Draw the members, displaced by `shift` of every node; return the line."""
+    def draw(self, axes: Any, shift: Shift = UNDISPLACED, **look: Any) -> Any:
+        """Draw the members, displaced; return the line."""
         look.setdefault("linestyle", "-")
         return axes.plot(*self.path(shift=shift), **look)[0]
 
@@ -122,7 +132,7 @@ class DrawnStructure:
         """Point of a wall that node I meets."""
         return np.asarray(self.place[wall.i] + self.distances.get(wall.name, WALL * self.size) * wall.along)
 
-    def draw_contacts(self, axes: Any, shift: Mapping[int, Array] = UNDISPLACED) -> None:
+    def draw_contacts(self, axes: Any, shift: Shift = UNDISPLACED) -> None:
         """Draw the contacts, displaced: the reach of node I with a plate at its end, a thin line over the
         gap, and a plate at node J, or a wall.
         """
@@ -246,8 +256,12 @@ class Displacements(NamedTuple):
         Gaps are magnified as displacements are.
     nodes : list of int
         Recorded nodes.
-    drawn : ndarray, shape (nt, n_nodes, 2)
-        Their displacements along X and Y, times `factor` [L].
+    drawn : ndarray, shape (nt, n_nodes, 3)
+        Their displacements along X and Y [L] and rotations, times `factor`.
+    hinges : dict of (int, str) to int
+        Element and end, and the column in ``spring/deformation``, of the hinges of members.
+    opened : ndarray, shape (nt, n_springs)
+        Rotations of the hinges in these columns, times `factor`.
     factor : float
         Magnification: the largest displacement is drawn as `SHARE` of the structure's size.
     row : int
@@ -259,34 +273,66 @@ class Displacements(NamedTuple):
     structure: DrawnStructure
     nodes: list[int]
     drawn: Array
+    hinges: dict[tuple[int, str], int]
+    opened: Array
     factor: float
     row: int
     largest: float
 
-    def shift(self, row: int) -> dict[int, Array]:
-        """Drawn displacements of the recorded nodes in a row, by node number [L]."""
-        return dict(zip(self.nodes, self.drawn[row]))
+    def shift(self, row: int) -> Shift:
+        """Drawn displacements in a row."""
+        return self._shift(self.drawn[row], self.opened[row])
 
-    def magnified(self, u: Array) -> dict[int, Array]:
-        """Drawn displacements at an instant, from those of the recorded nodes, shape (n_nodes, 3) [L]."""
-        return dict(zip(self.nodes, self.factor * u[:, :2]))
+    def magnified(self, u: Array, deformation: Array) -> Shift:
+        """Drawn displacements at an instant, from rows of ``node/u`` and of ``spring/deformation``."""
+        return self._shift(self.factor * u, self.factor * deformation)
+
+    def _shift(self, drawn: Array, opened: Array) -> Shift:
+        return Shift(
+            dict(zip(self.nodes, drawn)), {hinge: float(opened[k]) for hinge, k in self.hinges.items()}
+        )
 
 
 def displacements(results: Results, rows: slice = slice(None)) -> Displacements:
     """Magnify the displacements in some rows of the history, and the gaps with them."""
     nodes = [int(n) for n in results.attributes("node/u")["nodes"]]
-    u = results.history("node/u")[rows, :, :2]
+    u = results.history("node/u")[rows]
     sizes = np.hypot(u[..., 0], u[..., 1]).max(axis=1)
     row = int(np.argmax(sizes))
     largest = float(sizes[row])
     factor = SHARE * DrawnStructure(results).size / largest if largest > 0.0 else 1.0
     structure = DrawnStructure(results, lambda gap, size: max(factor * gap, 0.0))
-    return Displacements(structure, nodes, factor * u, factor, row, largest)
+    hinges, opened = hinge_columns(results), np.zeros((len(u), 0))
+    if hinges:
+        opened = factor * results.history(HINGES)[rows]
+    return Displacements(structure, nodes, factor * u, hinges, opened, factor, row, largest)
 
 
-def broken_line(segments: Iterable[tuple[Array, Array]]) -> Array:
-    """Segments as one line with gaps (NaN), shape (2, 3 n)."""
-    return np.array([(i, j, NOWHERE * np.nan) for i, j in segments]).reshape(-1, 2).T
+def mode_shift(shape: NDArray[Any], size: float) -> Shift:
+    """Displacements of a mode out of its rows of `mode_shapes`, the largest as `SHARE` of `size`."""
+    largest = float(np.hypot(shape["x"], shape["y"]).max())
+    factor = SHARE * size / largest if largest else 0.0
+    moved = factor * np.column_stack([shape["x"], shape["y"], shape["r"]])
+    return Shift(dict(zip(shape["node"].tolist(), moved)), {})
+
+
+def hinge_columns(results: Results) -> dict[tuple[int, str], int]:
+    """Columns of the rotations of the hinges of members, by element and end."""
+    if HINGES not in results.histories:
+        return {}
+    names = results.attributes(HINGES)
+    ends = {"hinge I": "I", "hinge J": "J"}  # those of a BEAM_COLUMN are rows of springs
+    return {
+        (int(element), ends[component]): k
+        for k, (element, component) in enumerate(zip(names["element"], names["quantity"]))
+        if component in ends
+    }
+
+
+def broken_line(pieces: Iterable[Sequence[Array] | Array]) -> Array:
+    """Pieces, each of points of shape (2,), as one line with gaps (NaN), shape (2, n)."""
+    gap = NOWHERE * np.nan
+    return np.vstack([np.zeros((0, 2)), *(point for piece in pieces for point in (*piece, gap))]).T
 
 
 def draw_wall(axes: Any, front: Array, across: Array, half: float) -> None:

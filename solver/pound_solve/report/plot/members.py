@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from pound_solve.numerics.types import Array
+from pound_solve.report.plot.beams import property_items
 from pound_solve.report.plot.geometry import contact_name
 from pound_solve.report.plot.schema import Choice, ChoiceError
 from pound_solve.results import Results
@@ -169,14 +170,15 @@ def lines(
         values = dict(zip(_ends(results), row[:, None]))
     else:
         values, extremes = _values(results, choice), _extremes(results, choice)
-    blocks, points = _blocks(results), _point_loads(results)
+    items, points = property_items(results), _point_loads(results)
     for e in results.table("elements"):
         number = int(e["element"])
         if number not in chosen:
             continue
         i, j = place[int(e["i"])], place[int(e["j"])]
         along = (j - i) / max(float(np.hypot(*(j - i))), 1e-300)
-        first, last = blocks.get(str(e["property"]), (0.0, 0.0))
+        section = items.get(str(e["property"]), {})
+        first, last = float(section.get("END1", 0.0)), float(section.get("END2", 0.0))
         i, j = i + first * along, j - last * along
         at_ends = {quantity: v for (n, quantity), v in values.items() if n == number}
         x, forces = along_member(at_ends, float(np.hypot(*(j - i))), along, points.get(number, []))
@@ -258,17 +260,6 @@ def _extremes(results: Results, choice: Choice) -> dict[tuple[int, str], tuple[f
         return {}
     table = results.table("member_envelope")
     return {(int(r["element"]), str(r["quantity"])): (float(r["min"]), float(r["max"])) for r in table}
-
-
-def _blocks(results: Results) -> dict[str, tuple[float, float]]:
-    """Lengths of the rigid end blocks by property set [L]."""
-    blocks: dict[str, tuple[float, float]] = {}
-    for row in results.table("properties"):
-        if row["item"] in ("END1", "END2"):
-            first, last = blocks.get(row["property"], (0.0, 0.0))
-            length = float(row["value"])
-            blocks[row["property"]] = (length, last) if row["item"] == "END1" else (first, length)
-    return blocks
 
 
 def _point_loads(results: Results) -> dict[int, list[tuple[float, Array]]]:

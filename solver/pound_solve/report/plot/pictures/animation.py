@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -13,9 +14,11 @@ import numpy as np
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.report.formats import ANIMATION_FORMATS
 from pound_solve.report.plot import style
+from pound_solve.report.plot.beams import Beam, Shift
 from pound_solve.report.plot.geometry import (
     SHARE,
     WALL,
+    Displacements,
     DrawnStructure,
     broken_line,
     displacements,
@@ -36,25 +39,18 @@ class Film:
 
     Attributes
     ----------
-    structure : DrawnStructure
+    displaced : Displacements
+        The structure and its displacements at the times of the frames.
     title : str
-    factor : float
-        By which displacements are drawn larger.
-    nodes : list of int
     time : ndarray, shape (n,)
         Of the frames [T].
-    moved : ndarray, shape (n, n_nodes, 2)
-        Displacements of the nodes, times the factor [L].
     closed : ndarray of bool, shape (n, n_contacts)
         Which contacts of the structure were closed at any instant since the frame before.
     """
 
-    structure: DrawnStructure
+    displaced: Displacements
     title: str
-    factor: float
-    nodes: list[int]
     time: Array
-    moved: Array
     closed: Flags
 
 
@@ -62,13 +58,18 @@ def film(results: Results, choice: Choice) -> Film:
     """Make the frames of the animation at equal intervals, interpolated between the stored instants."""
     displaced, t = displacements(results, choice.span(results)), results.time[choice.span(results)]
     time = np.linspace(t[0], t[-1], min(FRAMES, max(2, len(t))))
-    columns = displaced.drawn.reshape(len(t), -1).T
-    moved = np.column_stack([np.interp(time, t, column) for column in columns])
+    drawn, opened = (_interpolated(time, t, x) for x in (displaced.drawn, displaced.opened))
     closed = [_closed(results, c.name, time) for c in displaced.structure.contacts]
     return Film(
-        displaced.structure, results.title, displaced.factor, displaced.nodes, time,
-        moved.reshape(len(time), len(displaced.nodes), 2), np.array(closed, bool).reshape(-1, len(time)).T,
+        displaced._replace(drawn=drawn, opened=opened), results.title, time,
+        np.array(closed, bool).reshape(-1, len(time)).T,
     )  # fmt: skip
+
+
+def _interpolated(time: Array, t: Array, values: Array) -> Array:
+    """Values at `time` out of those at `t` along the first axis."""
+    columns = [np.interp(time, t, column) for column in values.reshape(len(t), -1).T]
+    return np.array(columns).T.reshape(len(time), *values.shape[1:])
 
 
 def _closed(results: Results, name: str, time: Array) -> Flags:
@@ -91,7 +92,7 @@ class AnimationFigure:
     """
 
     def __init__(self, scene: Film) -> None:
-        s = self.structure = scene.structure
+        s = self.structure = scene.displaced.structure
         self.film = scene
         self.figure = style.figure(*s.shape(), title=scene.title)
         self.axes = self.figure.add_subplot()
@@ -111,8 +112,8 @@ class AnimationFigure:
     def show(self, k: int) -> None:
         """Draw frame `k`."""
         film, s = self.film, self.structure
-        moved = dict(zip(film.nodes, film.moved[k]))
-        self.members.set_data(*s.path(shift=moved))
+        moved = film.displaced.shift(k)
+        self.members.set_data(*s.path(moved))
         ends = [s.ends(c, moved) for c in s.contacts]
         self.arms.set_data(*broken_line((start, tip) for start, tip, _ in ends))
         points = [(tip + end) / 2 if c.j else start for c, (start, tip, end) in zip(s.contacts, ends)]
@@ -124,10 +125,10 @@ class AnimationFigure:
 
 def caption(scene: Film, k: int) -> str:
     """Text on a frame: its time, the magnification, and the contacts that are closed."""
-    names = [c.name for c, closed in zip(scene.structure.contacts, scene.closed[k]) if closed]
+    names = [c.name for c, closed in zip(scene.displaced.structure.contacts, scene.closed[k]) if closed]
     when = (
-        f"{scene.time[k]:.2f} {scene.structure.units.time}, "
-        f"displacements and gaps drawn {scene.factor:.3g} times as large"
+        f"{scene.time[k]:.2f} {scene.displaced.structure.units.time}, "
+        f"displacements and gaps drawn {scene.displaced.factor:.3g} times as large"
     )
     return f"{when}; closed: {', '.join(names)}" if names else when
 
@@ -153,28 +154,44 @@ def write(results: Results, choice: Choice, path: Path) -> None:
 
 def page(scene: Film) -> str:
     """HTML page with the drawing, its data and the script that plays it, without other files."""
-    s = scene.structure
-    places = {n: k for k, n in enumerate(scene.nodes)}
-    still = [n for n in s.place if n not in places]
-    order = [*scene.nodes, *still]
-    at = {n: k for k, n in enumerate(order)}
+    s, nodes = scene.displaced.structure, scene.displaced.nodes
+    still = [n for n in s.place if n not in nodes]
+    at = {n: k for k, n in enumerate([*nodes, *still])}
     digits = max(0, 5 - int(np.floor(np.log10(s.size))))
+    bent = [b for b in s.beams.values() if b.i in nodes and b.j in nodes]
+    frames = range(len(scene.time))
     data = {
-        "nodes": [np.round(s.place[n], digits).tolist() for n in order],
-        "members": [[at[i], at[j]] for i, j in s.lines()],
+        "nodes": [np.round(s.place[n], digits).tolist() for n in at],
+        "members": [[at[i], at[j]] for i, j in s.lines({b.element for b in bent})],
+        "beams": [[at[b.i], at[b.j], *b.blocks, *b.along.tolist()] for b in bent],
         "contacts": [
             [at[c.i], at[c.j or c.i], *np.round(s.arm(c), digits).tolist()] for c in s.contacts
         ],
         "supports": [at[n] for n in s.place if {"X", "Y"} <= set(s.fixed[n])],
         "box": [*(s.low - 0.15 * s.size).tolist(), *(s.high + 0.15 * s.size).tolist()],
         "rate": RATE,
-        "captions": [caption(scene, k) for k in range(len(scene.time))],
-        "moved": np.round(scene.moved, digits).reshape(len(scene.time), -1).tolist(),
+        "captions": [caption(scene, k) for k in frames],
+        "moved": np.round(scene.displaced.drawn[..., :2], digits).reshape(len(frames), -1).tolist(),
+        "turned": [np.round(turned(s, bent, scene.displaced.shift(k)), digits).tolist() for k in frames],
         "closed": scene.closed.astype(int).tolist(),
     }  # fmt: skip
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     head = PAGE.read_text(encoding="utf-8").replace("{{title}}", escape(scene.title))
     return head.replace("{{data}}", text)
+
+
+def turned(s: DrawnStructure, bent: Sequence[Beam], shift: Shift) -> Array:
+    """For each bent member, as the page needs them: rotations of its nodes, and those of its ends against
+    its chord times a third of its length, shape (4 n,).
+    """
+    rows = [
+        (
+            *(shift.nodes[n][2] for n in (b.i, b.j)),
+            *(b.bends(*b.ends(s.place, shift), shift) * b.length / 3.0),
+        )
+        for b in bent
+    ]
+    return np.array(rows).reshape(-1)
 
 
 SPEC = Picture(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from pound_solve.report.plot import geometry, style
 from pound_solve.report.plot.moments import moment
 from pound_solve.report.plot.schema import Choice, Picture
@@ -18,7 +20,8 @@ def deformed(results: Results, choice: Choice) -> Any:
     s = displaced.structure
     if choice.at_instant:
         chosen = moment(results, "node/u", choice)
-        when, moved = chosen.title, displaced.magnified(chosen.row)
+        opened = moment(results, geometry.HINGES, choice).row if displaced.hinges else np.zeros(0)
+        when, moved = chosen.title, displaced.magnified(chosen.row, opened)
     else:
         when = f"when they are largest, at {results.time[displaced.row]:.4g} {s.units.time}"
         moved = displaced.shift(displaced.row)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from pound_solve.report.plot import geometry, style
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
@@ -25,12 +23,9 @@ def modes(results: Results, choice: Choice) -> Any:
     )
     for axes, number in zip(all_axes, numbers):
         shape = shapes[shapes["mode"] == number]
-        size = max(float(np.hypot(shape["x"], shape["y"]).max()), 1e-300)
-        factor = geometry.SHARE * s.size / size
-        moved = {int(r["node"]): factor * np.array([r["x"], r["y"]]) for r in shape}
         s.frame(axes, 0.06 + geometry.SHARE)
         s.draw(axes, color="0.8", linewidth=0.8)
-        s.draw(axes, moved, color=style.BLUE, linewidth=1.2)
+        s.draw(axes, geometry.mode_shift(shape, s.size), color=style.BLUE, linewidth=1.2)
         s.draw_supports(axes)
         axes.set_title(f"mode {number}, period {periods[number]:.4g} {s.units.time}")
         axes.locator_params(nbins=4)
