@@ -248,6 +248,55 @@ def test_a_label_avoids_lines_and_texts_where_it_can() -> None:
     assert second.get_verticalalignment() == "top"
 
 
+def test_a_label_stands_beside_shading_and_not_against_its_side() -> None:
+    figure = style.figure(4.0, 3.0)
+    axes = figure.add_subplot()
+    axes.set_xlim(0, 10)
+    axes.set_ylim(0, 10)
+    axes.fill([5, 9, 9, 5], [5, 5, 9, 9], linewidth=0)
+    labels.label(axes, (5, 7), "free")  # without the shading to the right of its point
+    labels.label(axes, (7, 5), "up", side=(0.0, 0.3))
+    labels.label(axes, (7, 5), "down", side=(0.0, -0.3))
+    labels.settle(figure)
+    free, up, down = axes.texts
+    assert free.get_horizontalalignment() == "right"
+    assert up.get_verticalalignment() != "top" and down.get_verticalalignment() != "bottom"
+
+
+#: two long floors above each other, the lower one in tension, the upper one in compression
+FLOORS = """
+NODES
+ 100 TO 120 0 TO 60 0 FIX=YR
+ 200 TO 220 0 TO 60 3 FIX=YR
+ELEMENTS
+ 1 TO 20 BAR 100 TO 119 101 TO 120
+ 21 TO 40 BAR 200 TO 219 201 TO 220
+ 91 STOP 100
+ 92 STOP 200
+PROPS
+ BAR FRAME E=2e8 A=0.01
+ STOP SPRING KX=1e6
+LOADS
+ 101 TO 120  7 0
+ 201 TO 220 -7 0
+ANALYSIS
+ STATIC
+"""
+
+
+def test_values_of_axial_forces_stand_beside_their_shading(tmp_path: Path) -> None:
+    deck = tmp_path / "floors.inp"
+    deck.write_text(FLOORS, encoding="utf-8")
+    with pound_solve.run(deck) as results:
+        figure = plot.picture(results, "diagrams")
+    (axes,) = figure.axes
+    drawn(figure)
+    values = [float(text.get_text()) for text in axes.texts]
+    assert {140.0, -140.0} <= set(values) and len(values) > 10
+    for value, text in zip(values, axes.texts):
+        assert value * text.get_position()[1] >= 0.0, text.get_text()  # tension is drawn upwards
+
+
 def test_ten_lines_differ_in_colour_and_in_stroke() -> None:
     from matplotlib.colors import to_rgb
 

@@ -3,8 +3,8 @@
 A picture adds its labels with `label`; when all is drawn, `settle` gives them their places in the order in
 which they were added.  A place is free where the text covers no other text and no point, lies within the
 axes, and is not nearer to the point of another label than to its own; among free places, the one that
-covers the fewest lines is taken.  A label without a free place is left out.  Nothing is left to chance:
-equal pictures have equal labels.
+covers the fewest lines and shaded areas is taken.  A label without a free place is left out.  Nothing is
+left to chance: equal pictures have equal labels.
 """
 
 from __future__ import annotations
@@ -34,12 +34,14 @@ SIDES: Final = (
 DISTANCES: Final = (6.0, 9.0, 16.0, 28.0, 44.0)  #: from the point, in points of print
 
 
-def label(axes: Any, at: Any, text: str, far: bool = False, **look: Any) -> None:
-    """Add a label to a point of the axes; one that may stand `far` from it gets a line to it."""
+def label(axes: Any, at: Any, text: str, far: bool = False, side: Any = (0.0, 0.0), **look: Any) -> None:
+    """Add a label to a point of the axes, not against the direction `side` from it; one that may stand
+    `far` from it gets a line to it.
+    """
     look.setdefault("fontsize", 6.5)
     arrow = {"arrowstyle": "-", "color": "0.5", "linewidth": 0.5, "shrinkA": 0, "shrinkB": 1}
     drawn = axes.annotate(
-        text, at, xytext=(0, 0), textcoords="offset points", gid=WAITING,
+        text, at, xytext=side, textcoords="offset points", gid=WAITING,
         arrowprops=arrow if far else None, annotation_clip=False, **look,
     )  # fmt: skip
     drawn.set_in_layout(False)
@@ -59,12 +61,13 @@ def settle(figure: Any) -> None:
 def _settle(axes: Any, texts: list[Any]) -> None:
     taken = [t.get_window_extent().extents for t in axes.texts if t.get_visible() and t.get_text()]
     lines, points = _drawn(axes)
+    areas = [patch.get_path().transformed(patch.get_transform()) for patch in axes.patches]
     window = axes.get_window_extent().extents + np.array([-ROOM, -ROOM, ROOM, ROOM])
     near = [t for t in texts if t.arrow_patch is None]
     anchors = axes.transData.transform(np.reshape([t.xy for t in near], (-1, 2)))
     for text in texts:
         text.set_gid(None)
-        place = _place(text, window, taken, lines, points, anchors)
+        place = _place(text, window, taken, (lines, areas), points, anchors)
         if place is None:
             text.remove()
             continue
@@ -73,15 +76,22 @@ def _settle(axes: Any, texts: list[Any]) -> None:
 
 
 def _place(
-    text: Any, window: Array, taken: list[Array], lines: Array, points: Array, anchors: Array
-) -> Array | None:
-    """Move a text to its best free place, and return the box that it takes there, in pixels."""
+    text: Any, window: Array, taken: list[Array], drawn: tuple[Array, list[Any]], points: Array,
+    anchors: Array,
+) -> Array | None:  # fmt: skip
+    """Move a text to its best free place, and return the box that it takes there, in pixels; `drawn` are
+    lines and areas.
+    """
     text.set_visible(True)
     best: tuple[int, Array, tuple[Any, ...]] | None = None
     others = np.array(taken).reshape(-1, 4)
     far = text.arrow_patch is not None
+    lines, areas = drawn
+    side = text.get_position()
     for distance in DISTANCES if far else DISTANCES[:1]:
         for dx, dy, across, up in SIDES:
+            if dx * side[0] + dy * side[1] < 0.0:
+                continue
             how = (dx * distance, dy * distance), across, up
             _move(text, *how)
             # the text alone: its line to the point may cross others
@@ -91,7 +101,7 @@ def _place(
                 continue
             if not far and _nearer(box, text.axes.transData.transform(text.xy), anchors):
                 continue
-            hidden = int(_crossed(box, lines).sum())
+            hidden = int(_crossed(box, lines).sum()) + _within(box, areas)
             if best is None or hidden < best[0]:
                 best = hidden, box, how
         if best is not None and best[0] == 0:
@@ -141,6 +151,12 @@ def _nearer(box: Array, anchor: Array, anchors: Array) -> bool:
     middle = 0.5 * (box[:2] + box[2:])
     away = np.hypot(*(anchors - middle).T)
     return bool((away < np.hypot(*(anchor - middle)) - SAME).any())
+
+
+def _within(box: Array, areas: list[Any]) -> int:
+    """Number of areas (paths) that the middle of a box lies in."""
+    middle = 0.5 * (box[:2] + box[2:])
+    return sum(bool(area.contains_point(middle)) for area in areas)
 
 
 def _crossed(box: Array, lines: Array) -> Flags:

@@ -88,7 +88,7 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[MemberForces], qu
                       linewidth=0.8)  # fmt: skip
     order = sorted(members, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max()))
     for line in order[:MOST]:
-        _values(axes, line, quantity, factor, 0.02 * top)
+        _values(axes, line, quantity, factor, 0.02 * top, (low, high))
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
     remarks = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
         not one
@@ -104,19 +104,27 @@ def _outline(line: MemberForces, values: Array, quantity: str, factor: float) ->
     return base, base + factor * left[:, None] * values
 
 
-def _values(axes: Any, line: MemberForces, quantity: str, factor: float, least: float) -> None:
-    """Label the largest and the smallest value of a member, if they differ and are not small."""
+def _values(
+    axes: Any, line: MemberForces, quantity: str, factor: float, least: float, extremes: tuple[float, float]
+) -> None:
+    """Label the largest and the smallest value of a member, if they differ and are not small; those of all
+    members, the `extremes`, also far from it.
+    """
     labelled: list[float] = []
-    for values, at in (
-        (line.high[quantity], int(np.argmax(line.high[quantity]))),
-        (line.low[quantity], int(np.argmin(line.low[quantity]))),
+    one = np.array_equal(line.low[quantity], line.high[quantity])
+    for values, furthest, sign in (
+        (line.high[quantity], np.argmax, 1.0),
+        (line.low[quantity], np.argmin, -1.0),
     ):
+        at = int(furthest(values))
         value = float(values[at])
         if abs(value) < least or any(abs(value - other) < least for other in labelled):
             continue
         labelled.append(value)
-        _, edge = _outline(line, values, quantity, factor)
-        labels.label(axes, edge[:, at], _text(value), fontsize=6)
+        base, edge = _outline(line, values, quantity, factor)
+        # beyond the shading, unless that of the other extreme is on the same side of the member
+        side = (edge - base)[:, at] if one or sign * value > 0.0 else (0.0, 0.0)
+        labels.label(axes, edge[:, at], _text(value), value in extremes, side, fontsize=6)
 
 
 def _text(value: float) -> str:
