@@ -61,7 +61,7 @@ def draw() -> None:
         shutil.copytree(SUITE, folder / "suite")
         call("motions", folder / "suite" / "motions.inp", "-o", folder / "suite" / "suite")
         call("sweep", folder / "suite" / "gaps.toml", "--quiet", "-o", folder / "sweep")
-        call("plot", folder / "sweep" / "sweep.h5", "--as", "png", "-o", folder / "drawn")
+        call("plot", folder / "sweep" / "sweep.h5", *look)
         reduce(folder / "drawn" / TRENDS, FOLDER / TRENDS)
         stems = {"capacity": PUSHED.stem, "performance": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
         for picture, file in FILES.items():
