@@ -62,6 +62,7 @@ def build(
         member_loads=bound["MEMBER_LOADS"],
         initial=bound["INITIAL"],
         drifts=bound["DRIFT"],
+        limits=bound["LIMITS"],
         buildings=bound["BUILDINGS"],
         damping=bound["DAMPING"],
         equake=bound["EQUAKE"],
@@ -97,7 +98,7 @@ def _row(name: str, row: ParsedLine, binder: Binder) -> list[Card] | None:
         return [card] if card else None
     generate = name in ("NODES", "ELEMENTS")
     cards = binder.cards(_SPECS[name], row.items or (), row.span, generate=generate)
-    if cards and name in ("DRIFT", "BUILDINGS"):
+    if cards and name in ("DRIFT", "LIMITS", "BUILDINGS"):
         cards = [_labelled(card) for card in cards]
     return cards
 

@@ -230,6 +230,18 @@ def _drift_names(model: Model) -> Found:
         first.setdefault(card.label, card.span)
 
 
+def _limits(model: Model) -> Found:
+    first: dict[str, Span] = {}
+    for card in model.limits:
+        if card.label in first:
+            message = f'limit "{card.label}" is already given in line {first[card.label].line}'
+            yield Diagnostic("P304", message, card.place("NAME"), "choose another name")
+        first.setdefault(card.label, card.span)
+        if card["DRIFT"] is None and card["ROTATION"] is None:
+            message = f'limit "{card.label}" allows nothing in particular'
+            yield Diagnostic("P379", message, card.span, "give it DRIFT=0.02 or ROTATION=0.02, or both")
+
+
 def _drift_nodes(model: Model) -> Found:
     for card in model.drifts:
         i, j = model.nodes.get(card["I"]), model.nodes.get(card["J"])
@@ -322,6 +334,7 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_excitation, frozenset({"EQUAKE", "FORCES", "INITIAL", "LOADS", "MEMBER_LOADS"})),
     (_percent, frozenset()),
     (_drift_names, frozenset()),
+    (_limits, frozenset()),
     (_drift_nodes, frozenset()),
     (_node_like_weights, frozenset()),
     (_weights_twice, frozenset()),

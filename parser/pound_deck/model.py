@@ -39,7 +39,7 @@ class Card:
     span : Span
         The whole card.
     label : str
-        Name in the deck (property sets, drifts, buildings), else empty.
+        Name in the deck (property sets, drifts, limits, buildings), else empty.
     laws : mapping of str to tuple of Spec
         For each FAMILY field the Specs chosen (their fields are part of `values`).
     spans : mapping of str to Span
@@ -124,7 +124,7 @@ class Model:
         Values of all PARAM names, after ``--set``.
     nodes, elements, props : mappings by number or label
         `props` are Cards of the family ``element``.
-    weights, loads, member_loads, initial, drifts, buildings : tuples of Card
+    weights, loads, member_loads, initial, drifts, limits, buildings : tuples of Card
     damping, equake, forces, analyses : tuples of Card
     output : Card
         The OUTPUT card, all defaults where the deck has none.
@@ -150,6 +150,7 @@ class Model:
     member_loads: tuple[Card, ...]
     initial: tuple[Card, ...]
     drifts: tuple[Card, ...]
+    limits: tuple[Card, ...]
     buildings: tuple[Card, ...]
     damping: tuple[Card, ...]
     equake: tuple[Card, ...]

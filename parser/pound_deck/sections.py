@@ -149,6 +149,32 @@ SECTIONS: Final = (
     ),
     Spec(
         "section",
+        "LIMITS",
+        "allowed storey drifts and plastic rotations, for the report and the pictures",
+        (
+            Field("NAME", Kind.TEXT, doc="name of the performance level", positional=True),
+            Field(
+                "DRIFT",
+                Kind.REAL,
+                "-",
+                default=None,
+                above=0,
+                hi=0.5,
+                doc="allowed drift over storey height: 0.02 is 2 %",
+            ),
+            Field(
+                "ROTATION",
+                Kind.REAL,
+                "-",
+                default=None,
+                above=0,
+                hi=0.5,
+                doc="allowed plastic rotation of hinges [rad]",
+            ),
+        ),
+    ),
+    Spec(
+        "section",
         "BUILDINGS",
         "names of buildings: parts connected other than by contacts",
         (

@@ -376,6 +376,20 @@ ROWS: dict[str, tuple[tuple[Any, ...], ...]] = {
         ("P336", "model.inp:31", "contacts of WALL are pressed at rest: GAP is -0.002"),
         ("R404", "model.inp:44", "the peak is 4.1 g"),
     ),
+    "limits": (
+        ("damage limitation", "storey drift", "%", 0.5, 1.60489, 3.20979, 5, "B2 storey 1", 2.54692),
+        (
+            "life safety",
+            "plastic rotation",
+            "rad",
+            0.025,
+            0.010371,
+            0.41484,
+            0,
+            "B1, beam 1 right",
+            math.nan,
+        ),
+    ),
     "worst_hinges": (
         (
             11,

@@ -65,6 +65,9 @@ DAMPING
 DRIFT
  "A" 1 11
  "B $x$" 3 13
+LIMITS
+ "low" DRIFT=0.001
+ "far" DRIFT=0.4
 EQUAKE
  SINE AMPLITUDE=3 PERIOD=0.5
 ANALYSIS
@@ -376,7 +379,7 @@ def test_profiles_are_those_of_the_tables(pair: Results) -> None:
             ("drift", "shear", "acceleration"),
             (100.0, 1.0, 1.0),
         ):
-            _, high, low = axes.get_lines()
+            _, high, low = (line for line in axes.get_lines() if line.get_color() != style.RED)
             assert high.get_xdata()[-1] == factor * own[quantity]["max"]
             assert low.get_xdata()[-1] == factor * own[quantity]["min"]
             assert max(own[quantity]["max"], -own[quantity]["min"]) == row[column]
@@ -384,6 +387,16 @@ def test_profiles_are_those_of_the_tables(pair: Results) -> None:
     # the profile begins at the base, which moves as the ground
     ground = 3.0
     assert abs(high.get_xdata()[0]) == pytest.approx(ground, rel=1e-2) and high.get_ydata()[0] == 0.0
+
+
+def test_storey_drifts_show_their_limits_but_those_far_beyond(pair: Results) -> None:
+    figure = plot.picture(pair, "storeys")
+    drifts = [axes for axes in figure.axes if "drift" in axes.get_xlabel()]
+    for axes in figure.axes:
+        lines = [line.get_xdata()[0] for line in axes.get_lines() if line.get_color() == style.RED]
+        assert lines == ([-0.1, 0.1] if axes in drifts else [])
+        named = [text.get_text() for text in axes.texts]
+        assert ("low" in named) == (axes in drifts) and "far" not in named
 
 
 def test_the_capacity_curve_names_its_events(pair: Results) -> None:

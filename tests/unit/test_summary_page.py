@@ -51,6 +51,9 @@ WEIGHTS
  23 1
 BUILDINGS
  frame NODES=1
+LIMITS
+ serviceable DRIFT=0.002
+ safe DRIFT=0.04 ROTATION=0.001
 DAMPING
  RAYLEIGH XI=0.05 MODES=1,2
 EQUAKE
@@ -74,6 +77,40 @@ def run(folder: Path, method: str = "METHOD=NEWMARK DT=0.0005", output: str = ""
 def results(tmp_path_factory: Any) -> Iterator[Results]:
     with run(tmp_path_factory.mktemp("frames")) as out:
         yield out
+
+
+def test_limits_are_compared_with_the_largest_drift_and_rotation(results: Results) -> None:
+    limits, storeys = results.table("limits"), results.table("storey_envelope")
+    assert [(r["limit"], r["quantity"], r["allowed"]) for r in limits] == [
+        ("serviceable", "storey drift", 0.2), ("safe", "storey drift", 4.0),
+        ("safe", "plastic rotation", 0.001),
+    ]  # fmt: skip
+    drifts = {(r["building"], r["storey"]): 100.0 * r["drift"] for r in storeys}
+    worst = max(drifts, key=lambda place: drifts[place])
+    for row in limits[:2]:
+        assert row["place"] == f"{worst[0]} storey {worst[1]}"
+        assert row["largest"] == pytest.approx(drifts[worst], rel=1e-12)
+        assert row["ratio"] == pytest.approx(row["largest"] / row["allowed"], rel=1e-12)
+        assert row["beyond"] == sum(ratio > row["allowed"] for ratio in drifts.values())
+    assert limits["beyond"][0] > 0 == limits["beyond"][1]
+    hinges, rotation = results.table("worst_hinges"), limits[2]
+    top = hinges[np.nanargmax(hinges["rotation"])]
+    assert rotation["largest"] == top["rotation"] and rotation["place"] == top["location"]
+    assert rotation["ratio"] == pytest.approx(top["rotation"] / 0.001, rel=1e-12)
+    for hinge in hinges:
+        assert (hinge["state"] == "beyond safe") == (hinge["rotation"] > 0.001)
+
+
+def test_a_deck_without_storeys_or_hinges_has_nothing_to_compare(tmp_path: Path) -> None:
+    deck = tmp_path / "deck.inp"
+    deck.write_text(
+        "NODES\n 1 0 0 FIX=XYR\n 2 0 0 FIX=YR\nELEMENTS\n 1 A 1 2\nPROPS\n A SPRING KX=100\n"
+        "WEIGHTS\n 2 9.81\nLIMITS\n safe DRIFT=0.02 ROTATION=0.01\nINITIAL\n 2 UX=1\nANALYSIS\n HISTORY 1\n"
+    )
+    with pound_solve.run(deck) as results:
+        for row in results.table("limits"):
+            assert np.isnan(row["largest"]) and np.isnan(row["ratio"])
+            assert (row["beyond"], row["place"]) == (0, "")
 
 
 def test_buildings_have_their_own_periods_weights_shears_and_drifts(results: Results) -> None:

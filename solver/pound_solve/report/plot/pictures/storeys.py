@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -21,6 +21,9 @@ PROFILES = {
     "floor acceleration": ("total floor acceleration", "L/T^2", 1.0),
 }
 
+LIMIT: Final = {"color": style.RED, "linewidth": 0.7, "linestyle": (0, (4, 2)), "zorder": 1}
+FAR: Final = 2.5  #: limits beyond this multiple of the largest drift are not drawn
+BACKGROUND: Final = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 SIDES = "lines: to the right; dashes: to the left"
 
 
@@ -41,6 +44,7 @@ def overlay(runs: Sequence[Results], choice: Choice) -> Any:
     figure = style.figure(9.5, 2.9 * len(names) + 0.9)
     for axes, name, quantity in _grid(figure, names):
         label_axes(axes, runs[0], quantity)
+        limits(axes, runs, quantity)
         for run, look, there in drawn:
             if name in there:
                 profile(axes, run, name, quantity, look)
@@ -71,6 +75,7 @@ def _grid(figure: Any, names: Sequence[str]) -> Iterator[tuple[Any, str, str]]:
 def panel(axes: Any, results: Results, names: list[str], quantity: str) -> None:
     """Draw one profile of some buildings: lines for the largest values, dashes for the smallest."""
     label_axes(axes, results, quantity)
+    limits(axes, [results], quantity)
     for n, name in enumerate(names):
         look = {"color": style.stroke(n)["color"], "linewidth": 1.2, "label": style.short(name)}
         profile(axes, results, name, quantity, look)
@@ -84,6 +89,27 @@ def label_axes(axes: Any, results: Results, quantity: str) -> None:
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.margins(x=0.06, y=0.03)
     axes.locator_params(axis="x", nbins=6)
+
+
+def limits(axes: Any, runs: Sequence[Results], quantity: str) -> None:
+    """Draw the drift limits that all runs share as lines on both sides, named at their tops; those far
+    beyond the response are left out.
+    """
+    if quantity != "drift ratio" or not all(run.holds("limits") for run in runs):
+        return
+    tables = [run.table("limits") for run in runs]
+    rows = [t[t["quantity"] == "storey drift"] for t in tables]
+    shared = set.intersection(*({(row["limit"], float(row["allowed"])) for row in t} for t in rows))
+    largest = max((float(t["largest"].max()) for t in rows if len(t)), default=0.0)
+    for name, allowed in sorted(shared, key=lambda limit: limit[1]):
+        if allowed > FAR * largest:
+            continue
+        for side in (-allowed, allowed):
+            axes.axvline(side, **LIMIT)
+        axes.annotate(
+            style.short(name), (allowed, 1.0), (1.5, -2.0), axes.get_xaxis_transform(), "offset points",
+            va="top", ha="left", rotation=90, fontsize=6.0, color=style.RED, bbox=BACKGROUND,
+        )  # fmt: skip
 
 
 def profile(axes: Any, results: Results, name: str, quantity: str, look: Mapping[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pound_solve.results.columns import ELEMENT, RULE
@@ -35,21 +36,25 @@ def rows(run: RunRecord) -> list[Row] | None:
     yielded = sorted((r for r in worst if r.ductility > 1.0), key=_rank, reverse=True)
     buildings = run.history.items.buildings
     places = [member_end(run.model, buildings, r.spring.element, _end(r)) for r in yielded[:MAX_ROWS]]
+    limits = sorted((c["ROTATION"], c.label) for c in run.model.limits if c["ROTATION"] is not None)
     return [
-        _row(r, max(other[id(r)], default=math.nan), place) for r, place in zip(yielded, places)
+        _row(r, max(other[id(r)], default=math.nan), place, limits) for r, place in zip(yielded, places)
     ] or None
 
 
-def _row(r: SpringResponse, other: float, place: str) -> Row:
+def _row(r: SpringResponse, other: float, place: str, limits: Sequence[tuple[float, str]]) -> Row:
     s, index = r.spring, r.damage.total if r.damage else math.nan
     values = s.element, s.component, place, s.rule, r.ductility, other, r.rotation, r.yields, r.loss
-    return *values, index, _state(r, index)
+    return *values, index, _state(r, index, limits)
 
 
-def _state(r: SpringResponse, index: float) -> str:
+def _state(r: SpringResponse, index: float, limits: Sequence[tuple[float, str]]) -> str:
     if r.failed:
         return "failed"
-    if r.beyond_ordinary:
+    passed = [name for allowed, name in limits if r.rotation > allowed]
+    if passed:
+        return f"beyond {passed[-1]}"
+    if not limits and r.beyond_ordinary:
         return BEYOND
     return next((word for least, word in STATES if index >= least), "")
 
@@ -91,7 +96,11 @@ TABLE = Table(
         Column(
             "damage", "damage\nindex", "-", "short", doc="of Park and Ang; NaN without ultimate ductility"
         ),
-        Column("state", doc="state that the index stands for, or what to look at"),
+        Column(
+            "state",
+            doc="the largest limit of LIMITS that its rotation exceeds, else the state that the "
+            "index stands for, or what to look at",
+        ),
     ),
     rows=rows,
     note="Of a member the end that is worse off. All springs and hinges are in the section on members.",

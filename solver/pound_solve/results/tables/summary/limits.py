@@ -1,0 +1,68 @@
+"""Table ``limits``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from pound_solve.results.columns import UNIT, time_column
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+DRIFT = "storey drift"
+ROTATION = "plastic rotation"
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each drift and each rotation that a line of LIMITS allows."""
+    for card in run.model.limits:
+        if card["DRIFT"] is not None:
+            yield card.label, DRIFT, "%", 100.0 * card["DRIFT"], *_drift(run, card["DRIFT"])
+        if card["ROTATION"] is not None:
+            yield card.label, ROTATION, "rad", card["ROTATION"], *_rotation(run, card["ROTATION"])
+
+
+def _drift(run: RunRecord, allowed: float) -> Row:
+    """Largest drift ratio [%], over the allowed one, number of storeys beyond that, place and time."""
+    drifts = run.history.storey_drifts()
+    if not drifts:
+        return math.nan, math.nan, 0, "", math.nan
+    worst = max(drifts, key=lambda drift: drift.ratio)
+    beyond = sum(drift.ratio > allowed for drift in drifts)
+    place = f"{worst.building} storey {worst.storey}"
+    return 100.0 * worst.ratio, worst.ratio / allowed, beyond, place, worst.t
+
+
+def _rotation(run: RunRecord, allowed: float) -> Row:
+    """The same of the largest plastic rotation of a hinge, whose time is not known."""
+    from pound_solve.structure.locations import member_end  # not needed to read a report
+
+    hinges = [r for r in run.history.springs if not math.isnan(r.rotation)]
+    if not hinges:
+        return math.nan, math.nan, 0, "", math.nan
+    worst = max(hinges, key=lambda r: r.rotation)
+    beyond = sum(r.rotation > allowed for r in hinges)
+    element, component = worst.spring.element, worst.spring.component
+    place = member_end(run.model, run.history.items.buildings, element, component.split()[1])
+    return worst.rotation, worst.rotation / allowed, beyond, place or f"{element} {component}", math.nan
+
+
+TABLE = Table(
+    name="limits",
+    title="Response and its limits",
+    place=25,
+    stages=(Stage.PEAKS,),
+    columns=(
+        Column("limit", doc="name of the performance level"),
+        Column("quantity", doc="storey drift, or plastic rotation of a hinge"),
+        UNIT,
+        Column("allowed", fmt="short", doc="as in the deck"),
+        Column("largest", fmt="short", doc="largest absolute value of the history; NaN without any"),
+        Column("ratio", "over\nallowed", "-", "short", doc="largest value over the allowed one"),
+        Column("beyond", fmt="int", doc="number of storeys or hinges beyond the limit"),
+        Column("place", doc="storey, or end of a member, of the largest value"),
+        time_column("t", "at time", "time of the largest drift; NaN for rotations"),
+    ),
+    rows=rows,
+    note="As in the section LIMITS of the deck.",
+)
