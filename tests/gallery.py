@@ -6,8 +6,10 @@ tests/refresh_manual.py gallery`` draws them anew.
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -29,8 +31,17 @@ FILES: Final = {name: FILM if name == "animation" else f"run_{name}.png" for nam
 TWO_RUNS: Final = "runs_storeys.png"
 TUTORIAL: Final = "tutorial_contact_force.png"
 TRENDS: Final = "sweep_trends.png"
+#: decks on the page of the gallery, each with the picture of its one page
+EXHIBITS: Final = {
+    "01_two_oscillators/two_oscillators.inp": "page_two_oscillators.png",
+    "03_concrete_frame/concrete_frame.inp": "page_concrete_frame.png",
+    "05_rocking_wall/section.inp": "page_rocking_wall.png",
+    "06_unequal_frames/unequal_frames.inp": "page_unequal_frames.png",
+    "07_row_of_three/row_of_three.inp": "page_row_of_three.png",
+}
+PAGE: Final = ROOT / "manual" / "gallery.md"
 AT_PEAK: Final = ("deformed", "diagrams")
-ALL_FILES: Final = {*FILES.values(), TWO_RUNS, TUTORIAL, TRENDS}
+ALL_FILES: Final = {*FILES.values(), *EXHIBITS.values(), TWO_RUNS, TUTORIAL, TRENDS}
 RESOLUTION: Final = 80  #: dots per inch
 COLOURS: Final = 48  #: of a file, which keeps it small
 FILM_WIDTH: Final = 440  #: dots
@@ -70,6 +81,39 @@ def draw() -> None:
         for name, file in ((f"*_vs_*_{FRAMES.stem}_storeys", TWO_RUNS), (f"{STUDIED.stem}_*", TUTORIAL)):
             (drawn,) = (folder / "drawn").glob(f"{name}.png")
             reduce(drawn, FOLDER / file)
+        exhibit(folder, look)
+
+
+def exhibit(folder: Path, look: Sequence[str | Path]) -> None:
+    """Draw the one page of every exhibit, and write the first pages of their reports into the gallery."""
+    page = PAGE.read_text("utf-8")
+    for deck, file in EXHIBITS.items():
+        out = folder / Path(deck).stem
+        call(EXAMPLES / deck, "-o", out)
+        call("plot", out / f"{out.name}.h5", "summary", *look)
+        reduce(folder / "drawn" / f"{out.name}_summary.png", FOLDER / file)
+        page = with_first_page(page, deck, (out / f"{out.name}.rpt").read_text("utf-8"))
+    PAGE.write_text(page, encoding="utf-8", newline="\n")
+
+
+def first_page(report: str) -> str:
+    """Section 1 of a report."""
+    found = re.search(r"^1  SUMMARY\n.*?(?=^2  [A-Z])", report, re.DOTALL | re.MULTILINE)
+    assert found
+    return found[0].strip() + "\n"
+
+
+def shown_page(page: str, deck: str) -> str:
+    """First page of the report of a deck as the gallery shows it."""
+    _, _, after = page.partition(f"<!-- page one: {deck} -->\n```\n")
+    return after.partition("```\n")[0]
+
+
+def with_first_page(page: str, deck: str, report: str) -> str:
+    """The gallery with the first page of this report."""
+    return page.replace(
+        f"{deck} -->\n```\n{shown_page(page, deck)}", f"{deck} -->\n```\n{first_page(report)}"
+    )
 
 
 def call(*words: str | Path) -> None:
