@@ -20,7 +20,7 @@ def test_the_first_page_is_that_of_a_run(run: Any, deck: str) -> None:
 
 
 def words(page: str) -> list[str]:
-    """Words of a page without rules, and without the digits of rounding errors, which depend on the machine."""
+    """Words of a page without rules and without digits of rounding errors, which machines differ in."""
     return [ROUNDING.sub("tiny", word) for word in page.split() if not word.startswith("--")]
 
 
