@@ -53,27 +53,37 @@ def messages(text: str, card: str) -> list[str]:
 
 def test_loops_of_a_plastic_storey() -> None:
     """Yield at 0.05 by 5. A full cycle of the amplitude a loses 4 * 5 (a - 0.05); its equivalent damping is
-    2/pi (1 - 0.05/a).  Each leg encloses half of the loop with its chord.
+    2/pi (1 - 0.05/a).
     """
     p = pushed(STOREY.format(rule="ELASTO_PLASTIC"), "2 0.1,0.2 CYCLES=2 STEPS=3")
     assert [pts[-1].displacement for pts in p.legs()] == pytest.approx([0.1, -0.1] * 2 + [0.2, -0.2] * 2)
     found = cycles.legs(p)
-    assert math.isnan(found[0].loop) and math.isnan(found[0].damping)
-    for leg, amplitude in zip(found[1:4] + found[5:], [0.1] * 3 + [0.2] * 3):
-        assert leg.loop == pytest.approx(2 * 5 * (amplitude - 0.05), rel=1e-12)
+    assert all(math.isnan(leg.loop) and math.isnan(leg.damping) for leg in found[:2])
+    for leg, amplitude in zip(found[2:4] + found[6:], [0.1] * 2 + [0.2] * 2):
+        assert leg.loop == pytest.approx(4 * 5 * (amplitude - 0.05), rel=1e-12)
         assert leg.damping == pytest.approx(2 / math.pi * (1 - 0.05 / amplitude), rel=1e-12)
         assert leg.stiffness == pytest.approx(5 / amplitude, rel=1e-12)
-    # from -0.1 to 0.2: the chord has the slope 10/0.3
+    # from -0.1 to 0.2: the chord has the slope 10/0.3; the leg before has half a loop of 0.1
     v = np.interp(np.linspace(-0.1, 0.2, 3001), [-0.1, 0.0, 0.2], [-5.0, 5.0, 5.0])
     chord = np.linspace(-5.0, 5.0, 3001)
-    assert found[4].loop == pytest.approx(float((v - chord).mean()) * 0.3, rel=1e-3)
+    assert found[4].loop == pytest.approx(float((v - chord).mean()) * 0.3 + 0.5, rel=1e-3)
 
 
 def test_an_elastic_storey_has_no_loop() -> None:
     p = pushed(STOREY.format(rule="ELASTO_PLASTIC"), "2 0.04 CYCLES=3 STEPS=5")
-    for leg in cycles.legs(p)[1:]:
+    for leg in cycles.legs(p)[2:]:
         assert abs(leg.loop) < 1e-15 and leg.stiffness == pytest.approx(100.0, rel=1e-13)
     assert [b.cycles for b in cycles.backbone(p)] == [3, 3]
+
+
+def test_a_contact_that_closes_has_no_loop() -> None:
+    """An elastic storey that meets a wall on one side: its curve bends, but comes back on itself."""
+    text = STOREY.format(rule="ELASTO_PLASTIC").replace(" 1 A 1 2", " 1 A 1 2\n 2 WALL 2")
+    text = text.replace("WEIGHTS", " WALL CONTACT GAP=0.02 LAW=LINEAR K=300\nWEIGHTS")
+    p = pushed(text, "2 0.04 CYCLES=2 STEPS=7")
+    found = cycles.legs(p)
+    assert abs(p.legs()[0][-1].shear) != pytest.approx(abs(p.legs()[1][-1].shear), rel=0.1)
+    assert all(abs(leg.loop) < 1e-14 and abs(leg.damping) < 1e-14 for leg in found[2:])
 
 
 def test_the_backbone_joins_the_first_ends_of_each_amplitude() -> None:
@@ -165,7 +175,7 @@ def test_several_pushovers_begin_at_one_state(tmp_path: Path) -> None:
     assert one["displacement"][0] == two["displacement"][0] == 0.0
     assert one["displacement"][-1] == pytest.approx(0.2) and two["leg"].tolist()[-1] == 3
     loops, outer = results.table("push_legs"), results.table("backbone")
-    assert loops["push"].tolist() == [2] * 3 and loops["lost"][-1] == pytest.approx(2 * 0.5)
+    assert loops["push"].tolist() == [2] * 3 and loops["loop"][-1] == pytest.approx(4 * 5 * 0.05)
     assert outer["displacement"].tolist() == pytest.approx([-0.1, 0.1]) and outer["times"].tolist() == [
         1,
         2,
@@ -199,6 +209,37 @@ PROPS
     p = pushed(row, "2 0.2,0.5 CYCLES=1 PATTERN=FORCES NODES=2 FORCES=1 STEPS=3")
     assert p.failed is not None and p.failed.code == "A507"
     assert [x.first.displacement for x in cycles.backbone(p)] == pytest.approx([-0.2, 0.2])
+
+
+def test_a_pushover_that_stops_does_not_keep_the_next_from_running(tmp_path: Path) -> None:
+    """The first snaps back, the second has no first step, the third and the history run."""
+    text = """
+NODES
+ 1 0 0 FIX=YR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 1 A 1
+ 2 B 1 2
+PROPS
+ A SPRING KX=100 FX=10 RULE=BILINEAR R=-0.9
+ B SPRING KX=50
+WEIGHTS
+ 1,2 9.81
+INITIAL
+ 2 UX=0.01
+ANALYSIS
+ PUSHOVER 2 0.9 PATTERN=FORCES NODES=2 FORCES=1
+ PUSHOVER 2 0 PATTERN=UNIFORM
+ PUSHOVER 2 0.1 PATTERN=UNIFORM
+ HISTORY 0.1
+"""
+    results = ran(tmp_path, text)
+    assert results.status == "stopped"
+    first, second = results.message.split("; ")[0], results.message.split("; ")[-1]
+    assert first.startswith("A507 pushover 1: there is no further equilibrium without a jump")
+    assert second == "A505 pushover 2: the control node stands at its target 0 already"
+    assert sorted(set(results.table("capacity_curve")["push"].tolist())) == [1, 3]
+    assert results.last_time == pytest.approx(0.1)
 
 
 # mistakes

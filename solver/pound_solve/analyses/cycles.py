@@ -1,12 +1,15 @@
-r"""Loops of a pushover that turns: the work lost in each leg, and the backbone of the cycles.
+r"""Loops of a pushover that turns, and the backbone of its cycles.
 
-A leg from :math:`(d_1, V_1)` to :math:`(d_2, V_2)` encloses with its chord half the loop of a cycle whose
-legs are alike.  The equivalent damping of such a cycle is the loop over :math:`4\pi` times the elastic work
-of its amplitude (Jacobsen 1930; Chopra 2017, section 3.9):
+A leg from :math:`(d_1, V_1)` to :math:`(d_2, V_2)` encloses with its chord the area
 
-.. math:: \xi_{eq} = \frac{2A}{4\pi\,\tfrac12\,\frac{\Delta V}{2}\,\frac{\Delta d}{2}}
-                   = \frac{4A}{\pi\,\Delta V\,\Delta d}, \qquad
-          A = \int_{d_1}^{d_2}\Bigl(V - V_1 - \frac{\Delta V}{\Delta d}\,(d - d_1)\Bigr)\,\mathrm{d}d
+.. math:: A = \int_{d_1}^{d_2}\Bigl(V - V_1 - \frac{\Delta V}{\Delta d}\,(d - d_1)\Bigr)\,\mathrm{d}d .
+
+Two legs to and fro are a cycle, whose loop is the sum of their areas.  On a path that is elastic but not
+linear, such as one on which a contact closes, these cancel.  The equivalent damping is the loop over
+:math:`4\pi` times the elastic work of the amplitude (Jacobsen 1930; Chopra 2017, section 3.9):
+
+.. math:: \xi_{eq} = \frac{A_{n-1} + A_n}{4\pi\,\tfrac12\,\frac{\Delta V}{2}\,\frac{\Delta d}{2}}
+                   = \frac{2\,(A_{n-1} + A_n)}{\pi\,\Delta V\,\Delta d} .
 
 The first leg starts from the static state: it does not belong to a loop.
 
@@ -43,9 +46,9 @@ class Leg(NamedTuple):
     stiffness : float
         Slope of the chord [F/L].
     loop : float
-        Area between curve and chord [F L]; NaN for the first leg.
+        Area of the loop of this leg and the one before [F L]; NaN for the first two legs.
     damping : float
-        Equivalent damping ratio of a cycle of such legs; NaN for the first leg.
+        Equivalent damping ratio of that loop; NaN for the first two legs.
     """
 
     end: CapacityPoint
@@ -74,22 +77,25 @@ class BackbonePoint(NamedTuple):
 
 def legs(pushed: PushoverResult) -> list[Leg]:
     """Return the legs of a pushover."""
-    return [_leg(points) for points in pushed.legs()]
+    found, before = list[Leg](), math.nan
+    for points in pushed.legs():
+        start, end = points[0], points[-1]
+        along, across = end.displacement - start.displacement, end.shear - start.shear
+        sense = math.copysign(1.0, along)
+        largest = max(points, key=lambda p: sense * p.shear)
+        area = _area(points) if start.leg > 1 else math.nan
+        loop, work = before + area, math.pi * across * along
+        stiffness = across / along if along else math.nan  # it may stop where it began
+        found.append(Leg(end, largest, stiffness, loop, 2.0 * loop / work if work else math.nan))
+        before = area
+    return found
 
 
-def _leg(points: Sequence[CapacityPoint]) -> Leg:
-    start, end = points[0], points[-1]
-    d = np.array([p.displacement for p in points]) - start.displacement
-    v = np.array([p.shear for p in points]) - start.shear
-    sense = math.copysign(1.0, d[-1])
-    largest = max(points, key=lambda p: sense * p.shear)
-    if not d[-1]:  # it stopped where it began
-        return Leg(end, largest, math.nan, math.nan, math.nan)
-    stiffness, loop = float(v[-1] / d[-1]), math.nan
-    if start.leg > 1:
-        loop = float(0.5 * np.diff(d) @ (v[1:] + v[:-1]) - 0.5 * v[-1] * d[-1])
-    work = math.pi * float(v[-1] * d[-1])
-    return Leg(end, largest, stiffness, loop, 4.0 * loop / work if work else math.nan)
+def _area(points: Sequence[CapacityPoint]) -> float:
+    """Return the area between a leg and its chord [F L]."""
+    d = np.array([p.displacement for p in points]) - points[0].displacement
+    v = np.array([p.shear for p in points]) - points[0].shear
+    return float(0.5 * np.diff(d) @ (v[1:] + v[:-1]) - 0.5 * v[-1] * d[-1])
 
 
 def backbone(pushed: PushoverResult) -> list[BackbonePoint]:

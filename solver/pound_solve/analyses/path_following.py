@@ -260,11 +260,13 @@ class EquilibriumPath:
         same = tuple(state[0] for state in self.states)
         self._visits[same] += 1
         if self._visits[same] > MAX_RETURNS:
+            spring = self.laws[i]
+            why = "loses its strength faster than its neighbours unload, and changes state"
+            if spring.role.collides:
+                why = "is a contact that the forces open when it is closed and close when it is open,"
             raise InstabilityError(
-                "there is no further equilibrium without a jump: "
-                f"element {self.laws[i].element} loses its strength "
-                "faster than its neighbours unload, and changes state again and again at the "
-                f"same point; at load factor {self.factor:.6g}",
+                f"there is no further equilibrium without a jump: element {spring.element} {why} again and "
+                f"again at the same point; at load factor {self.factor:.6g}",
                 "A507",
             )
         return Change(i, before, self.branches[i].name)

@@ -146,7 +146,7 @@ class AnalysisSequence:
 
     def _analyses(self) -> str:
         """Run one analysis after the other; return the reason of a stop, or an empty text."""
-        doing = "static analysis"
+        doing, stops = "static analysis", list[str]()
         try:
             self.store_input()
             state = self._static()
@@ -155,9 +155,10 @@ class AnalysisSequence:
                 ("PUSHOVER", self._pushover),
                 ("HISTORY", self._history),
             ):
-                for card in self._cards(name):
-                    doing = name.lower()
-                    analysis(card, state)
+                for n, card in enumerate(cards := self._cards(name), 1):
+                    doing = f"{name.lower()} {n}" if len(cards) > 1 else name.lower()
+                    if failed := analysis(card, state):  # later analyses do not depend on it
+                        stops.append(f"{failed.code} {doing}: {failed}")
         except InstabilityError as err:
             return f"{err.code} {doing}: {err}"
         except np.linalg.LinAlgError as err:
@@ -170,7 +171,7 @@ class AnalysisSequence:
             return f"{err.code} at t = {err.t:.9g} {self.record.model.units.time}: {err}"
         except KeyboardInterrupt:
             return f"A506 {doing}: {INTERRUPTED}"
-        return ""
+        return "; ".join(stops)
 
     def _cards(self, name: str) -> list[Card]:
         """Cards of one analysis."""
@@ -217,14 +218,16 @@ class AnalysisSequence:
         self.record.modal = self.settled.modal
         self._write(Stage.MODAL)
 
-    def _pushover(self, card: Card, state: static.StaticState) -> None:
-        pushovers = self.record.pushovers
-        pushed = pushover.push(self.record.structure, state, card, 1 + len(pushovers))
-        pushovers.append(pushed)
+    def _pushover(self, card: Card, state: static.StaticState) -> InstabilityError | None:
+        number = 1 + self._cards("PUSHOVER").index(card)
+        try:
+            pushed = pushover.push(self.record.structure, state, card, number)
+        except InstabilityError as err:  # it has no first step
+            return err
+        self.record.pushovers.append(pushed)
         self.record.checks.append(pushed.check)
         self._write(Stage.PUSHOVER)
-        if pushed.failed:
-            raise pushed.failed
+        return pushed.failed
 
     def _history(self, card: Card, state: static.StaticState) -> None:
         record = self.record

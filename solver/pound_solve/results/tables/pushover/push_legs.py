@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from pound_solve.results.columns import LEG, PUSH
@@ -17,12 +16,9 @@ def rows(run: RunRecord) -> Iterator[Row]:
     for pushed in run.pushovers:
         if pushed.curve[-1].leg == 1:
             continue
-        lost = 0.0
         for leg in legs(pushed):
-            lost += 0.0 if math.isnan(leg.loop) else leg.loop
-            peak, damping = leg.largest.shear, 100.0 * leg.damping
-            place = pushed.number, leg.end.leg, leg.end.displacement, leg.end.shear, peak
-            yield *place, leg.stiffness, leg.loop, lost, damping
+            place = pushed.number, leg.end.leg, leg.end.displacement, leg.end.shear, leg.largest.shear
+            yield *place, leg.stiffness, leg.loop, 100.0 * leg.damping
 
 
 TABLE = Table(
@@ -42,21 +38,17 @@ TABLE = Table(
             "stiffness", "secant\nstiffness", "F/L", "short", doc="from the start of the leg to its end"
         ),
         Column(
-            "loop", "half\nloop", "F*L", "num", doc="area between the leg and its chord, NaN for the first"
+            "loop",
+            "loop",
+            "F*L",
+            "num",
+            doc="of this leg and the one before, base shear over displacement; NaN for the first two",
         ),
-        Column("lost", "lost\nso far", "F*L", "num", doc="sum of these areas"),
         Column(
-            "damping",
-            "equivalent\ndamping",
-            "%",
-            "short",
-            doc="that of a cycle of such legs, NaN for the first",
+            "damping", "equivalent\ndamping", "%", "short", doc="of that loop; NaN for the first two legs"
         ),
     ),
     rows=rows,
     group="push",
-    note=(
-        "A leg leads from one target to the next. Half a loop of base shear over control displacement lies "
-        "between a leg and its chord."
-    ),
+    note="A leg leads from one target to the next; its loop is that with the leg before it.",
 )
