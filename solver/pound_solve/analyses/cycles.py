@@ -6,7 +6,7 @@ A leg from :math:`(d_1, V_1)` to :math:`(d_2, V_2)` encloses with its chord the 
 
 Two legs to and fro are a cycle, whose loop is the sum of their areas.  On a path that is elastic but not
 linear, such as one on which a contact closes, these cancel.  The equivalent damping is the loop over
-:math:`4\pi` times the elastic work of the amplitude (Jacobsen 1930; Chopra 2017, section 3.9):
+:math:`4\pi` times the elastic work of the amplitude (Jacobsen 1930; Chopra 2017):
 
 .. math:: \xi_{eq} = \frac{A_{n-1} + A_n}{4\pi\,\tfrac12\,\frac{\Delta V}{2}\,\frac{\Delta d}{2}}
                    = \frac{2\,(A_{n-1} + A_n)}{\pi\,\Delta V\,\Delta d} .
@@ -14,13 +14,12 @@ linear, such as one on which a contact closes, these cancel.  The equivalent dam
 The first leg starts from the static state: it does not belong to a loop.
 
 The backbone joins, on each side of the static state, the ends of the legs that went further than all before
-them (FEMA 461, section 2.9.2, first cycle of each amplitude).
+them: the first cycle of each amplitude, as in ASCE/SEI 41.
 
 References
 ----------
+ASCE/SEI 41-17 (2017), Seismic evaluation and retrofit of existing buildings, ASCE.
 Chopra AK (2017), Dynamics of Structures, 5th edn, Pearson.
-FEMA 461 (2007), Interim testing protocols for determining the seismic performance characteristics of
-structural and nonstructural components, Applied Technology Council.
 Jacobsen LS (1930), Steady forced vibration as influenced by damping, Transactions ASME 52(15): 169-181.
 """
 

@@ -42,15 +42,6 @@ def _point(pushed: PushoverResult, system: EquivalentSystem, spectrum: Demand) -
     return point.period, point.acceleration, point.reduction, end / at_yield, displacement, shear, changes
 
 
-def remark(run: RunRecord) -> str | None:
-    """Sentence on pushovers whose curves have no performance point."""
-    missing = sorted({row[0] for row in rows(run) if math.isnan(row[2])})
-    if not missing:
-        return None
-    named = f"pushover{'s' * (len(missing) > 1)} {', '.join(map(str, missing))}"
-    return f"The demand on {named} exceeds the curve, or the curve stiffens: push further, or use HISTORY."
-
-
 TABLE = Table(
     name="performance",
     title="Performance points by the N2 method",
@@ -80,9 +71,9 @@ TABLE = Table(
         Column("changes", fmt="int", doc="changes of springs, hinges and contacts up to there"),
     ),
     rows=rows,
-    remark=remark,
     note=(
         "The curve is idealised up to the performance point itself; the spectra are those of the motions, "
-        "with the damping XI and the corner period TC of the card."
+        "with the damping XI and the corner period TC of the card. Without numbers: the demand exceeds the "
+        "curve, or the curve stiffens; push further, or use HISTORY."
     ),
 )
