@@ -15,6 +15,7 @@ from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
 MOST = 12  #: events with a name
+TITLE = 90  #: characters of a line of a title
 BACKBONE: Final = {"color": style.RED, "linestyle": "-", "marker": "o", "markersize": 3.5, "linewidth": 1.2}
 IDEALISED: Final = {"color": "0.35", "linestyle": "--", "linewidth": 1.0}
 POINT: Final = {"marker": "*", "linestyle": "", "markersize": 10, "zorder": 4}
@@ -78,7 +79,7 @@ def curve(axes: Any, results: Results, push: int) -> None:
     style.legend(axes)
     said = {row["item"]: row["value"] for row in of_push(results, "pushover", push)}
     remarks = [said[item] for item in ("building", "pattern", "control", "end") if item in said]
-    axes.set_title(f"{push}: " * (push > 1) + "; ".join(remarks))
+    axes.set_title(style.wrapped(f"{push}: " * (push > 1) + "; ".join(remarks), TITLE))
 
 
 def _events(axes: Any, results: Results, push: int) -> None:
@@ -106,7 +107,8 @@ def _idealised(axes: Any, results: Results, push: int) -> None:
         x = [0.0, line["yield_displacement"], line["displacement"]]
         y = [0.0, line["yield_shear"], line["yield_shear"]]
         axes.plot(x0 + sense * np.array(x), y0 + sense * np.array(y), **IDEALISED, label="idealised")
-    for n, point in enumerate(of_push(results, "performance", push)):
+    points = of_push(results, "performance", push)
+    for n, point in enumerate(points[np.isfinite(points["displacement"])] if len(points) else ()):
         look = {**POINT, "color": style.stroke(n)["color"], "label": f"N2: {style.short(point['motion'])}"}
         axes.plot(point["displacement"], point["base_shear"], **look)
 
