@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final
 
 from pound_deck.schema import Spec
 
@@ -88,6 +89,10 @@ class Element:
     name: str = ""
 
 
+#: Name of the unit of mass F T^2/L by the units of force, length and time that make exactly that unit.
+_MASSES: Final = MappingProxyType({("kN", "m", "s"): "t", ("N", "mm", "s"): "t", ("N", "m", "s"): "kg"})
+
+
 @dataclass(frozen=True, slots=True)
 class Units:
     """Names of the deck's units; nothing is converted."""
@@ -98,7 +103,13 @@ class Units:
     stated: bool = False
 
     def text(self, dimension: str) -> str:
-        """Text of a dimension (``F/L`` ...) in the deck's units (``kN/m`` ...)."""
+        """Text of a dimension (``F/L`` ...) in the deck's units (``kN/m`` ...).
+
+        A mass has its own name where that is exactly the same unit: kN s^2/m is ``t``.  A modulus stays
+        ``kN/m^2``, the form in which decks and codes of practice state it.
+        """
+        if dimension == "F*T^2/L" and (mass := _MASSES.get((self.force, self.length, self.time))):
+            return mass
         unit = ""
         for ch in dimension:
             unit += {"F": self.force, "L": self.length, "T": self.time}.get(ch, ch)

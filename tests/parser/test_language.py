@@ -198,6 +198,25 @@ def test_single_cards(read):
 
 
 @pytest.mark.parametrize(
+    ("units", "mass"),
+    [
+        ("kN m s", "t"),
+        ("N mm s", "t"),
+        ("N m s", "kg"),
+        ("MN m s", "MN*s^2/m"),
+        ("kN mm s", "kN*s^2/mm"),
+        ("kN m ms", "kN*ms^2/m"),
+        ("kip in s", "kip*s^2/in"),
+    ],
+)
+def test_a_mass_has_the_name_of_its_unit(units, mass):
+    force, length, time = units.split()
+    deck = Units(force, length, time)
+    assert deck.text("F*T^2/L") == mass
+    assert deck.text("F*T/L") == f"{force}*{time}/{length}" and deck.text("F/L^2") == f"{force}/{length}^2"
+
+
+@pytest.mark.parametrize(
     "units, told",
     [("kN m", "missing: time; "), ("kN", "missing: length, time; "), ("m s", ""), ("kN m s s", "")],
 )
