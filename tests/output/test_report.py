@@ -142,6 +142,51 @@ def test_long_tables_are_cut(tmp_path: Path) -> None:
     assert len(row.findall(whole)) == 120
 
 
+@pytest.fixture(scope="module")
+def with_long_tables(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    """A run with 70 rows in a table of four sections each, and a short table."""
+    path = tmp_path_factory.mktemp("long") / "o.h5"
+    with Writer(path, title="t", units=sample.UNITS, program_version="0") as writer:
+        for name in ("contact_summary", "collisions", "damping", "run_figures"):
+            writer.table(name, [sample.rows()[name][0]] * 70)
+        writer.table("reactions", sample.rows()["reactions"])
+        writer.finish("done")
+    return Results.open(path)
+
+
+def test_long_tables_are_in_an_appendix_before_the_run_figures(with_long_tables: Results) -> None:
+    text = render(with_long_tables)
+    assert re.findall(r"^[A-Z0-9]+(?:\.\d+)?  [A-Z].*$", text, re.MULTILINE) == [
+        "1  SUMMARY",
+        "1.1  CONTACT SUMMARY",
+        "2  CONTACTS AND COLLISIONS",
+        "2.1  COLLISIONS",
+        "3  STATIC ANALYSIS",
+        "3.1  SUPPORT REACTIONS",
+        "4  APPENDIX: INPUT",
+        "4.1  DAMPING",
+        "A  APPENDIX: LONG TABLES",
+        "A.1  COLLISIONS (2.1)",
+        "5  RUN FIGURES",
+        "5.1  TIME, MEMORY, VERSIONS",
+    ]
+    there, _, appendix = text.partition("A.1  ")
+    note = "  Table A.1 of the appendix; 'collisions' in the results file.\n"
+    assert f"2.1  COLLISIONS\n\n{note}\n\n3  STATIC" in there
+    row = re.compile(r"^ +902 +\d", re.MULTILINE)
+    assert (len(row.findall(there)), len(row.findall(appendix))) == (0, 70)
+
+
+def test_excerpts_have_no_appendix(with_long_tables: Results) -> None:
+    text = render(with_long_tables, only=("collisions",))
+    assert "APPENDIX" not in text and len(re.findall(r"^ +902 +\d", text, re.MULTILINE)) == 70
+
+
+def test_a_table_of_one_page_stays(with_long_tables: Results) -> None:
+    assert "A.1" in render(with_long_tables, limit=53)
+    assert "A.1" not in render(with_long_tables, limit=40)
+
+
 def test_groups_are_blocks(report: str) -> None:
     """Displacements first, then velocities, each block with number formats of its own."""
     envelope = report[report.index("  NODE ENVELOPES\n") : report.index("  REACTION ENVELOPES\n")]

@@ -1,7 +1,8 @@
 """The plain-text report: a view of the tables in a results file.
 
-ASCII, at most 132 columns, sections and tables numbered as they are printed; nothing but the last section
-depends on the machine, the day or the host, so two reports of one deck compare line by line.
+ASCII, at most 132 columns, sections and tables numbered as they are printed. Tables longer than a page are
+in an appendix, so that the others can be read in a few pages. Nothing but the last section depends on the
+machine, the day or the host, so two reports of one deck compare line by line.
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ from tabulate import tabulate
 from pound_deck.model import Units
 from pound_solve.report.views import view_of
 from pound_solve.results import Results
-from pound_solve.results.contents import SECTIONS, TABLES
+from pound_solve.results.contents import MOVABLE, OF_THE_DAY, SECTIONS, TABLES
 from pound_solve.results.schema import Column, Row, Sheet, Table
 
 WIDTH: Final = 132  #: columns of the report
+_PAGE: Final = 60  #: longest table, in lines, that is printed in its section
 _INDENT: Final = "  "
 _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
@@ -61,9 +63,10 @@ def render(results: Results, *, limit: int | None = None, only: Collection[str] 
     str
         The report; every line ends in ``\\n``.
     """
-    lines = [*_banner(results), *_warning(results)]
     present = set(results.tables) if only is None else set(results.tables) & set(only)
-    number = 0
+    movable: Collection[str] = MOVABLE if only is None else ()
+    lines, moved, last = [*_banner(results), *_warning(results)], list[str](), list[str]()
+    number = appended = 0
     for heading, names in SECTIONS:
         printed = {
             name: body
@@ -73,12 +76,24 @@ def render(results: Results, *, limit: int | None = None, only: Collection[str] 
         if not printed:
             continue
         number += 1
-        lines += [f"{number}  {heading.upper()}", "=" * WIDTH, ""]
+        section = last if printed.keys() <= OF_THE_DAY else lines
+        section += _heading(f"{number}  {heading}")
         if "options" in names:
-            lines += [_INDENT + "An asterisk (*) marks a default value.", ""]
+            section += [_INDENT + "An asterisk (*) marks a default value.", ""]
         for place, (name, body) in enumerate(printed.items(), 1):
-            lines += [f"{number}.{place}  {TABLES[name].title.upper()}", "", *body, "", ""]
+            title, at = TABLES[name].title.upper(), f"{number}.{place}"
+            if name in movable and len(body) > _PAGE:
+                appended += 1
+                moved += [f"A.{appended}  {title} ({at})", "", *body, "", ""]
+                body = [f"{_INDENT}Table A.{appended} of the appendix; '{name}' in the results file."]
+            section += [f"{at}  {title}", "", *body, "", ""]
+    lines += [*(_heading("A  Appendix: long tables") if moved else ()), *moved, *last]
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
+
+
+def _heading(text: str) -> list[str]:
+    """Lines of the heading of a section."""
+    return [text.upper(), "=" * WIDTH, ""]
 
 
 def _banner(results: Results) -> Iterator[str]:

@@ -47,6 +47,11 @@ TABLES: Final[Mapping[str, Table[Any]]] = MappingProxyType(
 #: Tables that differ between two runs of the same deck.
 OF_THE_DAY: Final = frozenset(t.name for section, tables in _PARTS if section.of_the_day for t in tables)
 
+#: Tables that move to the appendix of the report where they are long.
+MOVABLE: Final = frozenset(
+    t.name for section, tables in _PARTS if not (section.keeps_long or section.of_the_day) for t in tables
+)
+
 #: Every history by its path below ``/history``, ``time`` first.
 HISTORIES: Final[Mapping[str, History]] = MappingProxyType(
     {h.name: h for _, h in _found(History, _MODULES)}

@@ -103,11 +103,14 @@ class Section:
         Sections are ordered by place; steps of ten leave room for new ones.
     of_the_day : bool
         Its tables differ between two runs of the same deck.
+    keeps_long : bool
+        Its long tables stay in it; those of other sections move to the appendix of the report.
     """
 
     heading: str
     place: int
     of_the_day: bool = False
+    keeps_long: bool = False
 
 
 def no_remark(record: object) -> None:

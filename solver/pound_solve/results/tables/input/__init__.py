@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Appendix: input", 110)
+SECTION = Section("Appendix: input", 110, keeps_long=True)

@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Summary", 10)
+SECTION = Section("Summary", 10, keeps_long=True)
