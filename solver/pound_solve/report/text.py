@@ -99,11 +99,11 @@ def _heading(text: str) -> list[str]:
 def _banner(results: Results) -> Iterator[str]:
     units = results.units
     yield "=" * WIDTH
-    yield f" POUND-SOLVE {_plain(results.program_version)}     EARTHQUAKE POUNDING OF PLANE FRAMES"
+    yield f" POUND-SOLVE {plain(results.program_version)}     EARTHQUAKE POUNDING OF PLANE FRAMES"
     yield ""
-    for line in textwrap.wrap(_plain(results.title), WIDTH - 2):
+    for line in textwrap.wrap(plain(results.title), WIDTH - 2):
         yield " " + line
-    yield f" Units: force {_plain(units.force)}, length {_plain(units.length)}, time {_plain(units.time)}"
+    yield f" Units: force {plain(units.force)}, length {plain(units.length)}, time {plain(units.time)}"
     if results.digest:
         yield f" Results {results.digest}"
     if results.changed:
@@ -119,9 +119,7 @@ def _warning(results: Results) -> Iterator[str]:
         return
     inner = WIDTH - 8
     yield "*" * WIDTH
-    for line in "\n\n".join("\n".join(textwrap.wrap(_plain(text), inner)) for text in sentences).split(
-        "\n"
-    ):
+    for line in "\n\n".join("\n".join(textwrap.wrap(plain(text), inner)) for text in sentences).split("\n"):
         yield f"**  {line.ljust(inner)}  **"
     yield "*" * WIDTH
     yield from ("", "")
@@ -204,7 +202,7 @@ def block(units: Units, sheet: Sheet, rows: NDArray[Any]) -> list[str]:
 
 def _with_notes(lines: list[str], sheet: Sheet, note: str = "") -> list[str]:
     """Lines of a table, if any, followed by its notes."""
-    notes = " ".join(_plain(text) for text in (sheet.note, note) if text)
+    notes = " ".join(plain(text) for text in (sheet.note, note) if text)
     if lines and notes:
         lines = [*lines, "", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
     return lines
@@ -248,7 +246,7 @@ def formatted(units: Units, sheet: Sheet, rows: NDArray[Any]) -> Formatted:
         if any(t not in ("", "-") for t in texts):
             columns.append(c)
             cells[c.name] = texts
-            unit = f"\n[{_plain(units.text(c.unit))}]" if c.unit else ""
+            unit = f"\n[{plain(units.text(c.unit))}]" if c.unit else ""
             heads[c.name] = c.title + unit
     return Formatted(columns, heads, cells, [len(g) for g in groups])
 
@@ -344,8 +342,8 @@ def _width(head: str, cells: Iterable[str]) -> int:
 def _format(column: Column, values: list[Any]) -> list[str]:
     """Texts of the cells of one column, numbers with equal numbers of decimals; ``-`` for no value."""
     if column.fmt == "text":
-        plain = {v: _plain(v)[: column.clip or None] for v in set(values)}
-        return [plain[v] for v in values]
+        texts = {v: plain(v)[: column.clip or None] for v in set(values)}
+        return [texts[v] for v in values]
     if column.fmt == "int":
         return [column.zero if column.zero and not v else str(v) for v in values]
     shown = iter(_decimals(column.fmt, [v for v in values if math.isfinite(v)]))
@@ -407,7 +405,7 @@ def _unsigned_zero(text: str) -> str:
     return text[1:] if text[0] == "-" and not text.strip("-0.") else text
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Text in ASCII on one line."""
     if not text.isascii():
         text = "".join(map(_spelled, unicodedata.normalize("NFKD", unicodedata.normalize("NFC", text))))

@@ -13,7 +13,13 @@ if TYPE_CHECKING:
     from pound_solve.results import Results
 
 SUMMARY = "print the report of a results file, or write it as a page for a browser"
-EXAMPLES = (("model.h5 --brief", "the first page"), ("model.h5 --html", "one page for a browser"))
+EXAMPLES = (
+    ("model.h5 --brief", "the first page"),
+    ("model.h5 --pages", "numbered pages for a printer"),
+    ("model.h5 --html", "one page for a browser"),
+)
+
+_PAGE = 60  #: lines of a page for a printer: A4 across in Courier 8, as wide as the report
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,7 +27,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("results", help="results file (.h5)")
     parser.add_argument("--brief", action="store_true", help="print the summary only")
     parser.add_argument("--full", action="store_true", help="print long tables in full")
-    parser.add_argument(
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument(
+        "--pages",
+        nargs="?",
+        type=_length,
+        const=_PAGE,
+        metavar="LINES",
+        help=f"divide the text into numbered pages for a printer, without LINES of {_PAGE} lines",
+    )
+    form.add_argument(
         "--html",
         nargs="?",
         type=Path,
@@ -32,8 +47,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _length(text: str) -> int:
+    """Number of lines of a page."""
+    from pound_solve.report.pages import SHORTEST
+
+    length = int(text)
+    if length < SHORTEST:
+        raise argparse.ArgumentTypeError(f"a page has at least {SHORTEST} lines")
+    return length
+
+
 def execute(args: argparse.Namespace) -> int:
     """Print the report, or write the page and print its path."""
+    from pound_solve.report.pages import paged
     from pound_solve.report.text import render
     from pound_solve.results import Results
     from pound_solve.results.contents import SECTIONS
@@ -46,7 +72,8 @@ def execute(args: argparse.Namespace) -> int:
     with Results.open(args.results) as results:
         if args.html is not None:
             return _page(results, args.html, chosen)
-        sys.stdout.write(render(results, **chosen))
+        text = render(results, **chosen)
+        sys.stdout.write(paged(results, text, args.pages) if args.pages else text)
         beside = results.path.with_suffix(".rpt")
         if digest_in(beside) not in ("", results.digest):
             common.complain(f"warning: {beside} is the report of another run")
