@@ -100,6 +100,7 @@ def test_the_command_prints_pages(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert max(len(page.splitlines()) for page in usual.split("\f")) == 60
     assert main(["report", path, "--brief", "--pages", "20"]) == 0
     assert capsys.readouterr().out.count("\f") >= 1
-    with pytest.raises(SystemExit):
-        main(["report", path, "--pages", str(SHORTEST - 1)])
-    assert f"a page has at least {SHORTEST} lines" in capsys.readouterr().err
+    for wrong in (str(SHORTEST - 1), "a4", "-60"):
+        with pytest.raises(SystemExit):
+            main(["report", path, f"--pages={wrong}"])
+        assert f"{wrong} instead of at least {SHORTEST} lines of a page" in capsys.readouterr().err

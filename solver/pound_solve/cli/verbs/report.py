@@ -51,10 +51,9 @@ def _length(text: str) -> int:
     """Number of lines of a page."""
     from pound_solve.report.pages import SHORTEST
 
-    length = int(text)
-    if length < SHORTEST:
-        raise argparse.ArgumentTypeError(f"a page has at least {SHORTEST} lines")
-    return length
+    if not text.isdecimal() or int(text) < SHORTEST:
+        raise argparse.ArgumentTypeError(f"{text[:20]} instead of at least {SHORTEST} lines of a page")
+    return int(text)
 
 
 def execute(args: argparse.Namespace) -> int:
