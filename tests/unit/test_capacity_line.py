@@ -128,6 +128,27 @@ def test_the_point_does_not_depend_on_the_target(
         assert one.displacement == pytest.approx(one.line.end, rel=1e-9)
 
 
+def test_a_ground_at_rest_leaves_the_static_state() -> None:
+    point = plastic().performance(SYSTEM, flat(0.0), 0.5)
+    assert point is not None and point.displacement == 0.0 and point.line.end < 1e-11
+
+
+@given(
+    knots=st.lists(st.tuples(st.floats(1e-3, 1.0), st.floats(-5.0, 50.0)), min_size=1, max_size=6),
+    level=st.floats(0.0, 30.0),
+    corner=st.floats(0.01, 5.0),
+)
+def test_every_curve_has_an_answer(knots: list[tuple[float, float]], level: float, corner: float) -> None:
+    """Also one that falls, stiffens, or changes its side: a point whose line ends at it, or none."""
+    d = np.concatenate([[0.0], np.cumsum([step for step, _ in knots])])
+    v = [0.0, *(shear for _, shear in knots)]
+    c = curve(*zip(d.tolist(), v))
+    point = c.performance(SYSTEM, flat(level), corner)
+    if point is not None and level:
+        assert 0.0 < point.line.end <= d[-1] * (1.0 + 1e-12)
+        assert 0.0 < point.line.yield_displacement <= point.line.end
+
+
 # the equivalent oscillator, from decks
 
 STOREYS = """
@@ -202,3 +223,15 @@ def test_a_demand_beyond_the_curve_has_no_numbers(tmp_path: Path) -> None:
     (point,) = results.table("performance")
     assert math.isnan(point["displacement"]) and point["changes"] == 0
     assert "Without numbers: the demand exceeds the curve" in (tmp_path / "deck.rpt").read_text()
+
+
+def test_a_stiff_building_under_a_long_motion_follows_the_ground(tmp_path: Path) -> None:
+    """A period of 1e-8 s would divide the motion into too many intervals; the answer is on the safe side."""
+    deck = tmp_path / "deck.inp"
+    deck.write_text(
+        STOREYS.replace("KX=100", "KX=1e18").replace("KX=80", "KX=1e18").replace("FX=5", "FX=1e9")
+        + "EQUAKE\n SINE AMPLITUDE=2 PERIOD=0.7 DURATION=7\nANALYSIS\n PUSHOVER 3 1e-10 TC=0.5\n"
+    )
+    results = run(deck, out=tmp_path)
+    (point,) = results.table("performance")
+    assert point["acceleration"] == pytest.approx(2.0, rel=2e-2)

@@ -56,9 +56,9 @@ from pound_solve.numerics.types import Array
 Demand: TypeAlias = Callable[[Array], Array]
 PRECISION: Final = 1e-12  #: error of the performance point, as a fraction of itself
 ROUNDING: Final = 1e-9  #: fraction of a displacement or shear below which a difference is rounding error
-LEFT: Final = (
-    0.8  #: share of the largest base shear that the building has left at its ultimate displacement
-)
+#: shortest period, as a multiple of the longest interval of a motion: it is divided into 16 parts
+SHORTEST: Final = 1.0 / 8.0
+LEFT: Final = 0.8  #: share of the largest base shear that is left at the ultimate displacement
 
 
 @dataclass(frozen=True)
@@ -129,6 +129,7 @@ class CapacityCurve:
         steps = 0.5 * np.diff(self.d) * (self.v[1:] + self.v[:-1])
         self._energy = np.concatenate([[0.0], np.cumsum(steps)])
         self._largest = np.maximum.accumulate(self.v)
+        self._goes_back = bool((np.diff(self.d) < 0.0).any())
 
     @property
     def strongest(self) -> float:
@@ -153,7 +154,7 @@ class CapacityCurve:
         k = int(np.searchsorted(self.d, end, "right")) - 1
         shear = float(np.interp(end, self.d, self.v))
         largest = max(float(self._largest[k]), shear)
-        if largest <= 0.0 or (np.diff(self.d[: k + 2]) < 0.0).any():
+        if largest <= 0.0 or self._goes_back:
             return None
         energy = float(self._energy[k]) + 0.5 * (end - float(self.d[k])) * (float(self.v[k]) + shear)
         at_yield = 2.0 * (end - energy / largest)
@@ -164,7 +165,8 @@ class CapacityCurve:
     def performance(
         self, system: EquivalentSystem, demand: Demand, corner: float
     ) -> PerformancePoint | None:
-        """Return the performance point; None if the curve ends, or has no line, before it.
+        """Return the performance point, the first between two points of the curve; None if the curve ends,
+        or has no line, before it.
 
         Parameters
         ----------
@@ -180,15 +182,16 @@ class CapacityCurve:
         if after is None:
             return None
 
-        def at(end: float) -> PerformancePoint:
-            (point,) = _points([self.line(end)], system, demand, corner)
-            return point
+        def at(end: float) -> PerformancePoint | None:
+            return next(iter(_points([self.line(end)], system, demand, corner)), None)
 
         def excess(end: float) -> float:
-            return at(end).displacement - end
+            return point.displacement - end if (point := at(end)) else end  # without a line: not reached
 
         high = points[after].line.end
         low = points[after - 1].line.end if after else PRECISION * high
+        if excess(low) <= 0.0:  # a ground at rest
+            return at(low)
         return at(brentq(excess, low, high, xtol=PRECISION * high))
 
 
@@ -205,7 +208,10 @@ def demands(
 
 
 def _ordinates(acceleration: Piecewise, damping: float, periods: Array) -> Array:
-    """Return pseudo-accelerations [L/T^2], shape (n,)."""
+    """Return pseudo-accelerations [L/T^2], shape (n,).  Oscillators stiffer than any building get that of
+    `SHORTEST`, which is hardly more than the peak of the ground.
+    """
+    periods = np.maximum(periods, SHORTEST * float(np.diff(acceleration.breaks).max()))
     return np.asarray(pseudo_acceleration(acceleration, periods, damping)[0])
 
 
