@@ -226,7 +226,7 @@ def test_a_demand_beyond_the_curve_has_no_numbers(tmp_path: Path) -> None:
 
 
 def test_a_stiff_building_under_a_long_motion_follows_the_ground(tmp_path: Path) -> None:
-    """A period of 1e-8 s would divide the motion into too many intervals; the answer is on the safe side."""
+    """A period of 1e-8 s divides the motion into too many intervals; the answer is on the safe side."""
     deck = tmp_path / "deck.inp"
     deck.write_text(
         STOREYS.replace("KX=100", "KX=1e18").replace("KX=80", "KX=1e18").replace("FX=5", "FX=1e9")
