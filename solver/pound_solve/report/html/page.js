@@ -5,6 +5,7 @@ const PRINT_SIZE = 8 / 10.5; // of texts on paper to those on the screen, see pa
 const LEAST = 0.8; // size to which a table shrinks before its texts are wrapped
 const BESIDE = 600; // least width of a picture with the names of its curves beside it [px]
 const NAMES = 210; // room for names beside pictures over time, whose axes are in line then [px]
+const LONG = 24; // characters of a name that has no room there
 const ROW = 19; // height of a line of names [px]
 
 // What a cell is sorted by: the number that it begins with, then its text. Cells that begin with a text
@@ -58,18 +59,25 @@ function restoreTables() {
   for (const table of document.querySelectorAll("table")) table.style.fontSize = "";
 }
 
-// Layout of a picture of a width: the names of the curves beside it, or below.
-function arranged(figure, width, height = width < BESIDE ? 320 : 400) {
-  if (width >= BESIDE || !figure.named) {
-    const legend = { orientation: "v", x: 1.02, y: 1, yanchor: "top", yref: "paper", maxheight: 1 };
+// Whether the name of each curve is listed: on paper, only those of curves that are visible.
+function listedNames(figure, onPaper = false) {
+  const hidden = (place) => figure.place.data[place].visible === "legendonly";
+  return figure.traces.map((trace, place) => trace.showlegend !== false && !(onPaper && hidden(place)));
+}
+
+// Layout of a picture of a width: the names of the curves beside it, or below if they are long.
+function arranged(figure, listed, width, height = width < BESIDE ? 320 : 400) {
+  const names = figure.traces.filter((trace, place) => listed[place]).map((trace) => trace.name.length);
+  const longest = Math.max(...names);
+  if (!figure.named || (width >= BESIDE && longest <= LONG)) {
+    const legend = { orientation: "v", x: 1.02, y: 1, yanchor: "top", yref: "paper", maxheight: 1, tracegroupgap: 0 };
     const right = figure.time && width >= BESIDE ? NAMES : 20;
     return { width, height, margin: { l: 70, r: right, t: 10, b: 50 }, legend };
   }
-  const longest = Math.max(...figure.traces.map((trace) => trace.name.length));
   const columns = Math.max(1, Math.floor((width - 80) / (6.5 * longest + 50)));
-  const names = ROW * Math.min(12, Math.ceil(figure.traces.length / columns)) + 10;
-  const legend = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container", maxheight: names };
-  return { width, height: height + names, margin: { l: 70, r: 10, t: 30, b: 55 + names }, legend };
+  const room = ROW * Math.min(12, Math.ceil(names.length / columns)) + 10;
+  const legend = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container", maxheight: room, tracegroupgap: 0 };
+  return { width, height: height + room, margin: { l: 70, r: 10, t: 30, b: 55 + room }, legend };
 }
 
 const roomOf = (figure) => figure.place.parentElement.clientWidth;
@@ -84,13 +92,18 @@ function draw(figure, touch) {
   const traces = figure.traces.map((trace, place) => ({
     type: "scatter", ...trace, line: { width: 1.5, dash: dash(place), ...trace.line },
   }));
+  const type = figure.log ? { type: "log", exponentformat: "power" } : {};
+  const rows = figure.rows.length ? {
+    tickvals: [...figure.rows.keys()], ticktext: figure.rows, side: "right", automargin: true,
+    range: [-0.5, figure.rows.length - 0.5], zeroline: false,
+  } : {};
   const layout = {
-    ...arranged(figure, roomOf(figure)),
+    ...arranged(figure, listedNames(figure), roomOf(figure)),
     separators: ".", // none between thousands
-    hovermode: figure.equal ? "closest" : "x unified",
+    hovermode: figure.time && !figure.rows.length ? "x unified" : "closest",
     dragmode: touch ? false : "zoom", // a finger moves the page
-    xaxis: axis(figure.x, figure.range ? { range: [...figure.range] } : {}),
-    yaxis: axis(figure.y, figure.equal ? { scaleanchor: "x", scaleratio: 1 } : {}),
+    xaxis: axis(figure.x, { ...type, ...(figure.range ? { range: [...figure.range] } : {}) }),
+    yaxis: axis(figure.y, { ...type, ...rows, ...(figure.equal ? { scaleanchor: "x", scaleratio: 1 } : {}) }),
     showlegend: figure.named,
   };
   // a wheel without the key Ctrl moves the page, or the names if there are many
@@ -114,9 +127,11 @@ function link(figures) {
   for (const figure of figures) figure.place.on("plotly_relayout", (change) => follow(figure, change));
 }
 
-function fit(figures, width, height) {
+function fit(figures, paper) {
   for (const figure of figures) {
-    Plotly.relayout(figure.place, arranged(figure, width ?? roomOf(figure), height));
+    const listed = listedNames(figure, Boolean(paper));
+    const layout = arranged(figure, listed, paper?.width ?? roomOf(figure), paper?.height);
+    Plotly.update(figure.place, { showlegend: listed }, layout);
   }
 }
 
@@ -127,13 +142,14 @@ function drawAll(figures) {
   const touch = matchMedia("(pointer: coarse)").matches;
   figures.forEach((figure, number) => {
     figure.place = document.getElementById(`p${number + 1}`);
-    figure.named = figure.traces.length > 1;
+    figure.named = listedNames(figure).filter(Boolean).length > 1;
     if (figure.time) figure.range = range;
+    if (figure.reach) figure.range = [0, figure.reach];
     draw(figure, touch);
   });
   link(overTime);
   addEventListener("resize", () => fit(figures));
-  addEventListener("beforeprint", () => fit(figures, PAPER, 280)); // three on a page
+  addEventListener("beforeprint", () => fit(figures, { width: PAPER, height: 268 })); // three with their notes on a page
   addEventListener("afterprint", () => fit(figures));
 }
 

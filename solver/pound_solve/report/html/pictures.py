@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.report.html.picture import PlotlyPicture, Trace, numbers, plain
-from pound_solve.report.html.structures import mode_shapes, structure, yielded
+from pound_solve.report.html.members import diagrams, orbits
+from pound_solve.report.html.methods import errors_of_methods
+from pound_solve.report.html.peaks import closures, columns_of_nodes, peaks_of_collisions
+from pound_solve.report.html.picture import COLOURS, PlotlyPicture, Trace, curve, numbers, plain, thinned
+from pound_solve.report.html.pushovers import capacity_curves, performance_points
+from pound_solve.report.html.structures import loads, mode_shapes, structure, yielded
 from pound_solve.report.plot.courses import of_contact, with_peaks
 from pound_solve.report.plot.pictures import base_shear, storeys
 from pound_solve.results import Results
 
-MOST_POINTS: Final = 4000  #: most points of a curve in time, else extremes of short intervals
 MOST_SHOWN: Final = 8  #: curves of a picture visible at first; a click on a name shows another
 MOST_CURVES: Final = 60
 MOST_LOOPS: Final = 12
@@ -32,24 +36,18 @@ COURSES: Final = (
     ("contact/gap", "", "Gaps", "gap"),
     ("energy", "", "Energies", "energy"),
 )
+#: factor and unit of ratios, as in their profiles over the height
+RATIOS: Final = MappingProxyType({"storey/drift": (storeys.PROFILES["drift ratio"][2], "%")})
 #: both sides of a profile: name and dashes
 SIDES: Final = (("to the right", "solid"), ("to the left", "dash"))
-COLOURS: Final = (
-    "#1f77b4",
-    "#ff7f0e",
-    "#2ca02c",
-    "#d62728",
-    "#9467bd",
-    "#8c564b",
-    "#e377c2",
-    "#7f7f7f",
-)  #: colours of buildings; both sides of one have the same
 
 
 def pictures(results: Results) -> list[PlotlyPicture]:
     """Return all pictures for which the results have data."""
     makers: tuple[Callable[[Results], Iterator[PlotlyPicture]], ...] = (
-        structure, mode_shapes, _profiles, _courses, _overlaps, yielded, _loops, _capacity,
+        errors_of_methods, structure, loads, mode_shapes, columns_of_nodes, _profiles, diagrams, _courses,
+        peaks_of_collisions, closures, _overlaps, yielded, _loops, orbits, capacity_curves,
+        performance_points,
     )  # fmt: skip
     return [picture for make in makers for picture in make(results) if picture.traces]
 
@@ -82,6 +80,8 @@ def _courses(results: Results) -> Iterator[PlotlyPicture]:
         if component and results.holds("base_envelope") and not base_shear.moves(results, component):
             continue
         (t, values), labels = results.course(name, jumps=True), results.labels(name)
+        factor, percent = RATIOS.get(name, (1.0, ""))
+        values = factor * values
         kinds = results.coordinates(name)["component"] if component else labels
         chosen = [k for k, kind in enumerate(kinds) if not component or kind == component][:MOST_CURVES]
         if not chosen:
@@ -94,20 +94,15 @@ def _courses(results: Results) -> Iterator[PlotlyPicture]:
             points = t, values[:, k]
             if name == "contact/force":
                 points = with_peaks(*points, of_contact(results, labels[k]))
-            traces.append(_curve(labels[k], *thinned(*points), k in shown))
+            traces.append(curve(labels[k], *thinned(*points), k in shown))
         if name == "contact/force":
             traces += _peaks(results)
             note = f"The marks are the peaks in the table of collisions. {note}".strip()
         if name == "contact/gap":
             note = f"Below zero a contact is pressed. {note}".strip()
-        unit = results.history_units(name)[chosen[0]]
+        unit = percent or results.history_units(name)[chosen[0]]
         x, y = f"time [{results.units.time}]", f"{axis} [{unit}]"
         yield PlotlyPicture(title, note, x, y, traces, time=True)
-
-
-def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
-    curve = {"name": plain(name), "mode": "lines", "x": numbers(x), "y": numbers(y)}
-    return curve if shown else curve | {"visible": "legendonly"}
 
 
 def _peaks(results: Results) -> Iterator[Trace]:
@@ -130,7 +125,7 @@ def _overlaps(results: Results) -> Iterator[PlotlyPicture]:
     labels, units = results.labels("contact/force"), results.units
     hardest = np.argsort(-forces.max(axis=0, initial=0.0), kind="stable").tolist()
     closed = [k for k in hardest if forces[:, k].max(initial=0.0) > 0.0][:MOST_LOOPS]
-    traces = [_curve(labels[k], *_pressed(gaps[:, k], forces[:, k]), n == 0) for n, k in enumerate(closed)]
+    traces = [curve(labels[k], *_pressed(gaps[:, k], forces[:, k]), n == 0) for n, k in enumerate(closed)]
     note = "At first the one with the largest force is shown. " if len(closed) > 1 else ""
     note += "The corners are those of the stored instants."
     x, y = f"overlap [{units.length}]", f"contact force [{units.force}]"
@@ -154,7 +149,7 @@ def _loops(results: Results) -> Iterator[PlotlyPicture]:
     work = np.abs(np.diff(deformation, axis=0) * 0.5 * (force[1:] + force[:-1])).sum(axis=0)
     for unit in dict.fromkeys(units):
         shown = [k for k in np.argsort(work)[::-1].tolist() if units[k] == unit][:MOST_LOOPS]
-        traces = [_curve(labels[k], deformation[:, k], force[:, k], n == 0) for n, k in enumerate(shown)]
+        traces = [curve(labels[k], deformation[:, k], force[:, k], n == 0) for n, k in enumerate(shown)]
         kind = "Moment" if along[shown[0]] == "rad" else "Force"
         note = "At first the one with the most work is shown. " if len(shown) > 1 else ""
         note += "The corners are those of the stored instants."
@@ -165,34 +160,3 @@ def _loops(results: Results) -> Iterator[PlotlyPicture]:
             f"{kind.lower()} [{unit}]",
             traces,
         )
-
-
-def _capacity(results: Results) -> Iterator[PlotlyPicture]:
-    """Pictures of the capacity curves of pushovers, with the backbones of those that turn."""
-    if not results.holds("capacity_curve"):
-        return
-    table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
-    x, y = f"control displacement [{units['displacement']}]", f"base shear [{units['base_shear']}]"
-    numbers = sorted(set(table["push"].tolist()))
-    for push in numbers:
-        traces = [
-            _curve(name, rows["displacement"], rows["base_shear"], True)
-            for name, source in (("base shear", "capacity_curve"), ("backbone", "backbone"))
-            if results.holds(source)
-            and len(rows := results.table(source)[results.table(source)["push"] == push])
-        ]
-        title = f"Capacity curve {push}" if len(numbers) > 1 else "Capacity curve"
-        yield PlotlyPicture(title, "", x, y, traces)
-
-
-def thinned(t: Array, values: Array) -> tuple[Array, Array]:
-    """Thin out a curve of many points: keep the smallest and the largest value of every short interval."""
-    if len(t) <= MOST_POINTS:
-        return t, values
-    size = -(-2 * len(t) // MOST_POINTS)
-    keep = {0, len(t) - 1}
-    for start in range(0, len(t), size):
-        window = values[start : start + size]
-        keep |= {start + int(np.argmin(window)), start + int(np.argmax(window))}
-    chosen = sorted(keep)
-    return t[chosen], values[chosen]

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pound_solve.numerics.types import Array
 from pound_solve.report.plot import courses, style
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
@@ -19,23 +21,20 @@ def collisions(results: Results, choice: Choice) -> Any:
     names = list(results.labels("contact/force"))
     figure = style.figure(9.5, 0.3 * len(names) + 3.4, "Collisions")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 0.3 * len(names) + 0.5))
-    table = results.table("collisions")
-    impacts = bool(np.isnan(table["peak_force"]).all())
-    column, when = ("impulse", "t_start") if impacts else ("peak_force", "t_peak")
-    unit = results.units.text("F*T") if impacts else results.units.force
-    style.grid(top, "", f"{'impulse' if impacts else 'peak force'} [{unit}]")
+    column, when, size = peaks(results)
+    style.grid(top, "", size)
     style.grid(bottom, f"time [{results.units.time}]")
     end = results.last_time
     for n, name in enumerate(names):
         colour = style.stroke(n)["color"]
         closures = courses.of_contact(results, name, choice)
-        last = np.where(np.isnan(closures["t_end"]), end, closures["t_end"])
+        start, last = times_closed(results, closures)
         if len(closures):
             top.vlines(closures[when], 0.0, closures[column], color=colour, linewidth=0.9)
             top.plot(closures[when], closures[column], "o", color=colour, label=style.short(name))
         # a collision is short: no bar is thinner than a line
-        width = np.maximum(last - closures["t_start"], 0.002 * end)
-        bottom.barh(np.full(len(closures), n), width, left=closures["t_start"], color=colour, height=0.6)
+        width = np.maximum(last - start, 0.002 * end)
+        bottom.barh(np.full(len(closures), n), width, left=start, color=colour, height=0.6)
     top.set_xlim(*(choice.between or (results.time[0], end)))
     top.set_ylim(bottom=0.0)
     style.legend(top)
@@ -43,6 +42,19 @@ def collisions(results: Results, choice: Choice) -> Any:
     bottom.set_ylim(-0.6, len(names) - 0.4)
     bottom.set_title("times at which each contact was closed")
     return figure
+
+
+def peaks(results: Results) -> tuple[str, str, str]:
+    """Columns of the size of collisions and of its time, and the name of its axis."""
+    if np.isnan(results.table("collisions")["peak_force"]).all():
+        return "impulse", "t_start", f"impulse [{results.units.text('F*T')}]"
+    return "peak_force", "t_peak", f"peak force [{results.units.force}]"
+
+
+def times_closed(results: Results, collisions: NDArray[Any]) -> tuple[Array, Array]:
+    """Start and end of some collisions; one that has not ended lasts until the end of the run."""
+    end = np.where(np.isnan(collisions["t_end"]), results.last_time, collisions["t_end"])
+    return collisions["t_start"], end
 
 
 SPEC = Picture(

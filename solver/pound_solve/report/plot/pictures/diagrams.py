@@ -32,7 +32,7 @@ def diagrams(results: Results, choice: Choice) -> Any:
     scale = min(1.0, 5.0 / width) if upright else min(1.0, 8.0 / width)
     width, height = max(4.0, width * scale), max(2.4, height * scale) + 0.3
     size = (width * len(shown), height + 0.4) if upright else (width, height * len(shown) + 0.4)
-    figure = style.figure(*size, title=f"Member forces {at.title}" if at else _title(results, choice))
+    figure = style.figure(*size, title=f"Member forces {at.title}" if at else title(results, choice))
     for n, quantity in enumerate(shown):
         axes = figure.add_subplot(*((1, len(shown)) if upright else (len(shown), 1)), n + 1)
         panel(axes, s, [line for line in chosen if quantity in line.low], quantity)
@@ -58,7 +58,8 @@ def _largest_drawn(s: geometry.DrawnStructure, members: list[MemberForces]) -> f
     return min(SHARE * s.size, WIDEST * float(np.median(lengths))) if lengths else SHARE * s.size
 
 
-def _title(results: Results, choice: Choice) -> str:
+def title(results: Results, choice: Choice) -> str:
+    """Return what the diagrams show where no instant is chosen."""
     if not len(results.time):
         return "Member forces of the static state"
     if choice.between:
@@ -74,15 +75,14 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[MemberForces], qu
     s.frame(axes, 0.06 + SHARE)
     s.draw(axes, color="0.6", linewidth=0.8)
     s.draw_contacts(axes)
-    low = min(float(line.low[quantity].min()) for line in members)
-    high = max(float(line.high[quantity].max()) for line in members)
+    low, high = extremes(members, quantity)
     top = max(abs(low), abs(high)) or 1.0
-    factor = _largest_drawn(s, members) / top
+    factor = scale(s, members, quantity)
     one = all(np.array_equal(line.low[quantity], line.high[quantity]) for line in members)
     for line in members:
         both = ((line.high[quantity], style.BLUE), (line.low[quantity], style.RED))
         for values, colour in both[: 1 if one else 2]:
-            base, edge = _outline(line, values, quantity, factor)
+            base, edge = outline(line, values, quantity, factor)
             axes.fill(*np.hstack([edge, base[:, ::-1]]), color=colour, alpha=0.18, linewidth=0)
             axes.plot(*np.hstack([base[:, :1], edge, base[:, -1:]]), color=colour, linestyle="-",
                       linewidth=0.8)  # fmt: skip
@@ -96,7 +96,18 @@ def panel(axes: Any, s: geometry.DrawnStructure, members: list[MemberForces], qu
     axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(remarks)}")
 
 
-def _outline(line: MemberForces, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
+def extremes(members: list[MemberForces], quantity: str) -> tuple[float, float]:
+    """Smallest and largest value of one force of some members."""
+    low = min(float(line.low[quantity].min()) for line in members)
+    return low, max(float(line.high[quantity].max()) for line in members)
+
+
+def scale(s: geometry.DrawnStructure, members: list[MemberForces], quantity: str) -> float:
+    """Length that a unit of one force is drawn with."""
+    return _largest_drawn(s, members) / (max(map(abs, extremes(members, quantity))) or 1.0)
+
+
+def outline(line: MemberForces, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
     """Points of a member's axis, and the points offset from them by the values, shape (2, n) each."""
     along = (line.j - line.i) / max(float(np.hypot(*(line.j - line.i))), 1e-300)
     left = np.array([-along[1], along[0]]) * (-1.0 if quantity == "M" else 1.0)
@@ -105,10 +116,10 @@ def _outline(line: MemberForces, values: Array, quantity: str, factor: float) ->
 
 
 def _values(
-    axes: Any, line: MemberForces, quantity: str, factor: float, least: float, extremes: tuple[float, float]
+    axes: Any, line: MemberForces, quantity: str, factor: float, least: float, ends: tuple[float, float]
 ) -> None:
     """Label the largest and the smallest value of a member, if they differ and are not small; those of all
-    members, the `extremes`, also far from it.
+    members, the `ends`, also far from it.
     """
     labelled: list[float] = []
     one = np.array_equal(line.low[quantity], line.high[quantity])
@@ -121,10 +132,10 @@ def _values(
         if abs(value) < least or any(abs(value - other) < least for other in labelled):
             continue
         labelled.append(value)
-        base, edge = _outline(line, values, quantity, factor)
+        base, edge = outline(line, values, quantity, factor)
         # beyond the shading, unless that of the other extreme is on the same side of the member
         side = (edge - base)[:, at] if one or sign * value > 0.0 else (0.0, 0.0)
-        labels.label(axes, edge[:, at], _text(value), value in extremes, side, fontsize=6)
+        labels.label(axes, edge[:, at], _text(value), value in ends, side, fontsize=6)
 
 
 def _text(value: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,37 +25,67 @@ DUCTILITY = (
 )
 
 
+class HingeMap(NamedTuple):
+    """One map of springs and hinges.
+
+    Attributes
+    ----------
+    title : str
+    column : str
+        Of the `rows`, which all have a value there.
+    rows : ndarray, shape (n,)
+        Of ``spring_envelope`` or ``damage``.
+    classes : tuple of (float, str)
+        Least value and word of each class, from the worst.
+    """
+
+    title: str
+    column: str
+    rows: NDArray[Any]
+    classes: tuple[tuple[float, str], ...]
+
+
 def hinges(results: Results, choice: Choice) -> Any:
     """Draw the structure with a disc at each spring and hinge, coloured by ductility and by damage."""
     s = DrawnStructure(results, apart())
-    panels = [("ductility\n(largest deformation over yield)", "ductility", results.table("spring_envelope"),
-               DUCTILITY)]  # fmt: skip
-    if results.holds("damage"):
-        damage = results.table("damage")
-        panels.append(("damage index\nof Park and Ang", "index", damage[damage["element"] > 0], STATES))
-    if not any(np.isfinite(rows[column]).any() for _, column, rows, _ in panels):
+    panels = maps(results)
+    if not any(len(shown.rows) for shown in panels):
         raise Nothing("springs and hinges that can yield")
     width, height = s.shape()
     scale = min(1.0, 6.0 / width)
     figure = style.figure(
         (width * scale + 1.3) * len(panels), max(2.4, height * scale) + 0.5, "Springs and hinges"
     )
-    for n, (title, column, rows, classes) in enumerate(panels):
+    for n, shown in enumerate(panels):
         axes = figure.add_subplot(1, len(panels), n + 1)
-        panel(axes, s, rows, column, classes)
-        axes.set_title(title)
+        panel(axes, s, shown)
+        axes.set_title(shown.title)
     return figure
 
 
-def panel(
-    axes: Any, s: DrawnStructure, rows: NDArray[Any], column: str, classes: tuple[tuple[float, str], ...]
-) -> None:
-    """Draw the discs of one column in the colours of its classes; where several coincide, the worst."""
+def maps(results: Results) -> list[HingeMap]:
+    """The map of ductility, and that of damage if it is known."""
+    tables = [
+        ("ductility\n(largest deformation over yield)", "ductility", "spring_envelope", DUCTILITY),
+        ("damage index\nof Park and Ang", "index", "damage", STATES),
+    ]
+    shown = []
+    for title, column, name, classes in tables:
+        if results.holds(name):
+            rows = results.table(name)  # the damage of element 0 is that of the whole structure
+            rows = rows[np.isfinite(rows[column]) & (rows["element"] > 0)]
+            shown.append(HingeMap(title, column, rows, classes))
+    return shown
+
+
+def panel(axes: Any, s: DrawnStructure, shown: HingeMap) -> None:
+    """Draw the discs of one map in the colours of its classes; where several coincide, the worst."""
+    column, classes = shown.column, shown.classes
     s.frame(axes)
     s.draw(axes, color="0.6", linewidth=1.0)
     s.draw_supports(axes)
     worst: dict[tuple[float, float], float] = {}
-    for row in rows[np.isfinite(rows[column])]:
+    for row in shown.rows:
         at = s.component(int(row["element"]), str(row["component"]))
         key = (float(at[0]), float(at[1]))
         worst[key] = max(worst.get(key, -math.inf), float(row[column]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,18 +48,31 @@ class MemberHinge(NamedTuple):
         axial, moment = self.columns
         return self.sign * forces[:, moment], forces[:, axial]
 
+    @property
+    def outline(self) -> Array:
+        """Moments and axial forces around the diagram, shape (2, m + 1); none of a hinge without one."""
+        outline: Array = np.vstack([self.corners, self.corners[:1]])[:, ::-1].T
+        return outline
+
+    @property
+    def yield_moments(self) -> list[float]:
+        """Yield moments of a hinge without a diagram, to both sides where it has them."""
+        if len(self.corners):
+            return []
+        (spring,) = self.springs
+        return [float(m) for m in (spring["yield_plus"], spring["yield_minus"]) if np.isfinite(m)]
+
 
 def interaction(results: Results, choice: Choice) -> Any:
     """Draw a panel for each hinge; of many, first those with a diagram, then those whose axial force
     varies most.
     """
-    hinges = list(_hinges(results, choice))
+    hinges = list(member_hinges(results, choice))
     if not hinges:
         raise Nothing("members with hinges")
     t, forces = results.course("member/force")
     forces = forces[choice.span(results, t)]
-    change = [float(np.ptp(hinge.path(forces)[1])) for hinge in hinges]
-    order = sorted(range(len(hinges)), key=lambda k: (not len(hinges[k].corners), -change[k]))[:MOST]
+    order = most_varied(hinges, forces)
     few = f"{len(order)} of {len(hinges)} " if len(order) < len(hinges) else ""
     title = f"Axial forces and moments of {few}hinges; tension and sagging positive"
     figure, all_axes = style.panels(len(order), title, (3.4, 2.6) if len(order) > 1 else (6.0, 4.4))
@@ -69,7 +82,15 @@ def interaction(results: Results, choice: Choice) -> Any:
     return figure
 
 
-def _hinges(results: Results, choice: Choice) -> Iterator[MemberHinge]:
+def most_varied(hinges: Sequence[MemberHinge], forces: Array) -> list[int]:
+    """Indices of the hinges that are drawn: first those with a diagram, then those whose axial force varies
+    most.
+    """
+    change = [float(np.ptp(hinge.path(forces)[1])) for hinge in hinges]
+    return sorted(range(len(hinges)), key=lambda k: (not len(hinges[k].corners), -change[k]))[:MOST]
+
+
+def member_hinges(results: Results, choice: Choice) -> Iterator[MemberHinge]:
     """Hinges of the chosen members, or of all."""
     springs, chosen = results.table("springs"), set(chosen_members(results, choice))
     column = {label: k for k, label in enumerate(results.labels("member/force"))}
@@ -95,13 +116,9 @@ def _panel(axes: Any, results: Results, hinge: MemberHinge, forces: Array, choic
     style.grid(axes, f"moment [{units.text('F*L')}]", f"axial force [{units.force}]")
     limit = {"color": style.RED, "linestyle": "-", "linewidth": 0.9, "label": "strength"}
     if len(hinge.corners):
-        axial, moment = np.vstack([hinge.corners, hinge.corners[:1]]).T
-        axes.plot(moment, axial, **limit)
-    else:
-        (spring,) = hinge.springs
-        for strength in (spring["yield_plus"], spring["yield_minus"]):
-            if np.isfinite(strength):
-                axes.axvline(float(strength), **{**limit, "label": "yield moment"})
+        axes.plot(*hinge.outline, **limit)
+    for strength in hinge.yield_moments:
+        axes.axvline(strength, **{**limit, "label": "yield moment"})
     moment, axial = hinge.path(forces)
     axes.plot(moment, axial, color=style.BLUE, linestyle="-", linewidth=0.6)
     top = int(np.argmax(np.abs(moment)))

@@ -25,7 +25,7 @@ def loads(results: Results, choice: Choice) -> Any:
     s.frame(axes, room=0.12)
     s.draw(axes, color="0.6", linewidth=1.2)
     s.draw_supports(axes)
-    drawn = list(_drawn(results, s))
+    drawn = list(arrows_of_loads(results, s))
     if not drawn:
         raise Nothing("static loads")
     arrows = [arrow for tails, heads, _ in drawn for arrow in zip(tails, heads)]
@@ -42,7 +42,7 @@ def loads(results: Results, choice: Choice) -> Any:
     return figure
 
 
-def _drawn(results: Results, s: geometry.DrawnStructure) -> Iterator[tuple[Array, Array, str]]:
+def arrows_of_loads(results: Results, s: geometry.DrawnStructure) -> Iterator[tuple[Array, Array, str]]:
     """Tails and heads of the arrows of each load, shape (n, 2) [L], and its value as text."""
     units = results.units
     for row in results.table("loads") if "loads" in results.tables else ():

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
@@ -16,22 +18,15 @@ ROOM = 0.05  #: left beside the curves, as a fraction of a decade
 
 def study(results: Results, choice: Choice) -> Any:
     """Error against CPU time to solve and against the number of steps, one curve a method."""
-    table = results.table("study")
-    table = table[np.isfinite(table["seconds"])]
-    # a run without error is drawn at the rounding of numbers
-    worst = np.fmax(np.fmax(np.fmax(table["drift"], table["member"]), table["contact"]), 1e-16)
-    over = {"seconds": "CPU time to solve [s]"}
-    if table["steps"].any():
-        over["steps"] = "steps"
+    over = costs(results)
     figure = style.figure(4.5 * len(over), 4.2, results.title)
     for n, (column, name) in enumerate(over.items()):
         axes = figure.add_subplot(1, len(over), n + 1)
         style.grid(axes, name, "" if n else "largest error")
-        for k, method in enumerate(dict.fromkeys(table["method"].tolist())):
-            runs = (table["method"] == method) & (table[column] > 0)
-            if runs.any():
+        for k, (method, cost, error) in enumerate(errors(results, column)):
+            if len(cost):
                 axes.loglog(
-                    table[column][runs], worst[runs],
+                    cost, error,
                     **{**style.stroke(k), "marker": MARKS[k % len(MARKS)]},
                     markersize=4, linewidth=0.9, label=method,
                 )  # fmt: skip
@@ -40,6 +35,24 @@ def study(results: Results, choice: Choice) -> Any:
         _decades(axes)
     style.legend(figure.axes[-1])
     return figure
+
+
+def costs(results: Results) -> dict[str, str]:
+    """Columns of what a run costs, with the names of their axes."""
+    steps = {"steps": "steps"} if results.table("study")["steps"].any() else {}
+    return {"seconds": "CPU time to solve [s]"} | steps
+
+
+def errors(results: Results, cost: str) -> Iterator[tuple[str, Array, Array]]:
+    """Yield each method with the costs and the largest errors of its runs; one without error is drawn at
+    the rounding of numbers.
+    """
+    table = results.table("study")
+    table = table[np.isfinite(table["seconds"])]
+    worst = np.fmax(np.fmax(np.fmax(table["drift"], table["member"]), table["contact"]), 1e-16)
+    for method in dict.fromkeys(table["method"].tolist()):
+        runs = (table["method"] == method) & (table[cost] > 0)
+        yield method, table[cost][runs], worst[runs]
 
 
 def _decades(axes: Any) -> None:
