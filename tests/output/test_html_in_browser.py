@@ -180,18 +180,19 @@ def test_numbers_stay_whole_and_the_page_does_not_move_sideways(fresh: Any) -> N
     assert fresh.locator(".wide").evaluate_all(boxes) > 0, "tables move in their boxes"
 
 
-def test_names_of_curves_stand_below_a_narrow_picture(fresh: Any) -> None:
+def test_names_of_curves_stand_below_a_narrow_picture_and_where_they_are_long(fresh: Any) -> None:
     places = """() => [...document.querySelectorAll(".picture")].filter((p) => p.querySelector(".legend"))
-      .map((p) => [".legend", ".nsewdrag"].map((part) => p.querySelector(part).getBoundingClientRect()))
-      .map(([names, curves]) => [names.left >= curves.right, names.top >= curves.bottom, curves.width])"""
-    beside, below = [], []
-    for width, kind in ((1300, beside), (400, below)):
+      .map((p) => [p, ...[".legend", ".nsewdrag"].map((x) => p.querySelector(x).getBoundingClientRect())])
+      .map(([p, names, curves]) => [p.data.some((trace) => trace.name.length > 24),
+        names.left >= curves.right, names.top >= curves.bottom, curves.width])"""
+    wide, narrow = [], []
+    for width, kind in ((1300, wide), (400, narrow)):
         fresh.set_viewport_size({"width": width, "height": 900})
         fresh.wait_for_timeout(500)
         kind += fresh.evaluate(places)
-    assert len(beside) == len(below) > 1
-    assert all(right and not under for right, under, _ in beside)
-    assert all(under and not right and room > 250 for right, under, room in below)
+    assert len(wide) == len(narrow) and {long for long, *_ in wide} == {True, False}
+    assert all((right, under) == (not long, long) for long, right, under, _ in wide)
+    assert all(under and not right and room > 250 for _, right, under, room in narrow)
 
 
 def test_pictures_over_time_show_the_same_time(fresh: Any) -> None:
@@ -286,6 +287,12 @@ def test_paper_shows_all_and_keeps_rows_and_pictures_whole(fresh: Any) -> None:
         (".wide", "overflow", "visible"),
     ):
         assert fresh.locator(parts).evaluate_all(style, name) == [value], parts
+    listed = """() => [...document.querySelectorAll(".picture")].map((p) => [p.data.map((trace) =>
+      [trace.visible !== "legendonly", trace.showlegend]), p.querySelectorAll(".legend .traces").length])"""
+    pictures = fresh.evaluate(listed)
+    assert all(not named or visible for traces, _ in pictures for visible, named in traces)
+    assert any(not visible for traces, _ in pictures for visible, _ in traces), "some are hidden"
+    assert all(count in (0, sum(named for _, named in traces)) for traces, count in pictures)
     widths = "pictures => [...new Set(pictures.map((picture) => picture.clientWidth))]"
     assert fresh.locator(".picture .svg-container").evaluate_all(widths) == [690]
     fresh.emulate_media(media="screen")
@@ -293,6 +300,7 @@ def test_paper_shows_all_and_keeps_rows_and_pictures_whole(fresh: Any) -> None:
     fresh.evaluate("dispatchEvent(new Event('afterprint'))")
     fresh.wait_for_timeout(500)
     assert 690 not in fresh.locator(".picture .svg-container").evaluate_all(widths)
+    assert any(not visible and named for traces, _ in fresh.evaluate(listed) for visible, named in traces)
     assert not fresh.locator("table[style*=font]").count()
 
 
