@@ -19,7 +19,7 @@ pytest.importorskip("matplotlib")
 from matplotlib.colors import to_hex
 
 from pound_solve.report import plot
-from pound_solve.report.html.members import CELLS, orbits
+from pound_solve.report.html.members import CELLS, bends, orbits
 from pound_solve.report.html.methods import errors_of_methods
 from pound_solve.report.html.peaks import columns_of_nodes
 from pound_solve.report.html.picture import MOST_POINTS, PlotlyPicture
@@ -103,6 +103,20 @@ def test_diagrams(pair: Results, drawn: Callable[[str], PlotlyPicture], n: int, 
         assert furthest(texts) == float(value)
     corners = [points(*line.get_xydata()[[0, 1, -2, -1]].T) for line in outlines]
     assert len(corners) > 8 and of_page(largest) | of_page(smallest) >= set().union(*corners)
+
+
+def test_straight_parts_of_diagrams_have_no_points_between_their_ends() -> None:
+    x = np.sort([*np.linspace(0.0, 1.0, 21), 0.3, 0.3])
+    straight = 5.0 - 7.0 * x
+    assert bends(x, straight, 1e-4).tolist() == [0, len(x) - 1]
+    jump = straight + 3.0 * (np.arange(len(x)) > np.flatnonzero(x == 0.3)[0])
+    kink, bow = -np.abs(x - 0.3) - 3.0 * x, 10.0 * x * (1.0 - x)  # the kink is no extreme
+    for values in (jump, kink, bow):
+        kept = bends(x, values, 1e-4)
+        off = np.interp(x, x[kept], values[kept]) - values
+        assert np.abs(off[(x != 0.3) | (values is not jump)]).max() < 1e-3
+        assert {values[kept].min(), values[kept].max()} == {values.min(), values.max()}
+    assert len(bends(x, jump, 1e-4)) == 4 and len(bends(x, kink, 1e-4)) == 3
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,7 @@ from pound_solve.report.plot.pictures import interaction
 from pound_solve.report.plot.schema import ALL
 from pound_solve.results import Results
 
-STRAIGHT: Final = (
-    1e-4  #: of the largest value: a value so near to the line between its neighbours is left out
-)
+STRAIGHT: Final = 1e-4  #: of the largest value: a value so near to a line is left out
 CELLS: Final = 400  #: of a picture along each axis: a path that stays within one cell is not drawn on
 
 
@@ -58,7 +56,7 @@ def _diagram(s: DrawnStructure, members: list[MemberForces], quantity: str) -> I
     for name, colour, values in sides:
         points, texts = [np.zeros((2, 0))], list[str]()
         for member, along in zip(members, values):
-            keep = _bends(member.x, along, least)
+            keep = bends(member.x, along, least)
             base, edge = (p[:, keep] for p in drawn.outline(member, along, quantity, factor))
             points += [base[:, :1], edge, base[:, -1:], np.full((2, 1), np.nan)]
             texts += ["", *(f"{member.element}: {value:.5g}" for value in along[keep]), "", ""]
@@ -88,12 +86,15 @@ def _ends(s: DrawnStructure, members: list[MemberForces], quantity: str) -> Trac
     }  # fmt: skip
 
 
-def _bends(x: Array, values: Array, least: float) -> NDArray[np.intp]:
-    """Indices of values off the line between their neighbours, of the extremes and the ends."""
-    span = np.maximum(x[2:] - x[:-2], 1e-12)
-    between = values[:-2] + (x[1:-1] - x[:-2]) / span * (values[2:] - values[:-2])
-    off = np.flatnonzero(np.abs(values[1:-1] - between) > least) + 1
-    return np.unique([0, *off, np.argmin(values), np.argmax(values), len(x) - 1])
+def bends(x: Array, values: Array, least: float) -> NDArray[np.intp]:
+    """Indices of values off the line from the one kept before to the next, of the extremes and the ends."""
+    kept = [0]
+    for k in range(1, len(x) - 1):
+        (x0, y0), (x1, y1) = ((x[at], values[at]) for at in (kept[-1], k + 1))
+        share = (x[k] - x0) / max(x1 - x0, 1e-12)
+        if abs(y0 + share * (y1 - y0) - values[k]) > least:
+            kept.append(k)
+    return np.unique([*kept, np.argmin(values), np.argmax(values), len(x) - 1])
 
 
 def orbits(results: Results) -> Iterator[PlotlyPicture]:

@@ -76,7 +76,8 @@ function arranged(figure, listed, width, height = width < BESIDE ? 320 : 400) {
   }
   const columns = Math.max(1, Math.floor((width - 80) / (6.5 * longest + 50)));
   const room = ROW * Math.min(12, Math.ceil(names.length / columns)) + 10;
-  const legend = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container", maxheight: room, tracegroupgap: 0 };
+  const below = { orientation: "h", x: 0, y: 0, yanchor: "bottom", yref: "container" };
+  const legend = { ...below, maxheight: room, tracegroupgap: 0 };
   return { width, height: height + room, margin: { l: 70, r: 10, t: 30, b: 55 + room }, legend };
 }
 
@@ -149,7 +150,7 @@ function drawAll(figures) {
   });
   link(overTime);
   addEventListener("resize", () => fit(figures));
-  addEventListener("beforeprint", () => fit(figures, { width: PAPER, height: 268 })); // three with their notes on a page
+  addEventListener("beforeprint", () => fit(figures, { width: PAPER, height: 268 })); // three with notes on a page
   addEventListener("afterprint", () => fit(figures));
 }
 

@@ -25,6 +25,7 @@ from pound_solve.report.plot.pictures import loads as static_loads
 from pound_solve.results import Results
 
 MOST_MODES: Final = 8
+MOST_VALUES: Final = 40  #: of loads, beside which a text has room; else a pointer shows them
 GREY: Final = "#b0b0b0"  #: at rest
 BLUE: Final = "#0b4f8a"  #: displaced
 RED: Final = "#b3301e"  #: contacts and loads
@@ -114,7 +115,8 @@ def loads(results: Results) -> Iterator[PlotlyPicture]:
     heads = {"symbol": "arrow", "angleref": "previous", "size": [0, 9, 0] * len(arrows)}
     middles = np.array([tails[len(tails) // 2] for tails, _, _ in drawn]).T
     values = {
-        "mode": "text", "text": [plain(text).replace("\n", "<br>") for _, _, text in drawn],
+        "mode": "text" if len(drawn) <= MOST_VALUES else "markers", "marker": {"opacity": 0},
+        "text": [plain(text).replace("\n", "<br>") for _, _, text in drawn], "hoverinfo": "text",
         "textposition": "top center", "textfont": {"size": 10, "color": RED},
     }  # fmt: skip
     traces = [
@@ -123,7 +125,7 @@ def loads(results: Results) -> Iterator[PlotlyPicture]:
         line("values", middles, RED) | values | {"showlegend": False},
     ]
     traces = [line("at rest", s.path(), GREY), *(trace | {"legendgroup": "loads"} for trace in traces)]
-    note = "Masses and the motion of the ground are not among the loads."
+    note = "Masses and the motion of the ground are not loads here. A pointer on a load shows its value."
     yield of_structure("Static loads", note, s, traces)
 
 
