@@ -24,6 +24,7 @@ from pound_solve.report.html.methods import errors_of_methods
 from pound_solve.report.html.peaks import columns_of_nodes
 from pound_solve.report.html.picture import MOST_POINTS, PlotlyPicture
 from pound_solve.report.html.pictures import pictures
+from pound_solve.report.plot import style
 from pound_solve.report.plot.pictures.hinges import COLOURS
 from pound_solve.results import Results
 from unit.test_reactions import STACK
@@ -203,7 +204,22 @@ def test_drift_ratios_have_one_unit(pair: Results, drawn: Callable[[str], Plotly
     over_height = drawn("Extreme drift ratios over the height")
     assert (over_time.y, over_height.x) == ("drift ratio [%]", "drift ratio [%]")
     largest = max(max(map(abs, trace["y"])) for trace in over_time.traces)
-    extreme = max(max(map(abs, trace["x"])) for trace in over_height.traces)
+    extreme = max(max(map(abs, trace["x"])) for trace in over_height.traces if None not in trace["x"])
     assert largest == pytest.approx(100.0 * np.abs(pair.course("storey/drift", jumps=True)[1]).max())
     assert 0.9 * extreme < largest <= extreme * (1.0 + 1e-6)
     assert all(len(trace["x"]) <= MOST_POINTS + 2 for trace in over_time.traces)
+
+
+def test_drift_limits_stand_beside_the_profiles(
+    pair: Results, drawn: Callable[[str], PlotlyPicture]
+) -> None:
+    figure = plot.picture(pair, "storeys")
+    lines = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_color() == style.RED]
+    (trace,) = (t for t in drawn("Extreme drift ratios over the height").traces if t["name"] == "low")
+    assert lines == [-0.1, 0.1] == [trace["x"][0], trace["x"][-1]]
+    assert trace["x"][2] is None and len(set(trace["y"])) == 3
+    for title in (
+        "Extreme storey shears over the height",
+        "Extreme total floor accelerations over the height",
+    ):
+        assert "low" not in [t["name"] for t in drawn(title).traces]

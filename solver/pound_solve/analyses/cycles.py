@@ -76,7 +76,7 @@ class BackbonePoint(NamedTuple):
 
 def legs(pushed: PushoverResult) -> list[Leg]:
     """Return the legs of a pushover."""
-    found, before = list[Leg](), math.nan
+    answer, before = list[Leg](), math.nan
     for points in pushed.legs():
         start, end = points[0], points[-1]
         along, across = end.displacement - start.displacement, end.shear - start.shear
@@ -85,9 +85,9 @@ def legs(pushed: PushoverResult) -> list[Leg]:
         area = _area(points) if start.leg > 1 else math.nan
         loop, work = before + area, math.pi * across * along
         stiffness = across / along if along else math.nan  # it may stop where it began
-        found.append(Leg(end, largest, stiffness, loop, 2.0 * loop / work if work else math.nan))
+        answer.append(Leg(end, largest, stiffness, loop, 2.0 * loop / work if work else math.nan))
         before = area
-    return found
+    return answer
 
 
 def _area(points: Sequence[CapacityPoint]) -> float:

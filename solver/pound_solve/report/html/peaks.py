@@ -25,7 +25,7 @@ def columns_of_nodes(results: Results) -> Iterator[PlotlyPicture]:
     """Picture of the extreme displacements of nodes above each other."""
     if not all(map(results.holds, envelopes.SPEC.needs)):
         return
-    columns = envelopes._columns(results)
+    columns = envelopes.columns_of_nodes(results)
     names = [f"node {node}" for nodes in columns for node in (*nodes, "")]
     traces = []
     for name, row, line in (

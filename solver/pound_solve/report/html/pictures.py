@@ -67,9 +67,21 @@ def _profiles(results: Results) -> Iterator[PlotlyPicture]:
                 # marks that nobody sees keep lines off the border
                 look = {"mode": "lines+markers", "marker": {"opacity": 0}, "line": line}
                 traces.append({"name": plain(f"{building}, {side}")} | look | points)
+        if quantity == "drift ratio":
+            traces += _drift_limits(results)
         unit = dimension if dimension == "%" else units.text(dimension)
         axes = f"{name} [{unit}]", f"height [{units.length}]"
         yield PlotlyPicture(f"Extreme {name}s over the height", "", *axes, traces)
+
+
+def _drift_limits(results: Results) -> Iterator[Trace]:
+    """Curves of the drift limits, from the lowest level to the highest on both sides."""
+    rows = results.table("storey_envelope")
+    low, high = float((rows["level"] - rows["height"]).min()), float(rows["level"].max())
+    for name, allowed in storeys.drift_limits([results]):
+        line = {"color": COLOURS[3], "width": 1, "dash": "dot"}
+        points = {"x": [-allowed, -allowed, None, allowed, allowed], "y": [low, high, None, low, high]}
+        yield {"name": plain(name), "mode": "lines", "line": line} | points
 
 
 def _courses(results: Results) -> Iterator[PlotlyPicture]:

@@ -20,7 +20,7 @@ MOST_COLUMNS = 12  #: panels where runs are drawn over each other
 def envelopes(results: Results, choice: Choice) -> Any:
     """Draw drifts in the order of the deck and nodes above each other over the height, as available."""
     drifts = results.holds("drift_envelope")
-    columns = _columns(results)
+    columns = columns_of_nodes(results)
     count = drifts + bool(columns)
     if not count:
         raise Nothing("drifts, no columns of nodes")
@@ -47,7 +47,7 @@ def overlay(runs: Sequence[Results], choice: Choice) -> Any:
     """Draw extremes of displacements over the height: a panel for each column of nodes, a colour for each
     run.
     """
-    drawn = [(look, _columns(run)) for run, look in curves(runs) if run.holds("node_envelope")]
+    drawn = [(look, columns_of_nodes(run)) for run, look in curves(runs) if run.holds("node_envelope")]
     panels = list(dict.fromkeys(nodes for _, columns in drawn for nodes in columns))[:MOST_COLUMNS]
     if not panels:
         raise Nothing("columns of nodes")
@@ -81,7 +81,7 @@ def _drifts(axes: Any, results: Results) -> None:
     axes.set_title("largest drifts to both sides, in the order of the deck")
 
 
-def _columns(results: Results) -> dict[tuple[int, ...], Array]:
+def columns_of_nodes(results: Results) -> dict[tuple[int, ...], Array]:
     """Heights, smallest and largest displacements X of the nodes above each other, shape (3, n) each,
     for the numbers of the nodes from below.
     """

@@ -92,24 +92,28 @@ def label_axes(axes: Any, results: Results, quantity: str) -> None:
 
 
 def limits(axes: Any, runs: Sequence[Results], quantity: str) -> None:
-    """Draw the drift limits that all runs share as lines on both sides, named at their tops; those far
-    beyond the response are left out.
-    """
-    if quantity != "drift ratio" or not all(run.holds("limits") for run in runs):
-        return
-    tables = [run.table("limits") for run in runs]
-    rows = [t[t["quantity"] == "storey drift"] for t in tables]
-    shared = set.intersection(*({(row["limit"], float(row["allowed"])) for row in t} for t in rows))
-    largest = max((float(t["largest"].max()) for t in rows if len(t)), default=0.0)
-    for name, allowed in sorted(shared, key=lambda limit: limit[1]):
-        if allowed > FAR * largest:
-            continue
+    """Draw the drift limits as lines on both sides, named at their tops."""
+    for name, allowed in drift_limits(runs) if quantity == "drift ratio" else ():
         for side in (-allowed, allowed):
             axes.axvline(side, **LIMIT)
         axes.annotate(
             style.short(name), (allowed, 1.0), (1.5, -2.0), axes.get_xaxis_transform(), "offset points",
             va="top", ha="left", rotation=90, fontsize=6.0, color=style.RED, bbox=BACKGROUND,
         )  # fmt: skip
+
+
+def drift_limits(runs: Sequence[Results]) -> list[tuple[str, float]]:
+    """Names of the drift limits that all runs share, with their values [%], but those far beyond the
+    response.
+    """
+    if not all(run.holds("limits") for run in runs):
+        return []
+    tables = [run.table("limits") for run in runs]
+    rows = [table[table["quantity"] == "storey drift"] for table in tables]
+    shared = set.intersection(*({(row["limit"], float(row["allowed"])) for row in each} for each in rows))
+    largest = max((float(each["largest"].max()) for each in rows if len(each)), default=0.0)
+    near = [limit for limit in shared if limit[1] <= FAR * largest]
+    return sorted(near, key=lambda limit: limit[1])
 
 
 def profile(axes: Any, results: Results, name: str, quantity: str, look: Mapping[str, Any]) -> None:
