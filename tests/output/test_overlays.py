@@ -184,6 +184,13 @@ def test_a_deck_is_drawn_without_a_run_and_without_its_record(tmp_path: Path, ca
     assert sorted(p.name for p in tmp_path.iterdir()) == ["pair.inp", "pair_frame.svg", "pair_loads.svg"]
 
 
+def test_a_deck_with_a_performance_point_is_drawn_without_its_motion(tmp_path: Path) -> None:
+    path = deck(tmp_path)
+    path.write_text(path.read_text("utf-8") + "ANALYSIS\n PUSHOVER 11 0.06 TC=0.3\n", "utf-8")
+    assert main(["check", str(path)]) == 0
+    assert main(["plot", str(path), "frame"]) == 0
+
+
 def test_a_deck_with_mistakes_tells_them_all(tmp_path: Path, capsys: Any) -> None:
     path = deck(tmp_path)
     path.write_text(path.read_text().replace("I=8E-4", "I=x").replace("2 4 0", "2 4 y"), "utf-8")

@@ -115,8 +115,14 @@ def prepare(request: Request, at_rest: bool = False) -> Prepared:
 
 
 def _at_rest(model: Model) -> Model:
-    """Return the model without its motions, its time-dependent forces and its histories."""
-    analyses = tuple(card for card in model.analyses if card.spec.name != "HISTORY")
+    """Return the model without its motions, its time-dependent forces, its histories, and the performance
+    points of its pushovers, which need a motion.
+    """
+    analyses = tuple(
+        replace(card, values={**card.values, "TC": None}) if card.spec.name == "PUSHOVER" else card
+        for card in model.analyses
+        if card.spec.name != "HISTORY"
+    )
     return replace(model, equake=(), forces=(), analyses=analyses)
 
 
