@@ -174,10 +174,13 @@ class Binder:
             message = "an item by position stands after a named one"
             self._error("P215", message, item.span, _after_named(spec, before, item))
             return
-        places = ", ".join(f.name for f in spec.fields if f.positional)
+        positional = [f for f in spec.fields if f.positional]
+        places = ", ".join(f.name for f in positional)
         hint = "write further items as NAME=value; lists have commas and no blanks: 1,3,5"
         if spec.field(item.word):
             hint = f"write {item.word}=value"
+        elif positional and positional[-1].kind is Kind.TEXT and before.word and item.word:
+            hint = 'a name of several words stands in quotes, as "two words"'
         message = f"one item too many: {spec.name} reads {places or 'nothing'} by position"
         self._error("P214", message, item.span, hint)
 

@@ -531,3 +531,9 @@ def test_what_must_be_above_zero_is_not_next_to_it(codes, number):
 @pytest.mark.parametrize("number", ["1E30", "1E-30", "0"])
 def test_the_largest_and_smallest_quantities(codes, number):
     assert codes(HEAD.replace(" 3 1 3", f" 3 1 {number}")) == []
+
+
+def test_a_name_of_several_words_needs_quotes(catalog):
+    text = HEAD + "LIMITS\n life safety DRIFT=0.02\n"
+    (found,) = read_text(text, catalog)[1]
+    assert found.code == "P214" and "quotes" in found.hint

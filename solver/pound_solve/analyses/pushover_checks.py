@@ -113,7 +113,9 @@ def _wrong_turn(card: Card) -> tuple[str, str, str] | None:
         return "the performance point belongs to one TARGET", "TC", hint
     for one, other in pairwise(path):
         if one == other:
-            return f"TARGET {one:g} follows itself", "TARGET", "give targets that differ"
+            hint = "CYCLES goes to the opposite of each TARGET too: give amplitudes of one sign, above zero"
+            hint = hint if card["CYCLES"] else "give targets that differ"
+            return f"TARGET {one:g} follows itself", "TARGET", hint
     return None
 
 
