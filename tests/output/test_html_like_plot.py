@@ -24,7 +24,7 @@ from pound_solve.report.html.methods import errors_of_methods
 from pound_solve.report.html.peaks import columns_of_nodes
 from pound_solve.report.html.picture import MOST_POINTS, PlotlyPicture
 from pound_solve.report.html.pictures import pictures
-from pound_solve.report.plot import style
+from pound_solve.report.plot.pictures import storeys
 from pound_solve.report.plot.pictures.hinges import COLOURS
 from pound_solve.results import Results
 from unit.test_reactions import STACK
@@ -214,7 +214,7 @@ def test_drift_limits_stand_beside_the_profiles(
     pair: Results, drawn: Callable[[str], PlotlyPicture]
 ) -> None:
     figure = plot.picture(pair, "storeys")
-    lines = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_color() == style.RED]
+    lines = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_color() == storeys.GREY]
     (trace,) = (t for t in drawn("Extreme drift ratios over the height").traces if t["name"] == "low")
     assert lines == [-0.1, 0.1] == [trace["x"][0], trace["x"][-1]]
     assert trace["x"][2] is None and len(set(trace["y"])) == 3

@@ -26,7 +26,7 @@ from pound_solve.report import plot
 from pound_solve.report.html.pictures import pictures as html_pictures
 from pound_solve.report.plot import PICTURES, Choice, ChoiceError, labels, members, style
 from pound_solve.report.plot.moments import moment
-from pound_solve.report.plot.pictures import hinges, summary
+from pound_solve.report.plot.pictures import hinges, storeys, summary
 from pound_solve.results import Results
 
 #: two frames with hinges and a contact, stored so coarsely that no sample meets a peak
@@ -379,7 +379,7 @@ def test_profiles_are_those_of_the_tables(pair: Results) -> None:
             ("drift", "shear", "acceleration"),
             (100.0, 1.0, 1.0),
         ):
-            _, high, low = (line for line in axes.get_lines() if line.get_color() != style.RED)
+            _, high, low = (line for line in axes.get_lines() if line.get_color() != storeys.GREY)
             assert high.get_xdata()[-1] == factor * own[quantity]["max"]
             assert low.get_xdata()[-1] == factor * own[quantity]["min"]
             assert max(own[quantity]["max"], -own[quantity]["min"]) == row[column]
@@ -393,10 +393,38 @@ def test_storey_drifts_show_their_limits_but_those_far_beyond(pair: Results) -> 
     figure = plot.picture(pair, "storeys")
     drifts = [axes for axes in figure.axes if "drift" in axes.get_xlabel()]
     for axes in figure.axes:
-        lines = [line.get_xdata()[0] for line in axes.get_lines() if line.get_color() == style.RED]
+        lines = [line.get_xdata()[0] for line in axes.get_lines() if line.get_color() == storeys.GREY]
         assert lines == ([-0.1, 0.1] if axes in drifts else [])
         named = [text.get_text() for text in axes.texts]
         assert ("low" in named) == (axes in drifts) and "far" not in named
+
+
+@pytest.mark.parametrize("drift", [0.97, 1.03])
+def test_the_name_of_a_limit_covers_no_profile(drift: float) -> None:
+    tables = {
+        "limits": np.array(
+            [("safe", "storey drift", 1.0, drift)],
+            [("limit", "O"), ("quantity", "O"), ("allowed", float), ("largest", float)],
+        ),
+        "storey_envelope": np.array([(9.0,)], [("level", float)]),
+    }
+    run = cast(Results, SimpleNamespace(holds=tables.__contains__, table=tables.__getitem__))
+    with style.sheet():
+        figure = style.figure(3.0, 3.0)
+        axes = figure.add_subplot()
+        (profile,) = axes.plot([drift, drift], [0.0, 9.0])
+        storeys.limits(axes, [run], "drift ratio")
+        labels.settle(figure)
+        (name,) = axes.texts
+        line = profile.get_path().transformed(profile.get_transform())
+        assert not line.intersects_bbox(name.get_window_extent(), filled=False)
+
+
+def test_a_performance_point_shows_its_period(pair: Results) -> None:
+    figure = plot.picture(pair, "performance")
+    (point,) = pair.table("performance")
+    assert f"up to the point: {point['period']:.4g} s" in figure.axes[0].get_title()
+    assert "idealised" in [line.get_label() for line in figure.axes[0].get_lines()]
 
 
 def test_the_capacity_curve_names_its_events(pair: Results) -> None:

@@ -242,6 +242,18 @@ ANALYSIS
     assert results.last_time == pytest.approx(0.1)
 
 
+def test_pushovers_of_a_deck_have_numbers_in_checks_and_pictures(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    from pound_solve.report import plot
+
+    cards = "ANALYSIS\n PUSHOVER 2 0.1\n PUSHOVER 2 0.1,-0.1\n"
+    with ran(tmp_path, STOREY.format(rule="ELASTO_PLASTIC") + cards) as results:
+        checks = [c.split(",")[0] for c in results.table("checks")["check"] if c.startswith("pushover")]
+        assert checks == ["pushover 1", "pushover 2"]
+        titles = [axes.get_title()[:2] for axes in plot.picture(results, "capacity").axes]
+    assert titles == ["1:", "2:"]
+
+
 # mistakes
 
 
@@ -260,6 +272,13 @@ ANALYSIS
 )
 def test_mistakes_are_told(card: str, message: str) -> None:
     assert messages(STOREY.format(rule="ELASTO_PLASTIC"), card) == [message]
+
+
+def test_the_hint_on_equal_targets_knows_of_the_opposite_ones() -> None:
+    for card, hint in (("2 0.1,-0.1 CYCLES=1", "opposite of each TARGET"), ("2 0.1,0.1", "that differ")):
+        text = STOREY.format(rule="ELASTO_PLASTIC") + f"ANALYSIS\n PUSHOVER {card}\n"
+        (found,) = pushover_checks.mistaken_cards(assemble(model_of(text)))
+        assert hint in found.hint
 
 
 def test_every_card_is_checked() -> None:

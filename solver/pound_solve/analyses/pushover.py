@@ -108,7 +108,7 @@ class PushoverResult:
     @property
     def check(self) -> Check:
         """Return the self-check of force equilibrium."""
-        about = "pushover, force out of balance over the largest"
+        about = f"pushover {self.number}, force out of balance over the largest"
         return at_most(Subject.EQUILIBRIUM, about, self.unbalanced, SUM_ROUNDING, "forces do not balance")
 
     def add(self, point: CapacityPoint) -> None:
@@ -398,7 +398,15 @@ SPEC = Spec(
             doc="corner period of the spectrum, where its constant acceleration ends: gives the "
             "performance point of the N2 method for every ground motion along DIRECTION",
         ),
-        Field("XI", Kind.REAL, "-", default=0.05, lo=0.0, below=1.0, doc="damping ratio of these spectra"),
+        Field(
+            "XI",
+            Kind.REAL,
+            "-",
+            default=0.05,
+            lo=0.0,
+            below=1.0,
+            doc="damping ratio of these spectra: 0.05 is 5 %",
+        ),
     ),
     reference="Antoniou & Pinho 2004 (adaptive); Fajfar 2000 (N2)",
 )

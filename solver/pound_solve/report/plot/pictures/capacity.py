@@ -79,7 +79,7 @@ def curve(axes: Any, results: Results, push: int) -> None:
     style.legend(axes)
     said = {row["item"]: row["value"] for row in of_push(results, "pushover", push)}
     remarks = [said[item] for item in ("building", "pattern", "control", "end") if item in said]
-    axes.set_title(style.wrapped(f"{push}: " * (push > 1) + "; ".join(remarks), TITLE))
+    axes.set_title(style.wrapped(f"{push}: " * (len(pushovers(results)) > 1) + "; ".join(remarks), TITLE))
 
 
 def _events(axes: Any, results: Results, push: int) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import labels, style
-from pound_solve.report.plot.pictures.capacity import IDEALISED, POINT, of_push
+from pound_solve.report.plot.pictures.capacity import IDEALISED, POINT, TITLE, of_push
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
@@ -82,7 +82,7 @@ def panel(axes: Any, results: Results, push: int) -> None:
     oscillator, units = equivalent(results, push), results.units
     style.grid(axes, *axes_names(results))
     axes.plot(*oscillator.capacity, color="0.1", linestyle="-", linewidth=1.6, label="capacity")
-    axes.plot(*oscillator.idealised, **IDEALISED)
+    axes.plot(*oscillator.idealised, **IDEALISED, label="idealised")
     for n, demand in enumerate(oscillator.demands):
         look = {"color": style.stroke(n)["color"], "linestyle": "-", "linewidth": 1.0}
         axes.plot(*demand.spectrum, **look, label=style.short(demand.motion))
@@ -92,7 +92,11 @@ def panel(axes: Any, results: Results, push: int) -> None:
     axes.set_xlim(0.0, oscillator.reach)
     axes.set_ylim(bottom=0.0)
     style.legend(axes)
-    axes.set_title(f"pushover {push}: T* = {oscillator.period:.4g} {units.time}")
+    periods = of_push(results, "performance", push)["period"]
+    shown = ", ".join(f"{period:.4g} {units.time}" for period in periods[np.isfinite(periods)])
+    at_points = f"; up to the point: {shown}" if shown else ""
+    title = f"pushover {push}: T* = {oscillator.period:.4g} {units.time}{at_points}"
+    axes.set_title(style.wrapped(title, TITLE))
 
 
 def equivalent(results: Results, push: int) -> Oscillator:

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.report.plot import style
+from pound_solve.report.plot import labels, style
 from pound_solve.report.plot.geometry import DrawnStructure
 from pound_solve.report.plot.overlay import curves
 from pound_solve.report.plot.schema import Choice, Picture
@@ -21,9 +21,9 @@ PROFILES = {
     "floor acceleration": ("total floor acceleration", "L/T^2", 1.0),
 }
 
-LIMIT: Final = {"color": style.RED, "linewidth": 0.7, "linestyle": (0, (4, 2)), "zorder": 1}
+GREY: Final = "0.35"  #: colour of limits, which no building and no run has
+LIMIT: Final = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (1, 1.5)), "zorder": 1}
 FAR: Final = 2.5  #: limits beyond this multiple of the largest drift are not drawn
-BACKGROUND: Final = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 SIDES = "lines: to the right; dashes: to the left"
 
 
@@ -93,13 +93,11 @@ def label_axes(axes: Any, results: Results, quantity: str) -> None:
 
 def limits(axes: Any, runs: Sequence[Results], quantity: str) -> None:
     """Draw the drift limits as lines on both sides, named at their tops."""
+    levels = [run.table("storey_envelope")["level"].max() for run in runs if run.holds("storey_envelope")]
     for name, allowed in drift_limits(runs) if quantity == "drift ratio" else ():
         for side in (-allowed, allowed):
             axes.axvline(side, **LIMIT)
-        axes.annotate(
-            style.short(name), (allowed, 1.0), (1.5, -2.0), axes.get_xaxis_transform(), "offset points",
-            va="top", ha="left", rotation=90, fontsize=6.0, color=style.RED, bbox=BACKGROUND,
-        )  # fmt: skip
+        labels.label(axes, (allowed, max(levels)), style.short(name), rotation=90, fontsize=6.0, color=GREY)
 
 
 def drift_limits(runs: Sequence[Results]) -> list[tuple[str, float]]:

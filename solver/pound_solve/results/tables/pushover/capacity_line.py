@@ -72,6 +72,7 @@ TABLE = Table(
     note=(
         "Elastic, perfectly plastic line of the same area as the curve up to its largest base shear "
         "(EN 1998-1:2004, B.3), and the oscillator of the N2 method that it stands for. The ultimate "
-        "displacement is where the shear has fallen to 80 % of the largest, or the end of the curve."
+        "displacement is where the shear has fallen to 80 % of the largest, or the end of the curve. "
+        "Displacements and shear count from the static state."
     ),
 )

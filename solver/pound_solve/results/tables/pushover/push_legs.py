@@ -50,5 +50,8 @@ TABLE = Table(
     ),
     rows=rows,
     group="push",
-    note="A leg leads from one target to the next; its loop is that with the leg before it.",
+    note=(
+        "A leg leads from one target to the next; its loop is that with the leg before it. The two close a "
+        "loop only if the leg before began where this one ends."
+    ),
 )

@@ -14,10 +14,11 @@ ROTATION = "plastic rotation"
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """One row for each drift and each rotation that a line of LIMITS allows."""
+    """One row for each drift that a line of LIMITS allows, then one for each rotation."""
     for card in run.model.limits:
         if card["DRIFT"] is not None:
             yield card.label, DRIFT, "%", 100.0 * card["DRIFT"], *_drift(run, card["DRIFT"])
+    for card in run.model.limits:
         if card["ROTATION"] is not None:
             yield card.label, ROTATION, "rad", card["ROTATION"], *_rotation(run, card["ROTATION"])
 
@@ -44,7 +45,8 @@ def _rotation(run: RunRecord, allowed: float) -> Row:
     beyond = sum(r.rotation > allowed for r in hinges)
     element, component = worst.spring.element, worst.spring.component
     place = member_end(run.model, run.history.items.buildings, element, component.split()[1])
-    return worst.rotation, worst.rotation / allowed, beyond, place or f"{element} {component}", math.nan
+    name = f"{element} {component}"
+    return worst.rotation, worst.rotation / allowed, beyond, f"{name}, {place}" if place else name, math.nan
 
 
 TABLE = Table(
@@ -60,9 +62,13 @@ TABLE = Table(
         Column("largest", fmt="short", doc="largest absolute value of the history; NaN without any"),
         Column("ratio", "over\nallowed", "-", "short", doc="largest value over the allowed one"),
         Column("beyond", fmt="int", doc="number of storeys or hinges beyond the limit"),
-        Column("place", doc="storey, or end of a member, of the largest value"),
+        Column("place", doc="storey, or element and hinge and where it is, of the largest value"),
         time_column("t", "at time", "time of the largest drift; NaN for rotations"),
     ),
     rows=rows,
-    note="As in the section LIMITS of the deck.",
+    group="quantity",
+    note=(
+        "As in the section LIMITS of the deck. Beyond: the number of storeys or hinges that exceed what is "
+        "allowed."
+    ),
 )
