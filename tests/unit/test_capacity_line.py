@@ -125,12 +125,12 @@ def test_the_point_does_not_depend_on_the_target(
     one, two = (reaching(end).performance(SYSTEM, flat(level), corner) for end in (4.0, 4.0 * far))
     if one is not None:
         assert two is not None and two.line.end == pytest.approx(one.line.end, rel=1e-9)
-        assert one.displacement == pytest.approx(one.line.end, rel=1e-9)
+        assert one.demand == pytest.approx(one.line.end, rel=1e-9)
 
 
 def test_a_ground_at_rest_leaves_the_static_state() -> None:
     point = plastic().performance(SYSTEM, flat(0.0), 0.5)
-    assert point is not None and point.displacement == 0.0 and point.line.end < 1e-11
+    assert point is not None and point.demand == 0.0 and point.line.end < 1e-11
 
 
 @given(
@@ -235,3 +235,21 @@ def test_a_stiff_building_under_a_long_motion_follows_the_ground(tmp_path: Path)
     results = run(deck, out=tmp_path)
     (point,) = results.table("performance")
     assert point["acceleration"] == pytest.approx(2.0, rel=2e-2)
+
+
+def test_page_one_has_the_capacity_and_the_performance_point(tmp_path: Path) -> None:
+    """The displacement includes that of the static load, as in the table of performance points."""
+    deck = tmp_path / "deck.inp"
+    deck.write_text(
+        f"{STOREYS}LOADS\n 3 1\nEQUAKE\n SINE AMPLITUDE=0.2 PERIOD=0.7 DURATION=3\nANALYSIS\n"
+        " PUSHOVER 3 0.2 TC=0.6\n PUSHOVER 3 0.03 TC=0.6\n PUSHOVER 3 0.1,-0.1\n"
+    )
+    results = run(deck, out=tmp_path)
+    overview = {row["item"]: row["value"] for row in results.table("overview")}
+    point, beyond = results.table("performance")
+    top = results.table("capacity_curve")["base_shear"][results.table("capacity_curve")["push"] == 1].max()
+    assert overview["pushover 1"] == (
+        f"largest base shear {top:.5g} kN at 0.2 m; N2 {point['displacement']:.4g} m under SINE"
+    )
+    assert math.isnan(beyond["displacement"]) and "; beyond the curve under SINE" in overview["pushover 2"]
+    assert overview["pushover 3"].endswith(", in 2 legs")

@@ -101,14 +101,17 @@ class PerformancePoint:
         Ordinate of the elastic spectrum there [L/T^2].
     reduction : float
         :math:`q_u`, acceleration of the elastic oscillator over that of the yielding one.
+    demand : float
+        Displacement of the control node from the static state that follows from this line [L].
     displacement : float
-        Of the control node according to this line [L].
+        Of the control node at the end of the line, including the static one [L].
     """
 
     line: CapacityLine
     period: float
     acceleration: float
     reduction: float
+    demand: float
     displacement: float
 
 
@@ -122,8 +125,8 @@ class CapacityCurve:
     """
 
     def __init__(self, points: Sequence[CapacityPoint]) -> None:
-        first, last = points[0], points[-1]
-        self.sense = math.copysign(1.0, last.displacement - first.displacement)
+        self.start = first = points[0]
+        self.sense = math.copysign(1.0, points[-1].displacement - first.displacement)
         self.d = self.sense * np.array([p.displacement - first.displacement for p in points])
         self.v = self.sense * np.array([p.shear - first.shear for p in points])
         steps = 0.5 * np.diff(self.d) * (self.v[1:] + self.v[:-1])
@@ -177,22 +180,41 @@ class CapacityCurve:
             Period :math:`T_C` at which its constant acceleration ends [T].
         """
         lines = list(takewhile(bool, map(self.line, sorted({float(d) for d in self.d if d > 0.0}))))
-        points = _points(lines, system, demand, corner)
-        after = next((n for n, p in enumerate(points) if p.displacement <= p.line.end), None)
+        points = self._points(lines, system, demand, corner)
+        after = next((n for n, p in enumerate(points) if p.demand <= p.line.end), None)
         if after is None:
             return None
 
         def at(end: float) -> PerformancePoint | None:
-            return next(iter(_points([self.line(end)], system, demand, corner)), None)
+            return next(iter(self._points([self.line(end)], system, demand, corner)), None)
 
         def excess(end: float) -> float:
-            return point.displacement - end if (point := at(end)) else end  # without a line: not reached
+            return point.demand - end if (point := at(end)) else end  # without a line: not reached
 
         high = points[after].line.end
         low = points[after - 1].line.end if after else PRECISION * high
         if excess(low) <= 0.0:  # a ground at rest
             return at(low)
         return at(brentq(excess, low, high, xtol=PRECISION * high))
+
+    def _points(
+        self, lines: Sequence[CapacityLine | None], system: EquivalentSystem, demand: Demand, corner: float
+    ) -> list[PerformancePoint]:
+        """Return the answer of the N2 method for each line."""
+        sound = [line for line in lines if line is not None]
+        if not sound:
+            return []
+        periods = [line.period(system) for line in sound]
+        points = list[PerformancePoint]()
+        for line, period, acceleration in zip(sound, periods, demand(np.array(periods)).tolist()):
+            elastic = system.factor * acceleration * (period / (2.0 * math.pi)) ** 2
+            reduction = acceleration * system.factor * system.mass / line.yield_shear
+            inelastic = elastic
+            if period < corner and reduction > 1.0:
+                inelastic *= (1.0 + (reduction - 1.0) * corner / period) / reduction
+            displacement = self.start.displacement + self.sense * line.end
+            points.append(PerformancePoint(line, period, acceleration, reduction, inelastic, displacement))
+        return points
 
 
 def demands(
@@ -207,28 +229,22 @@ def demands(
             yield system, motion.name, partial(_ordinates, motion.acceleration, card["XI"])
 
 
+def performance_points(
+    pushed: PushoverResult, motions: Iterable[GroundMotion]
+) -> list[tuple[str, PerformancePoint | None]]:
+    """Return the performance point of a pushover with TC for each motion along its direction, with the name
+    of the motion.
+    """
+    curve, corner = CapacityCurve(pushed.curve), pushed.card["TC"]
+    return [
+        (name, curve.performance(system, spectrum, corner))
+        for system, name, spectrum in demands(pushed, motions)
+    ]
+
+
 def _ordinates(acceleration: Piecewise, damping: float, periods: Array) -> Array:
     """Return pseudo-accelerations [L/T^2], shape (n,).  Oscillators stiffer than any building get that of
     `SHORTEST`, which is hardly more than the peak of the ground.
     """
     periods = np.maximum(periods, SHORTEST * float(np.diff(acceleration.breaks).max()))
     return np.asarray(pseudo_acceleration(acceleration, periods, damping)[0])
-
-
-def _points(
-    lines: Sequence[CapacityLine | None], system: EquivalentSystem, demand: Demand, corner: float
-) -> list[PerformancePoint]:
-    """Return the answer of the N2 method for each line."""
-    sound = [line for line in lines if line is not None]
-    if not sound:
-        return []
-    periods = [line.period(system) for line in sound]
-    points = list[PerformancePoint]()
-    for line, period, acceleration in zip(sound, periods, demand(np.array(periods)).tolist()):
-        elastic = system.factor * acceleration * (period / (2.0 * math.pi)) ** 2
-        reduction = acceleration * system.factor * system.mass / line.yield_shear
-        inelastic = elastic
-        if period < corner and reduction > 1.0:
-            inelastic *= (1.0 + (reduction - 1.0) * corner / period) / reduction
-        points.append(PerformancePoint(line, period, acceleration, reduction, inelastic))
-    return points

@@ -11,7 +11,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 
 from pound_deck.model import Card
-from pound_solve.analyses import history, modal, plausibility, pushover, restart, static
+from pound_solve.analyses import capacity_line, history, modal, plausibility, pushover, restart, static
 from pound_solve.analyses.recorder import RecordedItems, SampleBlock
 from pound_solve.analyses.static_response import StaticResponse, static_response
 from pound_solve.analyses.tangent_solution import InstabilityError
@@ -225,6 +225,7 @@ class AnalysisSequence:
         except InstabilityError as err:  # it has no first step
             return err
         self.record.pushovers.append(pushed)
+        self.record.performance[number] = capacity_line.performance_points(pushed, self.record.motions)
         self.record.checks.append(pushed.check)
         self._write(Stage.PUSHOVER)
         return pushed.failed

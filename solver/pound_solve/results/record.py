@@ -12,6 +12,7 @@ from pound_solve.results.schema import Layout
 if TYPE_CHECKING:
     from pound_deck.diagnostics import Diagnostic
     from pound_deck.model import Model
+    from pound_solve.analyses.capacity_line import PerformancePoint
     from pound_solve.analyses.history import HistoryResult
     from pound_solve.analyses.modal import ModalResult
     from pound_solve.analyses.pushover import PushoverResult
@@ -45,6 +46,9 @@ class RunRecord:
         Results of the analyses; each is set when its analysis is over.
     pushovers : list of PushoverResult
         Of the PUSHOVER cards so far.
+    performance : dict
+        Performance points of the pushovers by number, one for each motion, with its name; None where the
+        curve has none.
     recorded, layout
         Recorded items of the history and its layout in the file; set when it starts.
     stored : callable
@@ -69,6 +73,7 @@ class RunRecord:
     modal: ModalResult = field(init=False)
     history: HistoryResult = field(init=False)
     pushovers: list[PushoverResult] = field(default_factory=list)
+    performance: dict[int, list[tuple[str, PerformancePoint | None]]] = field(default_factory=dict)
     recorded: RecordedItems | None = None
     layout: Layout = field(default_factory=dict)
     stored: Callable[[str], Array] = field(init=False)

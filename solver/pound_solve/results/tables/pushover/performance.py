@@ -13,33 +13,36 @@ from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
 if TYPE_CHECKING:
-    from pound_solve.analyses.capacity_line import Demand
-    from pound_solve.analyses.load_pattern import EquivalentSystem
+    from pound_solve.analyses.capacity_line import PerformancePoint
     from pound_solve.analyses.pushover import PushoverResult
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each pushover with TC and each ground motion along its direction."""
-    from pound_solve.analyses.capacity_line import demands  # not needed to read a report
-
     for pushed in run.pushovers:
-        for system, name, spectrum in demands(pushed, run.motions):
-            yield pushed.number, name, *_point(pushed, system, spectrum)
+        for name, point in run.performance[pushed.number]:
+            yield pushed.number, name, *_state(pushed, point)
 
 
-def _point(pushed: PushoverResult, system: EquivalentSystem, spectrum: Demand) -> tuple[float, ...]:
+def _state(pushed: PushoverResult, point: PerformancePoint | None) -> tuple[float, ...]:
     """Performance point and the state of the building there; NaN and no changes if the curve has none."""
     from pound_solve.analyses.capacity_line import CapacityCurve  # not needed to read a report
 
-    curve, start = CapacityCurve(pushed.curve), pushed.curve[0]
-    point = curve.performance(system, spectrum, pushed.card["TC"])
     if point is None:
         return *(math.nan,) * 6, 0
+    curve, start = CapacityCurve(pushed.curve), pushed.curve[0]
     end, at_yield = point.line.end, point.line.yield_displacement
-    displacement = start.displacement + curve.sense * end
     shear = start.shear + curve.sense * float(np.interp(end, curve.d, curve.v))
     changes = sum(curve.sense * (p.displacement - start.displacement) <= end for p, _ in pushed.ladder)
-    return point.period, point.acceleration, point.reduction, end / at_yield, displacement, shear, changes
+    return (
+        point.period,
+        point.acceleration,
+        point.reduction,
+        end / at_yield,
+        point.displacement,
+        shear,
+        changes,
+    )
 
 
 TABLE = Table(

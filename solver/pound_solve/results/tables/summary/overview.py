@@ -34,8 +34,22 @@ def rows(run: RunRecord) -> Iterator[Row]:
     yield "damping", damping(run)
     if any(s.role.collides for s in run.structure.laws):
         yield "contact law", contact_law(run)
+    yield from pushovers(run)
     if run.responded:
         yield from response(run)
+
+
+def pushovers(run: RunRecord) -> Iterator[Row]:
+    """Capacity and performance point of every pushover."""
+    units = run.model.units
+    for pushed in run.pushovers:
+        top, legs = max(pushed.curve, key=lambda p: abs(p.shear)), pushed.curve[-1].leg
+        text = f"largest base shear {top.shear:.5g} {units.force} at {top.displacement:.4g} {units.length}"
+        text += f", in {legs} legs" * (legs > 1)
+        for name, point in run.performance[pushed.number]:
+            reached = f"N2 {point.displacement:.4g} {units.length}" if point else "beyond the curve"
+            text += f"; {reached} under {name}"
+        yield f"pushover {pushed.number}", text
 
 
 def damping(run: RunRecord) -> str:
@@ -149,7 +163,7 @@ TABLE = Table(
     name="overview",
     title="Overview",
     place=10,
-    stages=(Stage.INPUT, Stage.MODAL, Stage.PEAKS),
+    stages=(Stage.INPUT, Stage.MODAL, Stage.PUSHOVER, Stage.PEAKS),
     columns=(ITEM, VALUE),
     rows=rows,
 )
