@@ -175,7 +175,7 @@ def _analysis_twice(model: Model) -> Found:
         name = card.spec.name
         if name in seen and name != "PUSHOVER":  # each starts from the static state
             hint = f"the first stands at {seen[name]}; run the deck again with other PARAMs"
-            yield Diagnostic("P324", f"a second {name}: a deck holds one", card.span, hint)
+            yield Diagnostic("P324", f"a second {name}: a deck holds one {name}", card.span, hint)
         seen.setdefault(name, card.span)
 
 
@@ -238,7 +238,7 @@ def _limits(model: Model) -> Found:
             yield Diagnostic("P304", message, card.place("NAME"), "choose another name")
         first.setdefault(card.label, card.span)
         if card["DRIFT"] is None and card["ROTATION"] is None:
-            message = f'limit "{card.label}" allows nothing in particular'
+            message = f'limit "{card.label}" has neither DRIFT nor ROTATION'
             yield Diagnostic("P379", message, card.span, "give it DRIFT=0.02 or ROTATION=0.02, or both")
 
 

@@ -186,7 +186,9 @@ def test_a_deck_is_drawn_without_a_run_and_without_its_record(tmp_path: Path, ca
 
 def test_a_deck_with_a_performance_point_is_drawn_without_its_motion(tmp_path: Path) -> None:
     path = deck(tmp_path)
-    path.write_text(path.read_text("utf-8") + "ANALYSIS\n PUSHOVER 11 0.06 TC=0.3\n", "utf-8")
+    path.write_text(
+        path.read_text("utf-8") + 'ANALYSIS\n PUSHOVER 11 0.06 TC=0.3 BUILDING="building 1"\n', "utf-8"
+    )
     assert main(["check", str(path)]) == 0
     assert main(["plot", str(path), "frame"]) == 0
 

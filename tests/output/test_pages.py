@@ -103,4 +103,4 @@ def test_the_command_prints_pages(tmp_path: Path, capsys: pytest.CaptureFixture[
     for wrong in (str(SHORTEST - 1), "a4", "-60"):
         with pytest.raises(SystemExit):
             main(["report", path, f"--pages={wrong}"])
-        assert f"{wrong} instead of at least {SHORTEST} lines of a page" in capsys.readouterr().err
+        assert f"{wrong} is no number of lines, {SHORTEST} at least" in capsys.readouterr().err

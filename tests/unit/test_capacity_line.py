@@ -10,11 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from decks import model_of
 from pound_solve import run
+from pound_solve.analyses import pushover_checks
 from pound_solve.analyses.capacity_line import CapacityCurve
 from pound_solve.analyses.load_pattern import EquivalentSystem
 from pound_solve.analyses.pushover import CapacityPoint
 from pound_solve.results import Results
+from pound_solve.structure.assembly import assemble
 
 
 def curve(*points: tuple[float, float]) -> CapacityCurve:
@@ -146,7 +149,30 @@ def test_every_curve_has_an_answer(knots: list[tuple[float, float]], level: floa
     point = c.performance(SYSTEM, flat(level), corner)
     if point is not None and level:
         assert 0.0 < point.line.end <= d[-1] * (1.0 + 1e-12)
+        elastic = (
+            SYSTEM.factor * level * SYSTEM.mass * point.line.yield_displacement / point.line.yield_shear
+        )
+        ratio = level * SYSTEM.factor * SYSTEM.mass / point.line.yield_shear
+        longer = (
+            1.0 if ratio <= 1.0 else max(1.0, (1 + (ratio - 1) * max(corner / point.period, 1.0)) / ratio)
+        )
+        assert point.demand == pytest.approx(elastic * longer, rel=1e-9)
         assert 0.0 < point.line.yield_displacement <= point.line.end
+
+
+def test_the_point_does_not_depend_on_target_and_stations(tmp_path: Path) -> None:
+    """A record-like spectrum that meets the curve several times: the first meeting counts."""
+    found = []
+    for card in ("2 3", "2 10", "2 3 STEPS=10", "2 10 STEPS=10"):
+        deck = tmp_path / "deck.inp"
+        deck.write_text(
+            "NODES\n 1 0 0 FIX=XYR\n 2 0 3 FIX=YR\nELEMENTS\n 1 A 1 2\nPROPS\n"
+            " A SPRING KX=100 FX=5 RULE=BILINEAR R=0.3\nWEIGHTS\n 2 19.62\n"
+            f"EQUAKE\n SINE AMPLITUDE=1.5 PERIOD=1.3 DURATION=40\nANALYSIS\n PUSHOVER {card} TC=0.3\n"
+        )
+        (point,) = run(deck, out=tmp_path).table("performance")
+        found.append(point["displacement"])
+    assert found == pytest.approx([found[0]] * 4, rel=1e-9) and found[0] < 0.11
 
 
 # the equivalent oscillator, from decks
@@ -182,6 +208,9 @@ def ran(folder: Path, card: str, more: str = "") -> Results:
         ("3 0.5 PATTERN=UNIFORM", (1.0, 1.0)),
         # forces 1 and 2: u2 = 3/100, u3 = u2 + 2/80
         ("3 0.5 PATTERN=FORCES NODES=2,3 FORCES=1,2", (0.03 / 0.055, 1.0)),
+        # at the roof alone: u2 = 1/100, u3 = u2 + 1/80; all masses count
+        ("3 0.5 PATTERN=FORCES NODES=3 FORCES=1", (0.01 / 0.0225, 1.0)),
+        ("3 0.5 PATTERN=UNIFORM NODES=3", (0.01 / 0.0225, 1.0)),
     ],
 )
 def test_mass_and_factor_of_the_oscillator(tmp_path: Path, card: str, phi: tuple[float, float]) -> None:
@@ -222,7 +251,7 @@ def test_a_demand_beyond_the_curve_has_no_numbers(tmp_path: Path) -> None:
     results = ran(tmp_path, "3 0.1 TC=0.6", "EQUAKE\n SINE AMPLITUDE=20 PERIOD=0.7 DURATION=3\n")
     (point,) = results.table("performance")
     assert math.isnan(point["displacement"]) and point["changes"] == 0
-    assert "Without numbers: the demand exceeds the curve" in (tmp_path / "deck.rpt").read_text()
+    assert "A row without numbers means" in (tmp_path / "deck.rpt").read_text()
 
 
 def test_a_stiff_building_under_a_long_motion_follows_the_ground(tmp_path: Path) -> None:
@@ -249,7 +278,65 @@ def test_page_one_has_the_capacity_and_the_performance_point(tmp_path: Path) -> 
     point, beyond = results.table("performance")
     top = results.table("capacity_curve")["base_shear"][results.table("capacity_curve")["push"] == 1].max()
     assert overview["pushover 1"] == (
-        f"largest base shear {top:.5g} kN at 0.2 m; N2 {point['displacement']:.4g} m under SINE"
+        f"largest base shear {top:.5g} kN at 0.2 m; N2 {point['displacement']:.4g} m under 1 SINE"
     )
-    assert math.isnan(beyond["displacement"]) and "; beyond the curve under SINE" in overview["pushover 2"]
+    assert math.isnan(beyond["displacement"]) and "; no N2 point under 1 SINE" in overview["pushover 2"]
     assert overview["pushover 3"].endswith(", in 2 legs")
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_the_point_on_a_curve_with_a_static_load(tmp_path: Path, sense: float) -> None:
+    """One storey, k = 100, F = 5, static 1: beyond yield, by hand from the ordinate at T*.
+
+    The curve from the static state: to the load's side it yields after 4, at 0.04, else after 6, at 0.06.
+    The control displacement is 0.01 + sense * d, the shear 1 + sense * V.
+    """
+    deck = tmp_path / "deck.inp"
+    deck.write_text(
+        "NODES\n 1 0 0 FIX=XYR\n 2 0 3 FIX=YR\nELEMENTS\n 1 A 1 2\nPROPS\n"
+        " A SPRING KX=100 FX=5 RULE=ELASTO_PLASTIC\nWEIGHTS\n 2 19.62\nLOADS\n 2 1\n"
+        f"EQUAKE\n SINE AMPLITUDE=2 PERIOD=0.9 DURATION=1\nANALYSIS\n PUSHOVER 2 {sense * 3} TC=0.3\n"
+    )
+    results = run(deck, out=tmp_path)
+    (point,), (line,) = results.table("performance"), results.table("capacity_line")
+    strength = 4.0 if sense > 0 else 6.0
+    assert line["yield_displacement"] == pytest.approx(strength / 100, rel=1e-9)
+    assert line["yield_shear"] == pytest.approx(strength, rel=1e-12)
+    period = 2 * math.pi * math.sqrt(2 / 100)
+    assert point["period"] == pytest.approx(period, rel=1e-9)
+    d = point["acceleration"] / 50.0
+    assert d > strength / 100  # it yields
+    assert point["displacement"] == pytest.approx(0.01 + sense * d, rel=1e-9)
+    assert point["base_shear"] == pytest.approx(1.0 + sense * strength, rel=1e-12)
+    assert point["reduction"] == pytest.approx(point["acceleration"] * 2 / strength, rel=1e-9)
+    assert point["ductility"] == pytest.approx(100 * d / strength, rel=1e-9) and point["changes"] == 1
+    spectrum = results.table("push_spectra")
+    ordinates = spectrum["displacement"] * (2 * math.pi / spectrum["period"]) ** 2
+    assert ordinates == pytest.approx(spectrum["acceleration"], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("more", "card", "told"),
+    [
+        ("", "3 0.5 BASE=1 TC=1", "TC takes the whole base shear"),
+        (" 12 5 3 FIX=YR\n", "3 0.5 TC=1", "the performance point is that of one building with mass"),
+    ],
+)
+def test_a_point_needs_one_building_and_its_whole_shear(more: str, card: str, told: str) -> None:
+    text = STOREYS.replace(" 3 0 6 FIX=YR\n", f" 3 0 6 FIX=YR\n{more}")
+    if more:
+        text = text.replace(" 2 B 2 3\n", " 2 B 2 3\n 12 B 12\n").replace(" 3 9.81\n", " 3 9.81\n 12 30\n")
+    model = model_of(f"{text}EQUAKE\n SINE AMPLITUDE=1 PERIOD=1 DURATION=1\nANALYSIS\n PUSHOVER {card}\n")
+    found = pushover_checks.mistaken_cards(assemble(model))
+    assert [d.message for d in found] == [told]
+
+
+def test_motions_of_one_name_are_numbered(tmp_path: Path) -> None:
+    motions = (
+        "EQUAKE\n SINE AMPLITUDE=0.2 PERIOD=0.7 DURATION=3\n SINE AMPLITUDE=0.1 PERIOD=0.7 DURATION=3\n"
+    )
+    results = ran(tmp_path, "3 0.5 TC=0.6", motions)
+    points, spectra = results.table("performance"), results.table("push_spectra")
+    assert points["motion"].tolist() == ["1 SINE", "2 SINE"]
+    one, two = (spectra[spectra["motion"] == name]["acceleration"] for name in ("1 SINE", "2 SINE"))
+    assert one == pytest.approx(2.0 * two, rel=1e-12)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from decks import hinged_frame, model_of
@@ -63,16 +62,41 @@ def test_loops_of_a_plastic_storey() -> None:
         assert leg.loop == pytest.approx(4 * 5 * (amplitude - 0.05), rel=1e-12)
         assert leg.damping == pytest.approx(2 / math.pi * (1 - 0.05 / amplitude), rel=1e-12)
         assert leg.stiffness == pytest.approx(5 / amplitude, rel=1e-12)
-    # from -0.1 to 0.2: the chord has the slope 10/0.3; the leg before has half a loop of 0.1
-    v = np.interp(np.linspace(-0.1, 0.2, 3001), [-0.1, 0.0, 0.2], [-5.0, 5.0, 5.0])
-    chord = np.linspace(-5.0, 5.0, 3001)
-    assert found[4].loop == pytest.approx(float((v - chord).mean()) * 0.3 + 0.5, rel=1e-3)
+    # from -0.1 to 0.2 and back to -0.2: no leg ends where the one before it began
+    assert all(math.isnan(leg.loop) for leg in found[4:6])
+
+
+def test_what_is_no_cycle_has_no_loop() -> None:
+    rising = pushed(STOREY.format(rule="ELASTO_PLASTIC"), "2 0.05,0.1,0.2,0.4 STEPS=2")
+    assert all(math.isnan(leg.loop) for leg in cycles.legs(rising))
+
+
+def test_a_shear_that_falls_with_the_displacement_has_no_damping() -> None:
+    """P-Delta beyond zero shear: at its largest displacement the column leans on its load."""
+    deck = """
+GEOMETRY PDELTA
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 SLAVED=XY MASTER=1
+ 3 0 4
+ELEMENTS
+ 1 FOOT 1 2
+ 2 COL 2 3
+PROPS
+ FOOT SPRING KR=2000 MR=20 RULE=ELASTO_PLASTIC
+ COL FRAME E=2e8 A=1 I=0.1
+LOADS
+ 3 0 -200
+"""
+    p = pushed(deck, "3 0.3 CYCLES=2 PATTERN=FORCES NODES=3 FORCES=1 STEPS=4")
+    last = cycles.legs(p)[-1]
+    assert last.loop > 0.0 and last.stiffness < 0.0 and math.isnan(last.damping)
 
 
 def test_an_elastic_storey_has_no_loop() -> None:
     p = pushed(STOREY.format(rule="ELASTO_PLASTIC"), "2 0.04 CYCLES=3 STEPS=5")
     for leg in cycles.legs(p)[2:]:
-        assert abs(leg.loop) < 1e-15 and leg.stiffness == pytest.approx(100.0, rel=1e-13)
+        assert leg.loop == leg.damping == 0.0 and leg.stiffness == pytest.approx(100.0, rel=1e-13)
     assert [b.cycles for b in cycles.backbone(p)] == [3, 3]
 
 
@@ -83,7 +107,7 @@ def test_a_contact_that_closes_has_no_loop() -> None:
     p = pushed(text, "2 0.04 CYCLES=2 STEPS=7")
     found = cycles.legs(p)
     assert abs(p.legs()[0][-1].shear) != pytest.approx(abs(p.legs()[1][-1].shear), rel=0.1)
-    assert all(abs(leg.loop) < 1e-14 and abs(leg.damping) < 1e-14 for leg in found[2:])
+    assert all(leg.loop == leg.damping == 0.0 for leg in found[2:])
 
 
 def test_the_backbone_joins_the_first_ends_of_each_amplitude() -> None:
@@ -176,6 +200,10 @@ def test_several_pushovers_begin_at_one_state(tmp_path: Path) -> None:
     assert one["displacement"][-1] == pytest.approx(0.2) and two["leg"].tolist()[-1] == 3
     loops, outer = results.table("push_legs"), results.table("backbone")
     assert loops["push"].tolist() == [2] * 3 and loops["loop"][-1] == pytest.approx(4 * 5 * 0.05)
+    assert loops["largest"].tolist() == pytest.approx([5.0, -5.0, 5.0]) and outer["ratio"].tolist() == [
+        1.0,
+        1.0,
+    ]
     assert outer["displacement"].tolist() == pytest.approx([-0.1, 0.1]) and outer["times"].tolist() == [
         1,
         2,
@@ -252,6 +280,22 @@ def test_pushovers_of_a_deck_have_numbers_in_checks_and_pictures(tmp_path: Path)
         assert checks == ["pushover 1", "pushover 2"]
         titles = [axes.get_title()[:2] for axes in plot.picture(results, "capacity").axes]
     assert titles == ["1:", "2:"]
+
+
+def test_a_card_that_is_included_twice_has_two_numbers(tmp_path: Path) -> None:
+    (tmp_path / "push.inc").write_text(" PUSHOVER 2 0.2 STEPS=4\n")
+    text = STOREY.format(rule="ELASTO_PLASTIC") + "ANALYSIS\n INCLUDE push.inc\n INCLUDE push.inc\n"
+    curve = ran(tmp_path, text).table("capacity_curve")
+    assert curve["push"].tolist() == [1] * (len(curve) // 2) + [2] * (len(curve) // 2)
+
+
+def test_a_stop_of_a_pushover_is_told_beside_that_of_the_history(tmp_path: Path) -> None:
+    text = (
+        STOREY.format(rule="BILINEAR R=0.1")
+        + "INITIAL\n 2 UX=0.01\nANALYSIS\n PUSHOVER 2 0\n HISTORY 1 {}\n"
+    )
+    message = ran(tmp_path, text.format("METHOD=CENTRAL DT=0.9")).message
+    assert message.startswith("A505 pushover: the control node stands at its target 0 already; A5")
 
 
 # mistakes

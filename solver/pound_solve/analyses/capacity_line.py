@@ -21,8 +21,8 @@ The N2 method (EN 1998-1:2004, B.5; Fajfar 2000) finds its displacement from the
           \bigl(1 + (q_u - 1)\,T_C/T^*\bigr)/q_u & \text{otherwise} \end{cases}
 
 The line depends on :math:`d_m`, which the standard lets the user adjust until :math:`d_t = d_m`.  Here
-:math:`d_m` is that solution, the first on the curve: the result does not depend on how far the building was
-pushed.
+:math:`d_m` is that solution, the first on a grid of displacements: the result depends neither on the target
+nor on the stations of the curve.
 
 References
 ----------
@@ -58,6 +58,9 @@ PRECISION: Final = 1e-12  #: error of the performance point, as a fraction of it
 ROUNDING: Final = 1e-9  #: fraction of a displacement or shear below which a difference is rounding error
 #: shortest period, as a multiple of the longest interval of a motion: it is divided into 16 parts
 SHORTEST: Final = 1.0 / 8.0
+#: ratio of the displacements between which the performance point is sought: periods differ by 2 % at most
+RATIO: Final = 2.0 ** (1.0 / 16.0)
+STARTS: Final = 160  #: number of such ratios below the end of a curve that bends from its start
 LEFT: Final = 0.8  #: share of the largest base shear that is left at the ultimate displacement
 
 
@@ -134,6 +137,24 @@ class CapacityCurve:
         self._largest = np.maximum.accumulate(self.v)
         self._goes_back = bool((np.diff(self.d) < 0.0).any())
 
+    def _grid(self) -> list[float]:
+        """Return the displacements between which the performance point is sought: corners of the curve, its
+        end, and powers of `RATIO` beyond the first corner, up to which the period is one and the same.
+        With piecewise linear laws only the end depends on the target.
+        """
+        d, v = self.d, self.v
+        before, after = (np.diff(x)[:-1] for x in (d, v)), (np.diff(x)[1:] for x in (d, v))
+        (dx0, dy0), (dx1, dy1) = before, after
+        bends = np.abs(dy1 * dx0 - dy0 * dx1) > ROUNDING * (np.abs(dy1 * dx0) + np.abs(dy0 * dx1))
+        corners = d[1:-1][bends]
+        first, last = float(corners[0] if len(corners) else d[-1]), float(d[-1])
+        if first <= 0.0:  # it bends from the start
+            first = last * RATIO**-STARTS
+        powers = range(math.ceil(math.log(first, RATIO)), math.floor(math.log(last, RATIO)) + 1)
+        return sorted(
+            {x for x in (*corners.tolist(), last, *(RATIO**n for n in powers)) if 0.0 < x <= last}
+        )
+
     @property
     def strongest(self) -> float:
         """Furthest displacement at which the base shear is the largest [L]."""
@@ -168,8 +189,8 @@ class CapacityCurve:
     def performance(
         self, system: EquivalentSystem, demand: Demand, corner: float
     ) -> PerformancePoint | None:
-        """Return the performance point, the first between two points of the curve; None if the curve ends,
-        or has no line, before it.
+        """Return the performance point, the first on a grid of displacements that is dense in periods; None
+        if the curve ends, or has no line, before it.
 
         Parameters
         ----------
@@ -179,7 +200,7 @@ class CapacityCurve:
         corner : float
             Period :math:`T_C` at which its constant acceleration ends [T].
         """
-        lines = list(takewhile(bool, map(self.line, sorted({float(d) for d in self.d if d > 0.0}))))
+        lines = list(takewhile(bool, map(self.line, self._grid())))
         points = self._points(lines, system, demand, corner)
         after = next((n for n, p in enumerate(points) if p.demand <= p.line.end), None)
         if after is None:
@@ -220,13 +241,13 @@ class CapacityCurve:
 def demands(
     pushed: PushoverResult, motions: Iterable[GroundMotion]
 ) -> Iterator[tuple[EquivalentSystem, str, Demand]]:
-    """Yield the equivalent oscillator of a pushover with TC, with the name and the spectrum of each motion
-    along its direction.
+    """Yield the equivalent oscillator of a pushover with TC, with the number, the name and the spectrum of
+    each motion along its direction.
     """
     card, system = pushed.card, pushed.equivalent
-    for motion in motions:
+    for n, motion in enumerate(motions, 1):
         if system and card["TC"] is not None and motion.direction == card["DIRECTION"]:
-            yield system, motion.name, partial(_ordinates, motion.acceleration, card["XI"])
+            yield system, f"{n} {motion.name}", partial(_ordinates, motion.acceleration, card["XI"])
 
 
 def performance_points(

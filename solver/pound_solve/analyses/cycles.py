@@ -27,11 +27,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from pound_solve.analyses.pushover import CapacityPoint, PushoverResult, targets
+
+CLOSED: Final = 1e-9  #: relative error of ends that meet, and of the area of a loop that is none
 
 
 class Leg(NamedTuple):
@@ -45,9 +47,11 @@ class Leg(NamedTuple):
     stiffness : float
         Slope of the chord [F/L].
     loop : float
-        Area of the loop of this leg and the one before [F L]; NaN for the first two legs.
+        Area of the loop of this leg and the one before [F L]; NaN unless this leg ends where
+        that one began.
     damping : float
-        Equivalent damping ratio of that loop; NaN for the first two legs.
+        Equivalent damping ratio of that loop; NaN also where the base shear falls from one
+        end to the other.
     """
 
     end: CapacityPoint
@@ -75,18 +79,21 @@ class BackbonePoint(NamedTuple):
 
 
 def legs(pushed: PushoverResult) -> list[Leg]:
-    """Return the legs of a pushover."""
-    answer, before = list[Leg](), math.nan
-    for points in pushed.legs():
+    """Return the legs of a pushover; one that stopped before its target is the last."""
+    paths = pushed.legs()
+    answer = list[Leg]()
+    for n, points in enumerate(paths):
         start, end = points[0], points[-1]
         along, across = end.displacement - start.displacement, end.shear - start.shear
         sense = math.copysign(1.0, along)
         largest = max(points, key=lambda p: sense * p.shear)
-        area = _area(points) if start.leg > 1 else math.nan
-        loop, work = before + area, math.pi * across * along
+        loop = damping = math.nan
+        if n > 1 and abs(paths[n - 1][0].displacement - end.displacement) <= CLOSED * abs(along):
+            loop = _area(paths[n - 1]) + _area(points)
+            loop = loop if abs(loop) > CLOSED * abs(along * across) else 0.0
+            damping = 2.0 * loop / (math.pi * across * along) if across * along > 0.0 else math.nan
         stiffness = across / along if along else math.nan  # it may stop where it began
-        answer.append(Leg(end, largest, stiffness, loop, 2.0 * loop / work if work else math.nan))
-        before = area
+        answer.append(Leg(end, largest, stiffness, loop, damping))
     return answer
 
 

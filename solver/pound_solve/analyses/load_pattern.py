@@ -18,7 +18,7 @@ from pound_solve.structure.structure import Structure
 
 #: share of the mass-weighted shape below which the control node counts as a node at rest
 AT_REST: Final = 1e-9
-SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
+SOUGHT: Final = 12  #: slowest modes of a large structure among which the pattern is chosen
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class EquivalentSystem:
         :math:`m^*` [F T^2/L].
     factor : float
         :math:`\Gamma`, displacement of the control node over that of the oscillator.
-    pushed_mass : float
-        Mass of the pushed nodes [F T^2/L].
+    whole_mass : float
+        Mass of the building along the push [F T^2/L].
     """
 
     mass: float
     factor: float
-    pushed_mass: float
+    whole_mass: float
 
 
 class LoadPattern:
@@ -71,14 +71,20 @@ class LoadPattern:
         kind, nodes = card["PATTERN"], card["NODES"]
         self.by_mode, self._stiff = kind == "MODE", 1
         self.along = np.array([float(at == d) for _, at in dofs.free])  # unit motion of the whole
-        pushed = np.zeros(n)
-        for node in building if nodes is None else nodes:
-            pushed[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
         self.structure_mass = structure.mass[:n, :n]
-        self.pushed = pushed * self.along
+
+        def moved(nodes: Collection[int]) -> Array:
+            columns = np.zeros(n)
+            for node in nodes:
+                columns[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
+            return np.asarray(columns * self.along)
+
+        self.of_building = moved(building)
+        self.pushed = self.of_building if nodes is None else moved(nodes)
         self.mass = float(self._share(np.ones(n)).sum())
         self.forces = np.zeros(n)
         self.shape: Array | None = None
+        self.all_nodes = nodes is None  # the forces are then the inertia of the whole building in the shape
         if kind == "LOADS":
             (columns,) = columns_of(model, dofs.free, [building])
             self.forces[columns] = structure.loads[columns]
@@ -103,20 +109,23 @@ class LoadPattern:
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
 
     def equivalent(self, control: Array, path: EquilibriumPath) -> EquivalentSystem | None:
-        """Return the oscillator that stands for the pushed nodes; None without mass or if the control node
-        stays at rest.  FORCES and LOADS have no shape: the deflection of the first step replaces it.
+        """Return the oscillator that stands for the building; None without mass or if the control node
+        stays at rest.  The shape is that of the pattern where this pushes all nodes, else the deflection of
+        the first step.
         """
         try:
-            shape = path.rates(path.u, path.factor).displacement if self.shape is None else self.shape
+            shape = self.shape if self.all_nodes else None
+            shape = path.rates(path.u, path.factor).displacement if shape is None else shape
         except InstabilityError:
             return None  # a mechanism, until a contact closes
         at_control = float(control @ shape)
-        if abs(at_control) <= AT_REST * float(np.abs(shape).max(initial=0.0)) or not self.mass:
+        if abs(at_control) <= AT_REST * float(np.abs(shape).max(initial=0.0)):
             return None
-        phi = shape / at_control
-        share = self._share(phi)
-        mass, square = float(share.sum()), float(share @ (self.along * phi))
-        return EquivalentSystem(mass, mass / square, self.mass) if mass > 0.0 else None
+        phi = self.along * shape / at_control
+        inertia = self.of_building * (self.structure_mass @ phi)
+        mass, square = float(inertia.sum()), float(inertia @ phi)
+        whole = float((self.of_building * (self.structure_mass @ self.along)).sum())
+        return EquivalentSystem(mass, mass / square, whole) if mass > 0.0 else None
 
     def follow(self, path: EquilibriumPath) -> Array:
         """Return the forces at the present point of a path; a modal PATTERN follows the present tangent

@@ -37,6 +37,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
+from itertools import groupby
+from operator import attrgetter
 
 import numpy as np
 
@@ -50,7 +52,7 @@ from pound_solve.analyses.static import StaticState
 from pound_solve.analyses.tangent_solution import InstabilityError
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
-from pound_solve.structure.buildings import building
+from pound_solve.structure.buildings import building, buildings
 from pound_solve.structure.extract_building import extract_building
 from pound_solve.structure.structure import Structure
 
@@ -78,7 +80,8 @@ class PushoverResult:
     number : int
         Of the card among those of the deck, from 1.
     equivalent : EquivalentSystem or None
-        The oscillator that the pushed mass and the pattern stand for; None without mass.
+        The oscillator that stands for the one building that is pushed; None for several, for a part
+        of the base shear, and without mass.
     curve : list of CapacityPoint
         At the start of every leg, at the stations, and where laws changed.
     ladder : list of (CapacityPoint, Change)
@@ -119,7 +122,7 @@ class PushoverResult:
 
     def legs(self) -> list[list[CapacityPoint]]:
         """Return the points of every leg."""
-        return [[p for p in self.curve if p.leg == leg] for leg in range(1, self.curve[-1].leg + 1)]
+        return [list(points) for _, points in groupby(self.curve, key=attrgetter("leg"))]
 
 
 def push(structure: Structure, state: StaticState, card: Card, number: int = 1) -> PushoverResult:
@@ -156,7 +159,10 @@ def push(structure: Structure, state: StaticState, card: Card, number: int = 1) 
         result.end, result.failed = str(err), None if capacity else err
         result.add(course.point())
         result.ladder = _once(result.ladder)
-    result.curve = [replace(p, displacement=_clean(p.displacement, result.curve)) for p in result.curve]
+    noise = 1e-13 * max(abs(p.displacement) for p in result.curve)  # rounding error of zero
+    result.curve = [
+        p if abs(p.displacement) > noise else replace(p, displacement=0.0) for p in result.curve
+    ]
     result.last, result.unbalanced = course.path.load, course.path.unbalanced()
     return result
 
@@ -209,7 +215,8 @@ class _Course:
         self.reactions = SupportReactions(structure, state.axial, nodes)
         self.leg = 1
         self.result = PushoverResult(card, structure, first=self.path.load)
-        self.result.equivalent = self.pattern.equivalent(self.control, self.path)
+        if of_one_building(structure, card) and card["BASE"] is None:
+            self.result.equivalent = self.pattern.equivalent(self.control, self.path)
 
     def point(self) -> CapacityPoint:
         """Return the present point of the capacity curve."""
@@ -288,14 +295,14 @@ def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoin
     return list(distinct.values())
 
 
-def _clean(displacement: float, curve: list[CapacityPoint]) -> float:
-    """Return the displacement, or zero if it is a rounding error compared with the largest one."""
-    return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
-
-
 def pushed_nodes(structure: Structure, card: Card) -> tuple[int, ...] | None:
     """Return the nodes of the pushed building, or None for all nodes."""
     return building(structure, card["BUILDING"]).nodes if card["BUILDING"] else None
+
+
+def of_one_building(structure: Structure, card: Card) -> bool:
+    """Return whether one building with mass is pushed."""
+    return bool(card["BUILDING"]) or len(buildings(structure)) == 1
 
 
 def control_row(structure: Structure, card: Card) -> Array:
@@ -326,7 +333,7 @@ SPEC = Spec(
             default=0,
             lo=0,
             hi=1000,
-            doc="goes so often to each TARGET and to its opposite; 0: to each TARGET once",
+            doc="number of times that it goes to each TARGET and to its opposite; 0: to each TARGET once",
         ),
         Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of forces and control"),
         Field(

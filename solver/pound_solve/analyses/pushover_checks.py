@@ -9,7 +9,7 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_solve.analyses.load_pattern import LoadPattern
-from pound_solve.analyses.pushover import control_row, pushed_nodes, targets
+from pound_solve.analyses.pushover import control_row, of_one_building, pushed_nodes, targets
 from pound_solve.structure.buildings import building, buildings
 from pound_solve.structure.structure import Structure
 
@@ -52,9 +52,8 @@ def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
     """Return the message, the invalid item of the card, and a hint, or None."""
     if wrong := _wrong_building(structure, card) or _wrong_control(structure, card) or _wrong_items(card):
         return wrong
-    if card["TC"] is not None and all(m["DIRECTION"] != card["DIRECTION"] for m in structure.model.equake):
-        message = f"TC gives the performance point under a ground motion along {card['DIRECTION']}"
-        return message, "TC", "add the motion under EQUAKE, or leave TC out"
+    if wrong := _wrong_performance(structure, card):
+        return wrong
     pattern = LoadPattern(structure, card, pushed_nodes(structure, card))
     if not (pattern.mass if pattern.by_mode else pattern.forces.any()):
         hint = "the nodes that are pushed need forces, loads or WEIGHTS, and must be able to move so"
@@ -116,6 +115,22 @@ def _wrong_turn(card: Card) -> tuple[str, str, str] | None:
             hint = "CYCLES goes to the opposite of each TARGET too: give amplitudes of one sign, above zero"
             hint = hint if card["CYCLES"] else "give targets that differ"
             return f"TARGET {one:g} follows itself", "TARGET", hint
+    return None
+
+
+def _wrong_performance(structure: Structure, card: Card) -> tuple[str, str, str] | None:
+    """Return the error in TC, which takes one building, its whole base shear, and a ground motion."""
+    if card["TC"] is None:
+        return None
+    if all(m["DIRECTION"] != card["DIRECTION"] for m in structure.model.equake):
+        message = f"TC gives the performance point under a ground motion along {card['DIRECTION']}"
+        return message, "TC", "add the motion under EQUAKE, or leave TC out"
+    if card["BASE"] is not None:
+        return "TC takes the whole base shear", "BASE", "leave out BASE, or TC"
+    if not of_one_building(structure, card):
+        named = ", ".join(f'"{b.name}"' for b in buildings(structure))
+        hint = f"add BUILDING, one of {named}" if named else "give the nodes WEIGHTS"
+        return "the performance point is that of one building with mass", "TC", hint
     return None
 
 

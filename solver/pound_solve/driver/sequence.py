@@ -145,8 +145,16 @@ class AnalysisSequence:
             return NO_ROOM
 
     def _analyses(self) -> str:
-        """Run one analysis after the other; return the reason of a stop, or an empty text."""
-        doing, stops = "static analysis", list[str]()
+        """Run one analysis after the other; return the reasons of stops, or an empty text."""
+        stops = list[str]()
+        last = self._one_after_the_other(stops)
+        return "; ".join([*stops, last] if last else stops)
+
+    def _one_after_the_other(self, stops: list[str]) -> str:
+        """Run the analyses; return the reason of a stop that ends the run, or an empty text, and add those
+        that do not.
+        """
+        doing = "static analysis"
         try:
             self.store_input()
             state = self._static()
@@ -171,7 +179,7 @@ class AnalysisSequence:
             return f"{err.code} at t = {err.t:.9g} {self.record.model.units.time}: {err}"
         except KeyboardInterrupt:
             return f"A506 {doing}: {INTERRUPTED}"
-        return "; ".join(stops)
+        return ""
 
     def _cards(self, name: str) -> list[Card]:
         """Cards of one analysis."""
@@ -219,7 +227,7 @@ class AnalysisSequence:
         self._write(Stage.MODAL)
 
     def _pushover(self, card: Card, state: static.StaticState) -> InstabilityError | None:
-        number = 1 + self._cards("PUSHOVER").index(card)
+        number = next(n for n, one in enumerate(self._cards("PUSHOVER"), 1) if one is card)
         try:
             pushed = pushover.push(self.record.structure, state, card, number)
         except InstabilityError as err:  # it has no first step

@@ -52,7 +52,10 @@ def _length(text: str) -> int:
     from pound_solve.report.pages import SHORTEST
 
     if not text.isdecimal() or int(text) < SHORTEST:
-        raise argparse.ArgumentTypeError(f"{text[:20]} instead of at least {SHORTEST} lines of a page")
+        told = (
+            f"{text[:40]} is no number of lines, {SHORTEST} at least; a results file stands before --pages"
+        )
+        raise argparse.ArgumentTypeError(told)
     return int(text)
 
 

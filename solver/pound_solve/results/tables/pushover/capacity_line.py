@@ -20,7 +20,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
             continue
         ratio, oscillator = math.nan, (math.nan,) * 3
         if system:
-            ratio = line.yield_shear / (run.model.gravity * system.pushed_mass)
+            ratio = line.yield_shear / (run.model.gravity * system.whole_mass)
             oscillator = system.mass, system.factor, line.period(system)
         at_yield = line.yield_displacement, line.yield_shear
         ductility = curve.ultimate / line.yield_displacement
@@ -48,7 +48,9 @@ TABLE = Table(
             "num",
             doc="largest base shear, without that of the static state",
         ),
-        Column("shear_ratio", "over\nweight", "-", "short", doc="that over the weight of the pushed nodes"),
+        Column(
+            "shear_ratio", "over\nweight", "-", "short", doc="yield shear over the weight of the building"
+        ),
         Column("stiffness", "stiff-\nness", "F/L", "short", doc="yield shear over yield displacement"),
         Column(
             "displacement",
@@ -57,7 +59,7 @@ TABLE = Table(
             "num",
             doc="where 80 % of the yield shear is left, or the end of the curve, from the static state",
         ),
-        Column("ductility", "ductility", "-", "short", doc="that over the yield displacement"),
+        Column("ductility", "ductility", "-", "short", doc="ultimate displacement over yield displacement"),
         Column("mass", "mass\nm*", "F*T^2/L", "num", doc="mass of the equivalent oscillator"),
         Column(
             "participation",

@@ -52,7 +52,7 @@ TABLE = Table(
     stages=(Stage.PUSHOVER,),
     columns=(
         PUSH,
-        Column("motion", doc="name of the ground motion"),
+        Column("motion", doc="number and name of the ground motion"),
         Column("period", "period\nT*", "T", "short", doc="of the equivalent oscillator"),
         Column(
             "acceleration",
@@ -61,7 +61,7 @@ TABLE = Table(
             "short",
             doc="of the elastic spectrum at that period",
         ),
-        Column("reduction", "over\nyield", "-", "short", doc="that over the acceleration at yield"),
+        Column("reduction", "over\nyield", "-", "short", doc="spectral acceleration over that at yield"),
         Column("ductility", "ductility", "-", "short", doc="displacement over that at yield"),
         Column(
             "displacement",
@@ -76,7 +76,7 @@ TABLE = Table(
     rows=rows,
     note=(
         "The curve is idealised up to the performance point itself; the spectra are those of the motions, "
-        "with the damping XI and the corner period TC of the card. Without numbers: the demand exceeds the "
-        "curve, or the curve stiffens; push further, or use HISTORY."
+        "with the damping XI and the corner period TC of the card. A row without numbers means that "
+        "the demand exceeds the curve, or that the curve stiffens: push further, or use HISTORY."
     ),
 )

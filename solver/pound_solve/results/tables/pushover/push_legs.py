@@ -42,16 +42,20 @@ TABLE = Table(
             "loop",
             "F*L",
             "num",
-            doc="of this leg and the one before, base shear over displacement; NaN for the first two",
+            doc="of this leg and the one before; NaN unless this one ends where that one began",
         ),
         Column(
-            "damping", "equivalent\ndamping", "%", "short", doc="of that loop; NaN for the first two legs"
+            "damping",
+            "equivalent\ndamping",
+            "%",
+            "short",
+            doc="of that loop; NaN where the base shear does not rise with the displacement",
         ),
     ),
     rows=rows,
     group="push",
     note=(
-        "A leg leads from one target to the next; its loop is that with the leg before it. The two close a "
-        "loop only if the leg before began where this one ends."
+        "A leg leads from one target to the next. It closes a loop with the leg before it if it ends where "
+        "that one began."
     ),
 )

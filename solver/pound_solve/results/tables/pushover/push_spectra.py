@@ -38,7 +38,7 @@ TABLE = Table(
     stages=(Stage.PUSHOVER,),
     columns=(
         PUSH,
-        Column("motion", doc="name of the ground motion"),
+        Column("motion", doc="number and name of the ground motion"),
         Column("period", "period", "T", "short", doc="of the elastic oscillator"),
         Column(
             "displacement",

@@ -47,7 +47,7 @@ def pushovers(run: RunRecord) -> Iterator[Row]:
         text = f"largest base shear {top.shear:.5g} {units.force} at {top.displacement:.4g} {units.length}"
         text += f", in {legs} legs" * (legs > 1)
         for name, point in run.performance[pushed.number]:
-            reached = f"N2 {point.displacement:.4g} {units.length}" if point else "beyond the curve"
+            reached = f"N2 {point.displacement:.4g} {units.length}" if point else "no N2 point"
             text += f"; {reached} under {name}"
         yield f"pushover {pushed.number}", text
 

@@ -49,7 +49,7 @@ def _row(r: SpringResponse, other: float, place: str, limits: Sequence[tuple[flo
 
 
 def _state(r: SpringResponse, index: float, limits: Sequence[tuple[float, str]]) -> str:
-    if r.failed:
+    if r.failed or index >= STATES[0][0]:
         return "failed"
     passed = [name for allowed, name in limits if r.rotation > allowed]
     if passed:
