@@ -43,7 +43,6 @@ from itertools import takewhile
 from typing import Final, TypeAlias
 
 import numpy as np
-from scipy.optimize import brentq
 
 from pound_solve.analyses.load_pattern import EquivalentSystem
 from pound_solve.analyses.pushover import CapacityPoint, PushoverResult
@@ -200,6 +199,8 @@ class CapacityCurve:
         corner : float
             Period :math:`T_C` at which its constant acceleration ends [T].
         """
+        from scipy.optimize import brentq  # slow to import, and few decks need it
+
         lines = list(takewhile(bool, map(self.line, self._grid())))
         points = self._points(lines, system, demand, corner)
         after = next((n for n, p in enumerate(points) if p.demand <= p.line.end), None)
