@@ -424,7 +424,20 @@ def test_a_performance_point_shows_its_period(pair: Results) -> None:
     figure = plot.picture(pair, "performance")
     (point,) = pair.table("performance")
     assert f"up to the point: {point['period']:.4g} s" in figure.axes[0].get_title()
-    assert "idealised" in [line.get_label() for line in figure.axes[0].get_lines()]
+    lines = {line.get_label(): line.get_xydata().T for line in figure.axes[0].get_lines()}
+    (row,), table = pair.table("capacity_line"), pair.table("capacity_curve")
+    factor, mass, first = row["participation"], row["mass"], table[0]
+    x, y = lines["capacity"]
+    assert x == pytest.approx((table["displacement"] - first["displacement"]) / factor, rel=1e-12)
+    assert y == pytest.approx((table["base_shear"] - first["base_shear"]) / (factor * mass), rel=1e-12)
+    (_, x, _), (_, y, _) = lines["idealised"]
+    assert (x, y) == pytest.approx(
+        (row["yield_displacement"] / factor, row["yield_shear"] / (factor * mass))
+    )
+    spectrum = pair.table("push_spectra")
+    assert np.array_equal(lines["1 SINE"], [spectrum["displacement"], spectrum["acceleration"]])
+    # the yielding oscillator has the period T* of the table
+    assert 2.0 * np.pi * np.sqrt(x / y) == pytest.approx(row["period"], rel=1e-12)
 
 
 def test_the_capacity_curve_names_its_events(pair: Results) -> None:

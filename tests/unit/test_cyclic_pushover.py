@@ -55,7 +55,9 @@ def test_loops_of_a_plastic_storey() -> None:
     2/pi (1 - 0.05/a).
     """
     p = pushed(STOREY.format(rule="ELASTO_PLASTIC"), "2 0.1,0.2 CYCLES=2 STEPS=3")
-    assert [pts[-1].displacement for pts in p.legs()] == pytest.approx([0.1, -0.1] * 2 + [0.2, -0.2] * 2)
+    assert [pts[-1].displacement for pts in p.points_of_legs()] == pytest.approx(
+        [0.1, -0.1] * 2 + [0.2, -0.2] * 2
+    )
     found = cycles.legs(p)
     assert all(math.isnan(leg.loop) and math.isnan(leg.damping) for leg in found[:2])
     for leg, amplitude in zip(found[2:4] + found[6:], [0.1] * 2 + [0.2] * 2):
@@ -106,7 +108,9 @@ def test_a_contact_that_closes_has_no_loop() -> None:
     text = text.replace("WEIGHTS", " WALL CONTACT GAP=0.02 LAW=LINEAR K=300\nWEIGHTS")
     p = pushed(text, "2 0.04 CYCLES=2 STEPS=7")
     found = cycles.legs(p)
-    assert abs(p.legs()[0][-1].shear) != pytest.approx(abs(p.legs()[1][-1].shear), rel=0.1)
+    assert abs(p.points_of_legs()[0][-1].shear) != pytest.approx(
+        abs(p.points_of_legs()[1][-1].shear), rel=0.1
+    )
     assert all(leg.loop == leg.damping == 0.0 for leg in found[2:])
 
 
@@ -126,9 +130,11 @@ def test_the_backbone_joins_the_first_ends_of_each_amplitude() -> None:
 def test_targets_are_visited_in_their_order() -> None:
     card = "2 0.1,-0.05,0.15 STEPS=2"
     p = pushed(STOREY.format(rule="BILINEAR R=0.1"), card)
-    assert [pts[-1].displacement for pts in p.legs()] == pytest.approx([0.1, -0.05, 0.15], rel=1e-13)
+    assert [pts[-1].displacement for pts in p.points_of_legs()] == pytest.approx(
+        [0.1, -0.05, 0.15], rel=1e-13
+    )
     # 5 + 10 * 0.05; back elastic over 0.1, then with 10; forth elastic over 0.1, then with 10
-    assert [pts[-1].shear for pts in p.legs()] == pytest.approx([5.5, -5.0, 6.0], rel=1e-12)
+    assert [pts[-1].shear for pts in p.points_of_legs()] == pytest.approx([5.5, -5.0, 6.0], rel=1e-12)
     assert p.end == "the target displacement is reached" and p.unbalanced < 1e-14
 
 
@@ -154,7 +160,7 @@ def test_one_spring_shows_its_loops(rule: str) -> None:
     (spring,) = assemble(model_of(deck)).laws
     law, state, now = spring.law, spring.law.start(), 0.0
     corners = {x.displacement for x, _ in p.ladder}
-    for points in p.legs():
+    for points in p.points_of_legs():
         for x in points[1:]:
             if x.displacement in corners:
                 continue
@@ -169,7 +175,7 @@ def test_cycles_against_opensees() -> None:
     p = pushed(
         hinged_frame(), "301 0.1,-0.05,0.3,0,0.35 PATTERN=FORCES NODES=101,201,301 FORCES=1/6,2/6,3/6"
     )
-    shears = [points[-1].shear for points in p.legs()]
+    shears = [points[-1].shear for points in p.points_of_legs()]
     assert shears == pytest.approx([1027.2765, -679.18926, 1810.7987, -705.12881, 1977.3309], rel=7e-7)
 
 
@@ -296,6 +302,28 @@ def test_a_stop_of_a_pushover_is_told_beside_that_of_the_history(tmp_path: Path)
     )
     message = ran(tmp_path, text.format("METHOD=CENTRAL DT=0.9")).message
     assert message.startswith("A505 pushover: the control node stands at its target 0 already; A5")
+
+
+def test_cycles_that_stop_on_the_first_leg_are_no_push_to_one_target(tmp_path: Path) -> None:
+    text = """
+NODES
+ 1 0 0 FIX=YR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 1 A 1
+ 2 B 1 2
+PROPS
+ A SPRING KX=100 FX=10 RULE=BILINEAR R=-0.9
+ B SPRING KX=50
+WEIGHTS
+ 1,2 9.81
+ANALYSIS
+ PUSHOVER 2 0.9 CYCLES=1 PATTERN=FORCES NODES=2 FORCES=1
+"""
+    results = ran(tmp_path, text)
+    assert results.message.startswith("A507 pushover: ") and not len(results.table("capacity_line"))
+    (leg,) = results.table("push_legs")
+    assert leg["leg"] == 1 and not len(results.table("backbone"))
 
 
 # mistakes

@@ -134,7 +134,7 @@ class CapacityCurve:
         steps = 0.5 * np.diff(self.d) * (self.v[1:] + self.v[:-1])
         self._energy = np.concatenate([[0.0], np.cumsum(steps)])
         self._largest = np.maximum.accumulate(self.v)
-        self._goes_back = bool((np.diff(self.d) < 0.0).any())
+        self._goes_back = bool((np.diff(self.d) < -ROUNDING * np.abs(self.d).max()).any())
 
     def _grid(self) -> list[float]:
         """Return the displacements between which the performance point is sought: corners of the curve, its

@@ -80,7 +80,7 @@ class BackbonePoint(NamedTuple):
 
 def legs(pushed: PushoverResult) -> list[Leg]:
     """Return the legs of a pushover; one that stopped before its target is the last."""
-    paths = pushed.legs()
+    paths = pushed.points_of_legs()
     answer = list[Leg]()
     for n, points in enumerate(paths):
         start, end = points[0], points[-1]
@@ -107,7 +107,7 @@ def _area(points: Sequence[CapacityPoint]) -> float:
 def backbone(pushed: PushoverResult) -> list[BackbonePoint]:
     """Return the backbone from the furthest point on the negative side to that on the positive side."""
     origin = pushed.curve[0].displacement
-    complete = pushed.legs()[: -1 if pushed.failed else None]
+    complete = pushed.points_of_legs()[: -1 if pushed.failed else None]
     ends = list(zip(targets(pushed.card), (points[-1] for points in complete)))
     reached = {1.0: 0.0, -1.0: 0.0}
     outer = list[BackbonePoint]()

@@ -120,7 +120,12 @@ class PushoverResult:
             self.curve.pop()
         self.curve.append(point)
 
-    def legs(self) -> list[list[CapacityPoint]]:
+    @property
+    def turns(self) -> bool:
+        """Whether the card has several targets."""
+        return len(targets(self.card)) > 1
+
+    def points_of_legs(self) -> list[list[CapacityPoint]]:
         """Return the points of every leg."""
         return [list(points) for _, points in groupby(self.curve, key=attrgetter("leg"))]
 

@@ -232,6 +232,8 @@ class AnalysisSequence:
             pushed = pushover.push(self.record.structure, state, card, number)
         except InstabilityError as err:  # it has no first step
             return err
+        except np.linalg.LinAlgError as err:
+            return InstabilityError(f"the structure is a mechanism ({err})")
         self.record.pushovers.append(pushed)
         self.record.performance[number] = capacity_line.performance_points(pushed, self.record.motions)
         self.record.checks.append(pushed.check)

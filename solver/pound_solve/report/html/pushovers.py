@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from pound_solve.report.html.picture import COLOURS, PlotlyPicture, curve, numbers
-from pound_solve.report.plot.pictures import performance
+from pound_solve.report.plot.pictures import capacity, performance
 from pound_solve.results import Results
 
 
@@ -15,15 +15,14 @@ def capacity_curves(results: Results) -> Iterator[PlotlyPicture]:
     """Pictures of the capacity curves of pushovers, with the backbones of those that turn."""
     if not results.holds("capacity_curve"):
         return
-    table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
+    units = results.table_units("capacity_curve")
     x, y = f"control displacement [{units['displacement']}]", f"base shear [{units['base_shear']}]"
-    pushes = sorted(set(table["push"].tolist()))
+    pushes = capacity.pushovers(results)
     for push in pushes:
         traces = [
             curve(name, rows["displacement"], rows["base_shear"])
             for name, source in (("base shear", "capacity_curve"), ("backbone", "backbone"))
-            if results.holds(source)
-            and len(rows := results.table(source)[results.table(source)["push"] == push])
+            if len(rows := capacity.of_push(results, source, push))
         ]
         title = f"Capacity curve {push}" if len(pushes) > 1 else "Capacity curve"
         yield PlotlyPicture(title, "", x, y, traces)

@@ -15,7 +15,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     from pound_solve.analyses.cycles import backbone  # not needed to read a report
 
     for pushed in run.pushovers:
-        if pushed.curve[-1].leg == 1:
+        if not pushed.turns:
             continue
         for first, last, cycles in backbone(pushed):
             left = last.shear / first.shear if first.shear else math.nan

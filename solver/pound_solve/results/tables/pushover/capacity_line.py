@@ -16,7 +16,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
 
     for pushed in run.pushovers:
         curve, system = CapacityCurve(pushed.curve), pushed.equivalent
-        if pushed.curve[-1].leg > 1 or not (line := curve.line(curve.strongest)):
+        if pushed.turns or not (line := curve.line(curve.strongest)):
             continue
         ratio, oscillator = math.nan, (math.nan,) * 3
         if system:

@@ -14,7 +14,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     from pound_solve.analyses.cycles import legs  # not needed to read a report
 
     for pushed in run.pushovers:
-        if pushed.curve[-1].leg == 1:
+        if not pushed.turns:
             continue
         for leg in legs(pushed):
             place = pushed.number, leg.end.leg, leg.end.displacement, leg.end.shear, leg.largest.shear
