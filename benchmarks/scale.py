@@ -173,7 +173,7 @@ def costs(results):
 def steps_alone(auto):
     """Keep AUTO from EXACT and TAYLOR."""
     with (
-        mock.patch.object(auto, "not_linear", lambda system: "barred"),
+        mock.patch.object(auto, "reason_not_linear", lambda system: "barred"),
         mock.patch.object(auto, "has_series", lambda system: False),
     ):
         yield

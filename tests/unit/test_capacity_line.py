@@ -137,7 +137,9 @@ def test_a_ground_at_rest_leaves_the_static_state() -> None:
 
 
 @given(
-    knots=st.lists(st.tuples(st.floats(1e-3, 1.0), st.floats(-5.0, 50.0)), min_size=1, max_size=6),
+    knots=st.lists(
+        st.tuples(st.floats(1e-3, 1.0) | st.just(0.0), st.floats(-5.0, 50.0)), min_size=0, max_size=6
+    ),
     level=st.floats(0.0, 30.0),
     corner=st.floats(0.01, 5.0),
 )

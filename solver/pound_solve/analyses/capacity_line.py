@@ -139,9 +139,11 @@ class CapacityCurve:
     def _grid(self) -> list[float]:
         """Return the displacements between which the performance point is sought: corners of the curve, its
         end, and powers of `RATIO` beyond the first corner, up to which the period is one and the same.
-        With piecewise linear laws only the end depends on the target.
+        With piecewise linear laws only the end depends on the target.  A curve that does not move has none.
         """
         d, v = self.d, self.v
+        if not d[-1] > 0.0:
+            return []
         before, after = (np.diff(x)[:-1] for x in (d, v)), (np.diff(x)[1:] for x in (d, v))
         (dx0, dy0), (dx1, dy1) = before, after
         bends = np.abs(dy1 * dx0 - dy0 * dx1) > ROUNDING * (np.abs(dy1 * dx0) + np.abs(dy0 * dx1))

@@ -36,8 +36,8 @@ def contact_force(results: Results, choice: Choice) -> Any:
         axes = figure.add_subplot(grid[n, 0], sharex=first)
         first = first or axes
         last = n == len(shown) - 1
-        time = f"time [{results.units.time}]" if last else ""
-        style.grid(axes, time, f"force [{results.units.force}]")
+        labels = f"time [{results.units.time}]", f"force [{results.units.force}]"
+        style.grid(axes, labels[0] if last else "", labels[1])
         look = {"color": style.stroke(n)["color"], "linestyle": "-"}
         courses.force_curve(axes, results, k, look, choice)
         axes.set_title(_caption(results, names[k], choice))
@@ -45,7 +45,7 @@ def contact_force(results: Results, choice: Choice) -> Any:
             axes.set_xlim(*choice.between)
         axes.tick_params(labelbottom=last)
         if k in enlarged:
-            _enlarge(style.grid(figure.add_subplot(grid[n, 1]), time), results, k, look, enlarged[k])
+            _enlarge(style.grid(figure.add_subplot(grid[n, 1]), *labels), results, k, look, enlarged[k])
     return figure
 
 
