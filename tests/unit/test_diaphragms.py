@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from decks import results_of, structure_of
-from pound_solve.laws.two_bars import Diaphragm
+from pound_solve.laws.two_bars import Diaphragm, Pair
 from pound_solve.report.text import render
-from pound_solve.structure.diaphragms import diaphragm_collisions
+from pound_solve.structure.diaphragms import DiaphragmCollision, diaphragm_collisions
 
 ROOT = Path(__file__).parents[2]
 
@@ -143,15 +143,27 @@ def test_the_plateau_of_short_and_of_long_contacts() -> None:
     bars = " A FRAME E=4 A=1\n B FRAME E=0.9 A=1\n HIT CONTACT GAP=0 K=1\nGRAVITY 1\nWEIGHTS\n 1 TO 4 0.5\n"
     (found,) = diaphragm_collisions(structure_of(nothing + bars)).values()
     assert found.pair is not None and found.pair.impulse / found.pair.force == pytest.approx(4 / 3)
-    assert found.plateau(6.0, 1.0) == 6.0
-    assert found.plateau(6.0, 1.9) == pytest.approx(4.5)
-    assert found.plateau(6.0, 5.0) == 1.2
-    assert math.isnan(found.plateau(6.0, math.nan)) and math.isnan(found.plateau(6.0, 0.0))
-    # a contact that pushes for longer than waves collide has no first force
-    assert found.predicted(3.0, 3.9) == pytest.approx(2.0) and found.predicted(
-        3.0, math.nan
-    ) == pytest.approx(2.0)
-    assert math.isnan(found.predicted(3.0, 4.1))
+    assert found.plateau(6.0, 7.0, 1.0) == 6.0
+    assert found.plateau(6.0, 5.0, 1.9) == pytest.approx(4.5)
+    assert found.plateau(6.0, 4.0, 1.9) == 4.0  # no mean exceeds the peak
+    # an impulse of more than 2 x 4/3 times the peak: the floors push on after the waves
+    assert found.plateau(6.0, 2.2, 5.0) == 1.2
+    assert math.isnan(found.plateau(6.0, 5.0, math.nan)) and math.isnan(found.plateau(6.0, 5.0, 0.0))
+    assert found.predicted(3.0, 6.0, 2.3) == pytest.approx(2.0) == found.predicted(3.0, math.nan, 2.3)
+    assert math.isnan(found.predicted(3.0, 6.0, 2.2))
+
+
+def test_collisions_are_told_alike_on_both_sides_of_equal_impedances() -> None:
+    """The time of contact jumps there, from the shorter to the longer period."""
+
+    def told(stiffness: float) -> tuple[float, ...]:
+        pair = Pair(Diaphragm(1.0, stiffness), Diaphragm(2.0, 0.5))
+        found = DiaphragmCollision((pair.first, pair.second), pair, 0.0, "")
+        return pair.duration, found.plateau(1.0, 1.2, 4.0), found.predicted(1.0, 1.0, 1.2)
+
+    below, above = told(1.0 - 1e-9), told(1.0 + 1e-9)
+    assert below[0] == pytest.approx(2.0) and above[0] == pytest.approx(4.0)
+    assert below[1:] == pytest.approx(above[1:], rel=1e-8) and not any(map(math.isnan, below))
 
 
 def test_equal_bars_need_no_warning_and_rigid_masses_have_no_theory(tmp_path: Path) -> None:

@@ -43,24 +43,29 @@ class DiaphragmCollision:
     lumped_error: float
     note: str
 
-    def plateau(self, impulse: float, duration: float) -> float:
-        """Return the mean force of a collision, which averages its oscillation [F].
+    def plateau(self, impulse: float, peak: float, duration: float) -> float:
+        """Return the mean force of a collision, which averages its oscillation; at most the `peak` [F].
 
         The mean is the impulse over the duration.  The duration is at most the time in which the first
         force of the theory produces its impulse: this excludes the weak second phase of a stepwise
         decreasing force and the tail of a coarse mesh.
         """
-        if self.pair is not None and not self.pushing(duration):
-            duration = min(duration, self.pair.impulse / self.pair.force)
-        return impulse / duration if duration > 0.0 else math.nan
+        if not duration > 0.0:
+            return math.nan
+        if self.pair is None or self.pushing(impulse, peak):
+            return impulse / duration
+        return min(peak, impulse / min(duration, self.pair.impulse / self.pair.force))
 
-    def predicted(self, approach: float, duration: float) -> float:
+    def predicted(self, approach: float, impulse: float, peak: float) -> float:
         """Return the first force of the theory at an approach speed [F]; NaN if it does not apply."""
-        return math.nan if self.pair is None or self.pushing(duration) else self.pair.force * approach
+        return math.nan if self.pair is None or self.pushing(impulse, peak) else self.pair.force * approach
 
-    def pushing(self, duration: float) -> bool:
-        """Whether a contact lasts more than twice the theory's time, too long for a collision of waves."""
-        return self.pair is not None and duration > 2.0 * self.pair.duration
+    def pushing(self, impulse: float, peak: float) -> bool:
+        """Whether a contact gives more than twice the impulse that a collision of waves with its peak force
+        would give.  The limit is continuous where the impedances of the bars become equal; the time of
+        contact is not.
+        """
+        return self.pair is not None and impulse > 2.0 * peak * self.pair.impulse / self.pair.force
 
 
 def sides(

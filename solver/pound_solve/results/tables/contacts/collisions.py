@@ -15,7 +15,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each closure of a contact, by time."""
     for c in sorted(run.history.returned.peaks.collisions, key=lambda c: (c.t_start, c.law)):
         theory, duration = run.diaphragm_collisions[c.law], c.t_end - c.t_start
-        predicted = theory.predicted(c.approach, duration)
+        predicted = theory.predicted(c.approach, c.impulse, c.peak)
         yield (
             contact_name(run.model, run.structure.laws[c.law].element),
             c.t_start,
@@ -26,7 +26,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
             c.peak,
             c.t_peak,
             c.impulse,
-            theory.plateau(c.impulse, duration),
+            theory.plateau(c.impulse, c.peak, duration),
             predicted,
             100.0 * (predicted / c.peak - 1.0) if c.peak > 0.0 else math.nan,
         )
@@ -39,10 +39,10 @@ def remark(run: RunRecord) -> str | None:
     return (
         "The prediction considers the diaphragms only (see the input), no other forces and no ringing: the "
         "peak of a mesh of lumped masses exceeds a constant force by 14 % or more. It assumes a contact "
-        "much stiffer than the diaphragms, and is omitted where they touch for more than twice the "
-        "predicted time: softer contacts stay below it. The plateau is the impulse over the time of "
-        "contact, or over the shorter time that the predicted force would need for it; of a coarse mesh it "
-        "may exceed the peak."
+        "much stiffer than the diaphragms: softer contacts stay below it. It is omitted where they push on "
+        "after the waves, that is where the impulse over the peak is more than twice that of the "
+        "prediction. The plateau is the impulse over the time of contact, or over the shorter time that "
+        "the predicted force would need for it, and at most the peak."
     )
 
 
@@ -76,9 +76,8 @@ TABLE = Table(
             "short",
             doc=(
                 "impulse over the duration, or over the shorter time that the predicted "
-                "force would take for the predicted impulse (where contact lasts up to "
-                "twice as long as predicted): of a coarse mesh it may exceed the peak; "
-                "NaN if still closed at the end"
+                "force would take for the predicted impulse (unless the floors push on "
+                "after the waves), and at most the peak; NaN if still closed at the end"
             ),
         ),
         Column(
@@ -88,8 +87,8 @@ TABLE = Table(
             "short",
             doc=(
                 "first force of the diaphragms at this approach velocity, Eq 11 of Cole "
-                "et al. 2011; NaN where contact lasts more than twice as long as "
-                "predicted"
+                "et al. 2011; NaN where the impulse over the peak force is more than "
+                "twice the predicted one"
             ),
         ),
         Column("force_error", "error", "%", "percent", doc="predicted over peak force, less one"),
