@@ -24,6 +24,16 @@ def time_column(name: str, head: str, doc: str) -> Column:
     return Column(name, head, "T", "time", doc)
 
 
+def control_displacement(doc: str) -> Column:
+    """Column of displacements of the control node of a pushover."""
+    return Column("displacement", "control\ndispl.", "L", "num", doc)
+
+
+def base_shear(doc: str) -> Column:
+    """Column of base shears of a pushover."""
+    return Column("base_shear", "base\nshear", "F", "num", doc)
+
+
 def extreme_columns(unit: str) -> tuple[Column, ...]:
     """Largest and smallest value with their times."""
     return (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pound_solve.results.columns import PUSH
+from pound_solve.results.columns import PUSH, base_shear, control_displacement
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -30,8 +30,8 @@ TABLE = Table(
     columns=(
         PUSH,
         Column("leg", "first\nleg", fmt="int", doc="number of the leg that reached it first"),
-        Column("displacement", "control\ndispl.", "L", "num", doc="target displacement"),
-        Column("base_shear", "base\nshear", "F", "num", doc="when it was reached first"),
+        control_displacement("target displacement"),
+        base_shear("when it was reached first"),
         Column("times", "times\nreached", fmt="int", doc="number of legs that end there"),
         Column("last", "at the\nlast", "F", "num", doc="base shear when it was reached last"),
         Column(

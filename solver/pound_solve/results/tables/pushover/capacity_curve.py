@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pound_solve.results.columns import LEG, PUSH
+from pound_solve.results.columns import LEG, PUSH, base_shear, control_displacement
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -24,14 +24,8 @@ TABLE = Table(
     columns=(
         PUSH,
         LEG,
-        Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
-        Column(
-            "base_shear",
-            "base\nshear",
-            "F",
-            "num",
-            doc="force on the ground along the direction of the pushover",
-        ),
+        control_displacement("displacement of the control node"),
+        base_shear("force on the ground along the direction of the pushover"),
         Column("factor", "load\nfactor", "-", "num", doc="factor on the pattern"),
         Column("events", fmt="int", doc="changes of springs, hinges and contacts so far"),
     ),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pound_solve.results.columns import PUSH
+from pound_solve.results.columns import PUSH, base_shear, control_displacement
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -63,14 +63,8 @@ TABLE = Table(
         ),
         Column("reduction", "over\nyield", "-", "short", doc="spectral acceleration over that at yield"),
         Column("ductility", "ductility", "-", "short", doc="displacement over that at yield"),
-        Column(
-            "displacement",
-            "control\ndispl.",
-            "L",
-            "num",
-            doc="of the control node, including the static one",
-        ),
-        Column("base_shear", "base\nshear", "F", "num", doc="of the curve there, including the static one"),
+        control_displacement("of the control node, including the static one"),
+        base_shear("of the curve there, including the static one"),
         Column("changes", fmt="int", doc="changes of springs, hinges and contacts up to there"),
     ),
     rows=rows,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from pound_solve.results.columns import ELEMENT, PUSH
+from pound_solve.results.columns import ELEMENT, PUSH, base_shear, control_displacement
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -43,14 +43,8 @@ TABLE = Table(
     columns=(
         PUSH,
         Column("event", fmt="int", doc="number"),
-        Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
-        Column(
-            "base_shear",
-            "base\nshear",
-            "F",
-            "num",
-            doc="force on the ground along the direction of the pushover",
-        ),
+        control_displacement("displacement of the control node"),
+        base_shear("force on the ground along the direction of the pushover"),
         Column("factor", "load\nfactor", "-", "num", doc="factor on the pattern"),
         ELEMENT,
         Column("component", "comp.", doc="spring, hinge or contact of the element"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_solve.results.columns import LEG, PUSH
+from pound_solve.results.columns import LEG, PUSH, base_shear, control_displacement
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
@@ -29,8 +29,8 @@ TABLE = Table(
     columns=(
         PUSH,
         LEG,
-        Column("displacement", "control\ndispl.", "L", "num", doc="at the end of the leg"),
-        Column("base_shear", "base\nshear", "F", "num", doc="at the end of the leg"),
+        control_displacement("at the end of the leg"),
+        base_shear("at the end of the leg"),
         Column(
             "largest", "largest\nin the leg", "F", "num", doc="base shear furthest in the sense of the leg"
         ),
