@@ -11,7 +11,7 @@ from manual_pages import MANUAL
 from pound_solve.assess.law_test import AXES, picture
 from pound_solve.catalog import specs
 from samples import has_loop
-from verification import cases
+from verification import cases, validation
 
 
 def write(name: str, text: str) -> None:
@@ -30,6 +30,12 @@ def verification() -> None:
     """The page of verification, whose cases are run."""
     page = cases.page(cases.PAGE.read_text(encoding="utf-8"))
     cases.PAGE.write_text(page, encoding="utf-8", newline="\n")
+
+
+def experiments() -> None:
+    """The page of validation, whose cases are run."""
+    page = validation.page(validation.PAGE.read_text(encoding="utf-8"))
+    validation.PAGE.write_text(page, encoding="utf-8", newline="\n")
 
 
 def loops() -> None:
@@ -70,7 +76,7 @@ def renew(name: str) -> None:
 
 
 PARTS = {name: partial(renew, name) for name in manual_pages.PARTS} | {
-    part.__name__: part for part in (loops, gallery, highlighting, verification)
+    part.__name__: part for part in (loops, gallery, highlighting, verification, experiments)
 }
 
 if __name__ == "__main__":

@@ -139,8 +139,9 @@ def table_after(text: str) -> list[list[str]]:
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
 ALL_DECKS = sorted(EXAMPLES.rglob("*.inp"))
-#: the decks of ``examples/verification`` are run by ``tests/verification``, against their sources
-DECKS = [deck for deck in ALL_DECKS if "verification" not in deck.parts]
+#: decks that ``tests/verification`` runs, against their sources
+ELSEWHERE = {"verification", "validation"}
+DECKS = [deck for deck in ALL_DECKS if ELSEWHERE.isdisjoint(deck.parts)]
 READMES = sorted(EXAMPLES.rglob("README.md"))
 EXPECTED = [e for readme in READMES for e in read(readme)]
 

@@ -46,6 +46,7 @@ class Ran:
     a: Array
     force: Array  # contact forces, (nt, contacts)
     nodes: tuple[int, ...]
+    member: Array  # end forces, (nt, ends)
 
     def at(self, t: float) -> int:
         """Index of the sample nearest to `t`."""
@@ -73,9 +74,9 @@ def run_deck(
     ):
         tables = {name: r.table(name) for name in r.tables}
         nodes = tuple(int(n) for n in r.attributes("node/u")["nodes"]) if "node/u" in r.histories else ()
-        names = ("node/u", "node/v", "node/a", "contact/force")
-        u, v, a, f = (r.history(h) if h in r.histories else np.zeros(0) for h in names)
-        return Ran(r.status, r.message, tables, r.time, u, v, a, f, nodes)
+        names = ("node/u", "node/v", "node/a", "contact/force", "member/force")
+        u, v, a, f, m = (r.history(h) if h in r.histories else np.zeros(0) for h in names)
+        return Ran(r.status, r.message, tables, r.time, u, v, a, f, nodes, m)
 
 
 def run_text(
@@ -1190,11 +1191,11 @@ def tables() -> str:
     return "\n\n".join(out)
 
 
-def page(text: str) -> str:
+def page(text: str, made: Callable[[], str] = tables) -> str:
     """The page's text with its tables made anew."""
     before, rest = text.split(BEGIN)
     after = rest.split(END)[1]
-    return f"{before}{BEGIN}\n\n{tables()}\n\n{END}{after}"
+    return f"{before}{BEGIN}\n\n{made()}\n\n{END}{after}"
 
 
 if __name__ == "__main__":
