@@ -117,7 +117,7 @@ def model_of(path, texts):
     return bare(model) | {"props": {of_label(k): bare(v) for k, v in model.props.items()}}
 
 
-WHOLE = [p for p in DECKS if p.suffix == ".inp"]
+WHOLE = [p for p in DECKS if p.suffix == ".inp" and p.parent.name != "open"]  # these wait for numbers
 
 
 @pytest.mark.full

@@ -22,6 +22,7 @@ DECKS = sorted(
     p for p in EXAMPLES.rglob("*.inp") if "HISTORY" in p.read_text("utf-8") and p.parent.name != "open"
 )
 LONG = ("distributed", "steel_20x6", "two_bars", "unequal_frames")
+INSIDE = ("fixed", "uplift")  #: have mass between base and first floor
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
 
 
@@ -43,7 +44,7 @@ def test_base_shear_is_inertia_and_the_shear_of_the_columns(
     if not exact or not found:
         pytest.skip("a method in steps, or no building")
     assert found[0] < 1e-9
-    if "storey/shear" not in results.histories:  # no building has a floor above its base
+    if "storey/shear" not in results.histories or deck.stem in INSIDE:  # or no floor above the base
         return
     base, shear = results.history("building/base"), results.history("storey/shear")
     shears, lowest = list(results.labels("building/base")), list(results.labels("storey/shear"))
