@@ -168,13 +168,13 @@ class Row:
             self.quantity,
             self.unit,
             self.source,
-            _digits(self.expected, self.digits),
-            _digits(self.computed, min(self.digits + 2, MOST_DIGITS)),
+            significant(self.expected, self.digits),
+            significant(self.computed, min(self.digits + 2, MOST_DIGITS)),
             rule,
         )
 
 
-def _digits(x: float, digits: int) -> str:
+def significant(x: float, digits: int) -> str:
     """Number with this many significant digits; its exponent is that of the rounded number."""
     text = f"{x:.{digits - 1}e}"
     exponent = int(text.split("e")[1])

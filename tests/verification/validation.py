@@ -96,8 +96,8 @@ class Row:
 
     def cells(self) -> tuple[str, ...]:
         """The row on the page."""
-        values = " to ".join(dict.fromkeys(cases._digits(x, self.digits) for x in self.span))
-        got = cases._digits(self.computed, self.digits)
+        values = " to ".join(dict.fromkeys(cases.significant(x, self.digits) for x in self.span))
+        got = cases.significant(self.computed, self.digits)
         limit = f"{100 * self.tol:.2g} %"
         return self.quantity, self.unit, self.basis, values, got, self.off, limit, verdict(self.within)
 
