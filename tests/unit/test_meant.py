@@ -10,8 +10,8 @@ from pound_solve.catalog import catalog
 from pound_solve.driver.preflight import preflight
 from pound_solve.structure.assembly import assemble
 
-#: all but the one that takes half a second to assemble, which tests of the examples check, and those that wait
-#: for numbers
+#: all but the one that takes half a second to assemble, which tests of the examples check, and those that
+#: wait for numbers
 EXAMPLES = sorted(
     p
     for p in (Path(__file__).parents[2] / "examples").rglob("*.inp")

@@ -410,7 +410,7 @@ def base_shear(deck: str, period: float, peak: float) -> float:
 def uplift_frame() -> Rows:
     """Two plane steel frames of three storeys on feet that press only, and the same on pinned feet; periods
     with fixed feet 0.31 s, with feet in contact 0.41 s. The experiment used a processed El Centro record;
-    the deck `table_motion.inp` in [open](../examples/validation/open/README.md) takes it when it is at
+    the deck `table_motion.inp` in [open](../examples/validation/open) takes it when it is at
     hand. Under one cycle as long as about one period, uplift lowers the base shear as it did in the tests.
     **Under a long and strong cycle the trend disagrees**: at twice the period and 7 m/s² the frame is
     thrown over by 0.15 m, and its landing raises the base shear above that of the fixed feet. The table
