@@ -368,3 +368,31 @@ def test_twins_touch_stick_slip_and_part_at_one_instant(law: str, mud: str) -> N
         assert many.status == "done", many.message
         assert many.u == pytest.approx(one.u, abs=1e-12)
         assert many.check() < 1e-12
+
+
+ROW = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 TO 5 0 TO 4 0 FIX=YR
+ELEMENTS
+ 1 TO 4 TOUCH 1 TO 4 2 TO 5
+PROPS
+ TOUCH CONTACT GAP={gap} {card}
+WEIGHTS
+ 1 TO 5 0.002
+INITIAL
+ 1 VX=0.5
+OUTPUT
+ EVERY=1E-6
+ANALYSIS
+ HISTORY 1E-4 FROM=REST METHOD=TAYLOR
+"""
+
+
+@pytest.mark.parametrize("card", ["HERTZ K=7E9", "HERTZ K=2E7 N=1", "HUNT_CROSSLEY K=7E9 E=0.8"])
+def test_a_row_of_bodies_that_touch_is_the_limit_of_small_gaps(card: str) -> None:
+    """The overlap of the second contact begins with a power of time above three, at the same instant."""
+    touching, apart = (run_text(ROW.format(gap=gap, card=f"LAW={card}")) for gap in ("0", "1E-13"))
+    assert touching.status == apart.status == "done", touching.message
+    assert np.abs(apart.u).max() > 1e-5 and touching.u == pytest.approx(apart.u, abs=100 * 1e-13)
+    assert touching.check() < 1e-12

@@ -80,6 +80,7 @@ def update_displacement_scale(laws: Laws, series: Series, extent: Extent) -> Non
                     x = x * extent.end + motion[k, at]
                 far += abs(rows.values[q]) * max(abs(x), abs(motion[0, at]))
             laws.largest.deformation[i] = max(laws.largest.deformation[i], far)
+            series.control.farthest = max(series.control.farthest, far)
 
 
 def accept_step(laws: Laws, now: MotionState, series: Series, extent: Extent) -> None:

@@ -15,6 +15,7 @@ class StepControl(Protocol):
     next_length: float  #: length to try next
     largest_kinetic: float  #: largest value of v M v so far
     shortest_length: float  #: length of the shortest step
+    farthest: float  #: largest displacement of the bodies of any contact so far
     length_before_contact: float  #: `next_length` when a power contact began to press; 0 if none did
     quadrature_degree: int  #: degree of the present series that still carries energy, for Gauss's rule
     n_modal_intervals: int  #: intervals that were advanced in modes

@@ -47,8 +47,11 @@ def phase_event(laws: Laws, series: Series, degree: int, first: LocatedEvent, i:
     if contacts.constants[r, K] == 0.0:
         return first
     sign, overlap = 1.0, touch_overlap(laws, i)
-    if phase == APART:  # where nothing has moved yet, the step tells how far
+    if phase == APART:  # where nothing has moved yet, the step or the other contacts tell how far
         overlap = max(overlap, NO_OVERLAP * size(series.deformation, i, degree))
+        still = NO_OVERLAP * series.control.farthest
+        if laws.largest.deformation[i] <= still:
+            overlap = max(overlap, still)
     else:
         sign = -1.0
     for k in range(degree + 1):
