@@ -452,8 +452,8 @@ def brick_row() -> Rows:
     """Nine loose masses rattle between the walls of a frame on the table, up to ten contacts at a time.
     Measured ratios are averages over 0.1 Hz. At low frequencies the table sweeps the bricks along, and the
     ratio agrees. **Peak and fall disagree**: in the array the ratio peaks where the table's stroke equals
-    the clearance, and falls below 1 between 5.3 and 7.2 Hz; the bricks of the row stay engaged beyond 8 Hz,
-    with the largest ratio there. Friction, keys and the second direction take energy from the array and are
+    the clearance, and falls below 1 between 5.3 and 7.2 Hz; the bricks of the row stay engaged at 8 Hz,
+    and their largest ratio is at 7.2 Hz. Friction, keys and the second direction take energy from the array and are
     missing in the row; with restitution near zero, which takes most energy, the row does disengage at 7.2
     Hz. A row is therefore no model of the array. That impact must return velocity for a high peak holds in
     both."""
