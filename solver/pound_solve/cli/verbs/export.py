@@ -1,4 +1,6 @@
-"""``pound-solve export``: write the tables and histories of a results file as CSV, or for ParaView."""
+"""``pound-solve export``: write the tables and histories of a results file as CSV or for ParaView, or a
+deck as a script for OpenSees.
+"""
 
 from __future__ import annotations
 
@@ -8,28 +10,30 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pound_solve.cli import common
+from pound_solve.cli import common, terminal
 
 if TYPE_CHECKING:
     from pound_solve.results import Results
 
-SUMMARY = "write the tables and histories of a results file as CSV, or for ParaView"
+SUMMARY = "write the tables and histories of a results file, or a deck for OpenSees"
 EXAMPLES = (
     ("model.h5", "all tables and histories as CSV"),
     ("model.h5 --history node/u node=12 component=X", "one column of a history"),
     ("model.h5 --vtk", "for ParaView"),
+    ("model.inp --opensees", "the deck as a script for OpenSeesPy"),
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("results", help="results file (.h5)")
+    parser.add_argument("results", help="results file (.h5); with --opensees a deck")
+    common.add_deck_options(parser)
     parser.add_argument(
         "-o",
         "--out",
         type=Path,
         metavar="DIR",
-        help="folder (default: model for model.h5; with --vtk that of the file)",
+        help="folder (default: model for model.h5; with --vtk and --opensees that of the file)",
     )
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
@@ -45,10 +49,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="write model.vtkhdf instead: the structure in motion, for ParaView",
     )
+    what.add_argument(
+        "--opensees",
+        action="store_true",
+        help="write model_opensees.py of a deck and the files of its motions; what OpenSees has no exact "
+        "counterpart of is refused",
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
     """Write the files and print their paths."""
+    if args.opensees:
+        return _opensees(args)
+    for option in ("set", "records"):
+        if getattr(args, option):
+            return common.complain(f"--{option} belongs to --opensees", common.MISTAKES)
     from pound_solve.report.export import export_columns, export_csv
     from pound_solve.results import Results
 
@@ -63,6 +78,24 @@ def execute(args: argparse.Namespace) -> int:
             paths = export_csv(results, folder)
         for path in paths:
             print(path)
+    return common.DONE
+
+
+def _opensees(args: argparse.Namespace) -> int:
+    """Write a deck as a script for OpenSeesPy."""
+    from pound_deck.diagnostics import render
+    from pound_solve.driver.prepare import prepare
+    from pound_solve.opensees.export import export
+
+    args.deck = args.results
+    request = common.request(args)
+    ready = prepare(request)
+    exported = export(ready, request.deck)
+    if ready.warnings:
+        terminal.tell(render(ready.warnings, ready.files))
+    deck = Path(request.deck)
+    for path in exported.write((args.out or deck.parent) / f"{deck.stem}_opensees.py"):
+        print(path)
     return common.DONE
 
 

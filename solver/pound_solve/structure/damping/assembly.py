@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,7 +40,7 @@ def add_damping(structure: Structure, loaded: Structure | None = None) -> list[D
     list of Diagnostic
         Errors in the cards, and warnings.
     """
-    sources, problems = _Sources(structure, loaded or structure), list[Diagnostic]()
+    sources, problems = DampingSources(structure, loaded or structure), list[Diagnostic]()
     # of the tangent and of the secant stiffness
     betas = np.array([[s.beta for s in structure.laws], [s.secant for s in structure.laws]])
     for card in structure.model.damping:
@@ -67,7 +67,7 @@ def add_damping(structure: Structure, loaded: Structure | None = None) -> list[D
     return problems
 
 
-def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> CardDamping | None:
+def _group(card: Card, sources: DampingSources, problems: list[Diagnostic]) -> CardDamping | None:
     """Damping of one card; None if the card is in error."""
 
     def warn(message: str, item: str) -> None:
@@ -75,7 +75,7 @@ def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> CardDam
             Diagnostic("P346", message, card.place(item), "name modes that there are", "warning")
         )
 
-    context = DampingContext(sources.mass, sources.modes, sources.building, warn)
+    context = sources.context(warn)
     try:
         group: CardDamping = card.spec.impl(card, context)
     except DampingError as err:
@@ -135,11 +135,15 @@ def _at_supports(structure: Structure, c: Matrix) -> Matrix:
 
 
 @dataclass(frozen=True)
-class _Sources:
+class DampingSources:
     """Matrices of a structure or of a part of it, and modes of `vibrating`, for `DampingContext`."""
 
     structure: Structure
     vibrating: Structure
+
+    def context(self, warn: Callable[[str, str], None]) -> DampingContext:
+        """Input of a damping model; `warn` takes a message and the item."""
+        return DampingContext(self.mass, self.modes, self.building, warn)
 
     def building(self, name: str) -> Collection[int]:
         """Nodes of the building of that name.

@@ -59,10 +59,16 @@ def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float
     return max(alpha, 0.0), max(2 * (x2 * w2 - x1 * w1) / spread, 0.0)
 
 
-def build(card: Card, context: DampingContext) -> CardDamping:
-    """Damping of one group."""
-    alpha, beta, nodes = card["ALPHA"], card["BETA"], context.nodes(card)
-    building = nodes if card["BUILDING"] else None
+def factors(card: Card, context: DampingContext) -> tuple[float, float, str]:
+    """Return alpha [1/T] and beta [T] of a card, and their source in words.
+
+    Raises
+    ------
+    DampingError
+        Items contradict each other, or a factor would be negative.
+    """
+    alpha, beta = card["ALPHA"], card["BETA"]
+    building = context.nodes(card) if card["BUILDING"] else None
     if card["AFTER"] == "STATIC" and card["MODES"] is None:
         raise DampingError("AFTER says whose MODES are meant", "AFTER")
     how = "ALPHA and BETA given"
@@ -75,8 +81,14 @@ def build(card: Card, context: DampingContext) -> CardDamping:
         how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
     elif card["OMEGA"] is not None or card["MODES"] is not None:
         raise DampingError("OMEGA and MODES go with XI", "OMEGA" if card["OMEGA"] is not None else "MODES")
-    alpha, beta = alpha or 0.0, beta or 0.0
-    chosen = Chosen(card["PROPS"], building)
+    return alpha or 0.0, beta or 0.0, how
+
+
+def build(card: Card, context: DampingContext) -> CardDamping:
+    """Damping of one group."""
+    nodes = context.nodes(card)
+    alpha, beta, how = factors(card, context)
+    chosen = Chosen(card["PROPS"], nodes if card["BUILDING"] else None)
     follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
     return CardDamping(
         alpha * context.mass(nodes),

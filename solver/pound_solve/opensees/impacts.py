@@ -1,0 +1,93 @@
+"""Contact laws that OpenSees has as well, each as the material that equals it.
+
+Adding a law is one entry of `LAWS`.  A law without an entry is refused by its name.  The materials of
+OpenSees work in compression: strains and gaps are negative.
+
+The materials Hertzdamp and JankowskiImpact of version 3.7.1 return a tangent of the wrong sign, so that
+Newton's method takes many iterations, and end the program for a gap of zero.
+
+References
+----------
+OpenSees documentation, uniaxialMaterial ElasticPPGap, ViscoelasticGap, ImpactMaterial, Hertzdamp,
+JankowskiImpact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from pound_solve.laws.automaton import GAP, K, Numbers
+from pound_solve.laws.contact import bilinear_impact, kelvin_voigt
+from pound_solve.laws.contact.power import EXPONENT
+from pound_solve.laws.refusal import ItemError
+from pound_solve.opensees.script import Material
+
+NEVER = -1e12  #: yield force of a gap that does not yield [F]
+HERTZ = 1.5  #: exponent of the materials Hertzdamp and JankowskiImpact
+DAMPING, MASS = 3, 4  #: parameters of the power laws
+Translation = Callable[[Numbers], Material]  #: makes a material from the parameters of a law
+
+
+def linear(p: Numbers) -> Material:
+    """Return a gap that yields never."""
+    if p[GAP] < 0.0:
+        raise ItemError("an overlap from the start", "GAP")
+    return Material("ElasticPPGap", (p[K], NEVER, -p[GAP]))
+
+
+def viscoelastic(p: Numbers) -> Material:
+    """Return ViscoelasticGap, which pulls as TENSION=YES does."""
+    if p[kelvin_voigt.C] == 0.0:
+        return linear(p)
+    if p[kelvin_voigt.PULLS] == 0.0:
+        raise ItemError("KELVIN_VOIGT without tension: ViscoelasticGap pulls until the overlap ends", "LAW")
+    _open(p)
+    return Material("ViscoelasticGap", (p[K], p[kelvin_voigt.C], -p[GAP]))
+
+
+def bilinear(p: Numbers) -> Material:
+    """Return ImpactMaterial."""
+    _open(p)
+    return Material("ImpactMaterial", (p[0], p[1], -p[bilinear_impact.DY], -p[GAP]))
+
+
+def hertzdamp(p: Numbers) -> Material:
+    """Return Hertzdamp, whose damping constant is divided by the approach speed too."""
+    _of_hertz(p)
+    return Material("Hertzdamp", (p[K], p[DAMPING], -p[GAP], HERTZ))
+
+
+def jankowski(p: Numbers) -> Material:
+    """Return JankowskiImpact with the mass of the colliding nodes."""
+    _of_hertz(p)
+    mass = p[MASS]
+    return Material(
+        "JankowskiImpact", (p[K], p[DAMPING] / (2.0 * math.sqrt(p[K] * mass)), mass, -p[GAP], HERTZ)
+    )
+
+
+def _open(p: Numbers) -> None:
+    """Raise ItemError unless there is a gap."""
+    if p[GAP] <= 0.0:
+        raise ItemError("this material of OpenSees needs a gap above 0", "GAP")
+
+
+def _of_hertz(p: Numbers) -> None:
+    """Raise ItemError unless the exponent is 1.5 and there is a gap."""
+    if p[EXPONENT] != HERTZ:
+        raise ItemError(f"an exponent of {p[EXPONENT]:g}; that of this comparison is 1.5", "N")
+    _open(p)
+
+
+LAWS: Final[Mapping[str, Translation]] = MappingProxyType(
+    {
+        "LINEAR": linear,
+        "KELVIN_VOIGT": viscoelastic,
+        "BILINEAR_IMPACT": bilinear,
+        "HERTZDAMP": hertzdamp,
+        "JANKOWSKI": jankowski,
+    }
+)
