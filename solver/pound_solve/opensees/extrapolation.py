@@ -1,10 +1,13 @@
 r"""Observed order and limit of a quantity from three halved steps (Richardson).
 
 With values :math:`q_1, q_2, q_4` at the steps h, h/2, h/4 the observed order is
-:math:`p = \log_2 |q_1 - q_2| / |q_2 - q_4|`, and the limit :math:`q_4 + (q_4 - q_2)/(2^p - 1)`.  A p above
-that of the method, 2, is chance and is taken as 2.  The uncertainty of the limit is Roache's grid
-convergence index, :math:`1.25\,|q_4 - q_2|/(2^p - 1)`.  Where the changes do not fall, or turn, they show no
-order: the limit is then that of second order, and its uncertainty the larger of both changes.
+:math:`p = \log_2 |q_1 - q_2| / |q_2 - q_4|`, and the limit :math:`q_4 + (q_4 - q_2)/(2^p - 1)` with Roache's
+grid convergence index as its uncertainty, :math:`1.25\,|q_4 - q_2|/(2^p - 1)`.
+
+Contacts that close and springs that yield within a step add an error that does not fall evenly.  Where the
+observed order is not between 0.5 and 2.2, it is chance: the limit is then that of second order from h and
+h/4, :math:`q_4 + (q_4 - q_1)/15`, and the uncertainty Roache's index for two steps, of the worse pair,
+:math:`3 \max(|q_4 - q_1|/15,\ |q_4 - q_2|/3)`.
 
 References
 ----------
@@ -18,9 +21,9 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-FORMAL: Final = 2.0  #: order of Newmark's method with average acceleration
-LEAST: Final = 0.5  #: smaller observed orders show no convergence
-SAFETY: Final = 1.25  #: Roache's factor for three steps
+REGULAR: Final = (0.5, 2.2)  #: observed orders of a method of second order
+SAFETY: Final = 1.25  #: factor of Roache for three steps
+SAFETY_OF_TWO: Final = 3.0  #: and for two
 ROUNDING: Final = 1e-9  #: share of a value below which changes are those of the equation solver
 
 
@@ -47,8 +50,8 @@ def limit(coarse: float, middle: float, fine: float) -> Limit:
     first, second = coarse - middle, middle - fine
     floor = ROUNDING * abs(fine)
     order = math.log2(abs(first / second)) if first * second > 0.0 else math.nan
-    if abs(first) <= floor or not order >= LEAST:
-        value = fine - second / (2.0**FORMAL - 1.0)
-        return Limit(math.nan, value, max(abs(first), abs(second), floor))
-    change = second / (2.0 ** min(order, FORMAL) - 1.0)
-    return Limit(order, fine - change, max(SAFETY * abs(change), floor))
+    if abs(first) > floor and REGULAR[0] <= order <= REGULAR[1]:
+        change = second / (2.0**order - 1.0)
+        return Limit(order, fine - change, max(SAFETY * abs(change), floor))
+    outer = (coarse - fine) / 15.0
+    return Limit(order, fine - outer, max(SAFETY_OF_TWO * max(abs(outer), abs(second) / 3.0), floor))
