@@ -129,7 +129,7 @@ ELEMENTS
    12   POUND    12   34   NAME="floor 3"
 PROPS
    COLUMN   FRAME     E=3E7  A=0.16  I=1E-3  MI=60  LP=0.2  RULE=BILINEAR  R=0.02
-   POUND    CONTACT   GAP=gap  LAW=KELVIN_VOIGT  K=1E5  E=0.65
+   POUND    CONTACT   GAP=gap  LAW=KELVIN_VOIGT  K=1E5  E=0.65  TENSION=YES
 WEIGHTS
    12   200
    31   100
@@ -239,6 +239,7 @@ def at_the_desk(
         "assess.stability.scenes.cases": started,
         "loading.spectrum.response_spectrum": started,
         "results.whole_file.write_text": started,
+        "opensees.environment.version": started,
         "sweep.execution.executors.engine": started,
         "cli.verbs.example._write": started,
         "cli.verbs.format._write": started,

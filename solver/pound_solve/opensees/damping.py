@@ -33,11 +33,7 @@ def damping(script: Script) -> None:
 
 
 def _rayleigh(
-    script: Script,
-    card: Card,
-    sources: DampingSources,
-    alphas: dict[int, float],
-    betas: dict[int, float],
+    script: Script, card: Card, sources: DampingSources, alphas: dict[int, float], betas: dict[int, float]
 ) -> None:
     """Add the factors of a card to those of nodes and elements."""
     context = sources.context(lambda message, item: None)

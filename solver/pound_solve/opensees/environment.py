@@ -19,7 +19,7 @@ class OpenSeesError(UserError):
     status = 1
 
 
-class Run(NamedTuple):
+class OpenSeesRun(NamedTuple):
     """What a script printed: version of OpenSees, step [T] and peaks by name."""
 
     program: str
@@ -42,7 +42,7 @@ def version(python: str) -> str:
     return done.stdout.split()[-1]
 
 
-def run(python: str, script: Path, dt: float) -> Run:
+def run(python: str, script: Path, dt: float) -> OpenSeesRun:
     """Run a script with a time step.
 
     Raises
@@ -56,7 +56,7 @@ def run(python: str, script: Path, dt: float) -> Run:
         said = [x for x in done.stderr.splitlines() if x.startswith(("OpenSees", "the "))]
         raise OpenSeesError(f"OpenSees stops at dt={dt:g}: {said[-1] if said else _tail(done.stderr)}")
     said_by: dict[str, Any] = json.loads(lines[-1])
-    return Run(**said_by)
+    return OpenSeesRun(**said_by)
 
 
 def _output(command: list[str]) -> subprocess.CompletedProcess[str]:

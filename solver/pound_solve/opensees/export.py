@@ -14,7 +14,7 @@ from pound_deck.model import Card, Element
 from pound_solve.driver.prepare import DeckError, Prepared
 from pound_solve.laws.refusal import ItemError
 from pound_solve.opensees import damping, frames, loads, motions, springs, supports, template
-from pound_solve.opensees.peaks import Quantities, quantities
+from pound_solve.opensees.peaks import ComparedItems, compared_items
 from pound_solve.opensees.script import REFUSED, SECTIONS, Script, literal, table
 from pound_solve.version import __version__
 
@@ -41,14 +41,14 @@ class Exported(NamedTuple):
     text : str
     files : mapping of str to str
         Texts of the files beside the script, by name.
-    compared : Quantities
+    compared : ComparedItems
     step : float
         Time step that the script takes unless told otherwise [T].
     """
 
     text: str
     files: Mapping[str, str]
-    compared: Quantities
+    compared: ComparedItems
     step: float
 
     def write(self, path: Path) -> list[Path]:
@@ -88,7 +88,7 @@ def export(ready: Prepared, deck: str) -> Exported:
     motions.refuse_forces(script, script.model.forces)
     if history is None or script.refusals:
         raise DeckError([_worded(x) for x in script.refusals], ready.files)
-    compared = quantities(script.model)
+    compared = compared_items(script.model)
     step = default_step(script, ready, history["T"])
     text = _text(script, compared, history["T"], step, Path(deck).name)
     return Exported(text, script.files, compared, step)
@@ -157,11 +157,11 @@ def _round_down(x: float) -> float:
 
 def _round_up(n: int) -> int:
     """The smallest of 1, 2 or 5 times a power of ten that is not below `n`."""
-    power = 10 ** (len(str(n)) - 1)
-    return next(h * power for h in (1, 2, 5, 10) if h * power >= n)
+    power = int(10 ** (len(str(n)) - 1))
+    return min(h * power for h in (1, 2, 5, 10) if h * power >= n)
 
 
-def _text(script: Script, compared: Quantities, end: float, step: float, deck: str) -> str:
+def _text(script: Script, compared: ComparedItems, end: float, step: float, deck: str) -> str:
     """Text of the script."""
     units = script.model.units
     title = script.model.title or deck
@@ -169,7 +169,7 @@ def _text(script: Script, compared: Quantities, end: float, step: float, deck: s
     opening = (
         f'"""{_plain(title)}\n\nScript for OpenSeesPy from the deck {_plain(deck)}, written by pound-solve '
         f"{__version__}.\nUnits {units.force} {units.length} {units.time}.  Stiffnesses of neighbours, "
-        'dashpots and factors of damping that the\ndeck gives by a relation are numbers here; nothing is '
+        "dashpots and factors of damping that the\ndeck gives by a relation are numbers here; nothing is "
         'a result of another program.\n"""\n'
     )
     constants = {
@@ -188,11 +188,12 @@ def _text(script: Script, compared: Quantities, end: float, step: float, deck: s
     notes = {
         "END": "of the history",
         "TOLERANCE": "unbalanced force",
-        "SWAY": "member, nodes, length, direction: an axial force N pushes across by N/length times the sway",
+        "SWAY": "member, nodes, length, direction: an axial force N times the sway over the length pushes",
     }
     texts = [f"{n} = {x}" if n not in notes else f"#: {notes[n]}\n{n} = {x}" for n, x in constants.items()]
     functions = [_function(name, script.lines[name]) for name in SECTIONS]
-    return "\n".join([opening.rstrip(), template.HEAD, *texts, "\n", "\n\n\n".join(functions), "", template.RUN])
+    model = "\n\n\n".join(functions)
+    return "\n".join([opening.rstrip(), template.HEAD, *texts, "\n", model, "", template.RUN])
 
 
 def _function(name: str, statements: list[str]) -> str:

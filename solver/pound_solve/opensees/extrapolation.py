@@ -1,8 +1,8 @@
 r"""Observed order and limit of a quantity from three halved steps (Richardson).
 
 With values :math:`q_1, q_2, q_4` at the steps h, h/2, h/4 the observed order is
-:math:`p = \log_2 |q_1 - q_2| / |q_2 - q_4|`, and the limit :math:`q_4 + (q_4 - q_2)/(2^p - 1)` with Roache's
-grid convergence index as its uncertainty, :math:`1.25\,|q_4 - q_2|/(2^p - 1)`.
+:math:`p = \log_2 |q_1 - q_2| / |q_2 - q_4|`, and the limit :math:`q_4 + (q_4 - q_2)/(2^p - 1)`.  Its
+uncertainty is Roache's grid convergence index, :math:`3\,|q_4 - q_2|/(2^p - 1)`.
 
 Contacts that close and springs that yield within a step add an error that does not fall evenly.  Where the
 observed order is not between 0.5 and 2.2, it is chance: the limit is then that of second order from h and
@@ -22,8 +22,7 @@ import math
 from typing import Final, NamedTuple
 
 REGULAR: Final = (0.5, 2.2)  #: observed orders of a method of second order
-SAFETY: Final = 1.25  #: factor of Roache for three steps
-SAFETY_OF_TWO: Final = 3.0  #: and for two
+SAFETY: Final = 3.0  #: of the index, for observed orders that may be chance
 ROUNDING: Final = 1e-9  #: share of a value below which changes are those of the equation solver
 
 
@@ -54,4 +53,4 @@ def limit(coarse: float, middle: float, fine: float) -> Limit:
         change = second / (2.0**order - 1.0)
         return Limit(order, fine - change, max(SAFETY * abs(change), floor))
     outer = (coarse - fine) / 15.0
-    return Limit(order, fine - outer, max(SAFETY_OF_TWO * max(abs(outer), abs(second) / 3.0), floor))
+    return Limit(order, fine - outer, max(SAFETY * max(abs(outer), abs(second) / 3.0), floor))

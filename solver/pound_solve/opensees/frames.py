@@ -149,9 +149,7 @@ def _hinged(script: Script, element: Element, card: Card, at: Line, hinges: list
     script.call("elements", "beamIntegration", "UserDefined", integration, *arguments)
     transformation = _transformation(script, card, at)
     ends = (element.i, element.j)
-    script.call(
-        "elements", "element", "forceBeamColumn", element.id, *ends, transformation, integration
-    )
+    script.call("elements", "element", "forceBeamColumn", element.id, *ends, transformation, integration)
 
 
 def _section(script: Script, flexure: Material) -> int:

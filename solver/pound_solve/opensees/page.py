@@ -46,7 +46,7 @@ def sentence(comparison: Comparison) -> str:
     names = ", ".join(x.name for x in off[:3]) + (", ..." if len(off) > 3 else "")
     return (
         f"{count - len(off)} of {count} peaks lie within the uncertainty of their limits, not {names}; "
-        f"{largest}. A smaller --dt shows whether the step or a difference of the models is the cause."
+        f"{largest}. A smaller --step shows whether the step or a difference of the models is the cause."
     )
 
 

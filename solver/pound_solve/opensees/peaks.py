@@ -10,8 +10,8 @@ from pound_solve.results import Results
 MOST_NODES = 12  #: nodes whose displacements are compared if a deck has neither contacts nor drifts
 
 
-class Quantities(NamedTuple):
-    """Quantities by name: contacts with their elements, drifts and displacements with nodes and direction.
+class ComparedItems(NamedTuple):
+    """Items by name: contacts with their elements, drifts and displacements with nodes and direction.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Quantities(NamedTuple):
     displacements: dict[str, tuple[int, int]]
 
 
-def quantities(model: Model) -> Quantities:
+def compared_items(model: Model) -> ComparedItems:
     """Forces of contacts, drifts of DRIFT, and displacements along x of nodes at contacts."""
     touching = [e for e in model.elements.values() if model.props[e.prop].spec.name == "CONTACT"]
     contacts = {e.name or str(e.id): e.id for e in touching}
@@ -35,10 +35,10 @@ def quantities(model: Model) -> Quantities:
     if not touching and not drifts:
         nodes = [n for card in model.weights for n in card["NODES"]][:MOST_NODES]
     moving = [n for n in dict.fromkeys(nodes) if "X" not in model.nodes[n].fixed]
-    return Quantities(contacts, drifts, {f"node {n} X": (n, 1) for n in moving})
+    return ComparedItems(contacts, drifts, {f"node {n} X": (n, 1) for n in moving})
 
 
-def our_peaks(results: Results, compared: Quantities) -> dict[str, float]:
+def our_peaks(results: Results, compared: ComparedItems) -> dict[str, float]:
     """Peaks of the same quantities by the names that the script prints; those that are not stored are left
     out.
     """

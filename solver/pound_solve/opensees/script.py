@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, Final, NamedTuple
@@ -65,7 +65,7 @@ class Script:
 
     def __post_init__(self) -> None:
         first = 10 ** len(str(max((*self.model.nodes, *self.model.elements))))
-        self._tags = count(first + 1)
+        self._tags: Iterator[int] = count(first + 1)
         self._materials: dict[Material, int] = {}
 
     def tag(self) -> int:

@@ -103,10 +103,8 @@ def _zero_length(
     cos, sin = axis
     orient = () if (cos, sin) == (1.0, 0.0) else ("-orient", cos, sin, 0.0, -sin, cos, 0.0)
     directions = [direction for direction, _ in parts]
-    script.call(
-        *("elements", "element", "zeroLength", element.id, *ends, "-mat", *tags, "-dir", *directions),
-        *(*orient, "-doRayleigh", int(damped)),
-    )
+    arguments = (*ends, "-mat", *tags, "-dir", *directions, *orient, "-doRayleigh", int(damped))
+    script.call("elements", "element", "zeroLength", element.id, *arguments)
 
 
 def _ground(script: Script, element: Element) -> int:

@@ -20,7 +20,11 @@ def nodes(script: Script) -> None:
             script.call("nodes", "fix", node.id, *fixed)
     for node in script.model.nodes.values():
         if node.slaved:
-            _slave(script, node, [d for d in range(3) if DIRECTIONS[d] in node.slaved and (node.id, d) in moves])
+            _slave(
+                script,
+                node,
+                [d for d in range(3) if DIRECTIONS[d] in node.slaved and (node.id, d) in moves],
+            )
     _masses(script)
 
 
@@ -53,7 +57,8 @@ def _slave(script: Script, node: Node, directions: list[int]) -> None:
         if len(node.slaved) == 3:
             script.call("nodes", "rigidLink", "beam", first, node.id)
         else:
-            script.refuse(f"node {node.id} follows node {first} by an arm in some directions only", node.span)
+            message = f"node {node.id} follows node {first} by an arm in some directions only"
+            script.refuse(message, node.span)
         return
     script.call("nodes", "equalDOF", first, node.id, *(d + 1 for d in directions))
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Final
 
 #: imports and functions before the model
-HEAD: Final = '''
+HEAD: Final = """
 import argparse
 import json
 import math
 from pathlib import Path
 
 import openseespy.opensees as ops
-'''
+"""
 
 #: functions after the model
 RUN: Final = '''
@@ -81,7 +81,9 @@ def rest():
 
 def values():
     """Compared quantities now."""
-    now = {f"contact {name}, force": -ops.eleResponse(e, "material", 1, "stress")[0] for name, e in CONTACTS}
+    now = {}
+    for name, element in CONTACTS:
+        now[f"contact {name}, force"] = -ops.eleResponse(element, "material", 1, "stress")[0]
     for name, i, j, direction in DRIFTS:
         now[f"drift {name}"] = ops.nodeDisp(j, direction) - ops.nodeDisp(i, direction)
     for name, node, direction in DISPLACEMENTS:

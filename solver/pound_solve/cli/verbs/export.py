@@ -84,7 +84,7 @@ def execute(args: argparse.Namespace) -> int:
 def _opensees(args: argparse.Namespace) -> int:
     """Write a deck as a script for OpenSeesPy."""
     from pound_deck.diagnostics import render
-    from pound_solve.driver.prepare import prepare
+    from pound_solve.driver.run import prepare
     from pound_solve.opensees.export import export
 
     args.deck = args.results
