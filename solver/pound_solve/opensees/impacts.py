@@ -4,7 +4,9 @@ Adding a law is one entry of `LAWS`.  A law without an entry is refused by its n
 OpenSees work in compression: strains and gaps are negative.
 
 The materials Hertzdamp and JankowskiImpact of version 3.7.1 return a tangent of the wrong sign, so that
-Newton's method takes many iterations, and end the program for a gap of zero.
+Newton's method takes many iterations, and end the program for a gap of zero.  Hertzdamp damps with the
+approach speed of the touch only; where a motion presses the bodies further than a free impact would, our
+laws damp more (see `contact.hunt_crossley`), and where they are pulled apart fast, ours do not pull.
 
 References
 ----------
@@ -26,7 +28,9 @@ from pound_solve.laws.refusal import ItemError
 from pound_solve.opensees.script import Material
 
 NEVER = -1e12  #: yield force of a gap that does not yield [F]
-HERTZ = 1.5  #: exponent of the materials Hertzdamp and JankowskiImpact
+HERTZ = 1.5  #: exponent of JankowskiImpact with its damping
+#: laws with the force of Hunt and Crossley, which differ in their exponents and in what E means
+HUNT_CROSSLEY = ("HUNT_CROSSLEY", "HERTZ", "HERTZDAMP", "YE_2009", "GONTHIER", "MODIFIED_KELVIN")
 DAMPING, MASS = 3, 4  #: parameters of the power laws
 Translation = Callable[[Numbers], Material]  #: makes a material from the parameters of a law
 
@@ -55,14 +59,16 @@ def bilinear(p: Numbers) -> Material:
 
 
 def hertzdamp(p: Numbers) -> Material:
-    """Return Hertzdamp, whose damping constant is divided by the approach speed too."""
-    _of_hertz(p)
-    return Material("Hertzdamp", (p[K], p[DAMPING], -p[GAP], HERTZ))
+    """Return Hertzdamp, whose damping constant is divided by the approach speed, too."""
+    _open(p)
+    return Material("Hertzdamp", (p[K], p[DAMPING], -p[GAP], p[EXPONENT]))
 
 
 def jankowski(p: Numbers) -> Material:
     """Return JankowskiImpact with the mass of the colliding nodes."""
-    _of_hertz(p)
+    if p[EXPONENT] != HERTZ:
+        raise ItemError(f"this law with the exponent {p[EXPONENT]:g}, not 1.5", "N")
+    _open(p)
     mass = p[MASS]
     return Material(
         "JankowskiImpact", (p[K], p[DAMPING] / (2.0 * math.sqrt(p[K] * mass)), mass, -p[GAP], HERTZ)
@@ -75,19 +81,12 @@ def _open(p: Numbers) -> None:
         raise ItemError("this material of OpenSees needs a gap above 0", "GAP")
 
 
-def _of_hertz(p: Numbers) -> None:
-    """Raise ItemError unless the exponent is 1.5 and there is a gap."""
-    if p[EXPONENT] != HERTZ:
-        raise ItemError(f"an exponent of {p[EXPONENT]:g}; that of this comparison is 1.5", "N")
-    _open(p)
-
-
 LAWS: Final[Mapping[str, Translation]] = MappingProxyType(
     {
         "LINEAR": linear,
         "KELVIN_VOIGT": viscoelastic,
         "BILINEAR_IMPACT": bilinear,
-        "HERTZDAMP": hertzdamp,
+        **dict.fromkeys(HUNT_CROSSLEY, hertzdamp),
         "JANKOWSKI": jankowski,
     }
 )

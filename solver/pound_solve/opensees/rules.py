@@ -4,7 +4,8 @@ Adding a rule is one entry of `RULES`.  A rule without an entry is refused by it
 
 References
 ----------
-OpenSees documentation, uniaxialMaterial Steel01, ElasticPP, Parallel, SelfCentering, Steel02.
+OpenSees documentation, uniaxialMaterial Steel01, ElasticPP, Parallel, SelfCentering, Steel02,
+BoucWen.
 """
 
 from __future__ import annotations
@@ -44,6 +45,33 @@ def bilinear(values: Mapping[str, Any], k: float, plus: float, minus: float) -> 
     return Material("Parallel", (), (elastic(r * k), plastic))
 
 
+def flag_shaped(values: Mapping[str, Any], k: float, plus: float, minus: float) -> Material:
+    """Return SelfCentering."""
+    _alike(plus, minus)
+    return Material("SelfCentering", (k, values["R"] * k, plus, values["BETA"]))
+
+
+def menegotto_pinto(values: Mapping[str, Any], k: float, plus: float, minus: float) -> Material:
+    """Return Steel02."""
+    _alike(plus, minus)
+    items = ("R", "R0", "CR1", "CR2", "A1", "A2", "A3", "A4")
+    return Material("Steel02", (plus, k, *(values[item] for item in items)))
+
+
+def bouc_wen(values: Mapping[str, Any], k: float, plus: float, minus: float) -> Material:
+    """Return BoucWen without degradation; it solves its equation by backward Euler."""
+    _alike(plus, minus)
+    n, beta = values["N"], values["BETA"]
+    scale = (k / plus) ** n
+    return Material("BoucWen", (values["R"], k, n, (1.0 - beta) * scale, beta * scale, 1.0, 0.0, 0.0, 0.0))
+
+
+def _alike(plus: float, minus: float) -> None:
+    """Raise ItemError if the strengths of both directions differ."""
+    if plus != -minus:
+        raise ItemError("this rule with two strengths", "RULE")
+
+
 def _without_loss(values: Mapping[str, Any]) -> None:
     """Raise ItemError if the strength falls."""
     if loses_strength(values):
@@ -51,5 +79,11 @@ def _without_loss(values: Mapping[str, Any]) -> None:
 
 
 RULES: Final[Mapping[str, Translation]] = MappingProxyType(
-    {"ELASTO_PLASTIC": elasto_plastic, "BILINEAR": bilinear}
+    {
+        "ELASTO_PLASTIC": elasto_plastic,
+        "BILINEAR": bilinear,
+        "FLAG_SHAPED": flag_shaped,
+        "MENEGOTTO_PINTO": menegotto_pinto,
+        "BOUC_WEN": bouc_wen,
+    }
 )

@@ -91,6 +91,11 @@ def values():
     return now
 
 
+def crest(a, b, c):
+    """Top or bottom of the parabola through three values in turn if it is there, else the last value."""
+    return b + (c - a) ** 2 / (8.0 * (2.0 * b - a - c)) if (b - a) * (b - c) > 0.0 else c
+
+
 def advance(step):
     """Take one step, by other algorithms where Newton's does not converge."""
     if ops.analyze(1, step) == 0:
@@ -116,14 +121,21 @@ def history(dt):
         advance(1e-3 * dt)
         ops.setTime(0.0)
     high = values()
-    low = dict(high)
+    low, before, last = dict(high), high, high
     for _ in range(round(END / dt)):
         advance(dt)
-        for name, x in values().items():
+        now = values()
+        for name, x in now.items():
             if not math.isfinite(x):
                 raise SystemExit(f"the response in OpenSees is no number at t = {ops.getTime():.9g}")
-            high[name], low[name] = max(high[name], x), min(low[name], x)
+            peak = x if name in FORCES else crest(before[name], last[name], x)
+            high[name], low[name] = max(high[name], peak), min(low[name], peak)
+        before, last = last, now
     return high, low
+
+
+#: names of quantities that may have a kink at their peak
+FORCES = frozenset(f"contact {name}, force" for name, _ in CONTACTS)
 
 
 def main():
@@ -135,7 +147,7 @@ def main():
     high, low = history(dt)
     peaks = {}
     for name in high:
-        if name.startswith("contact "):
+        if name in FORCES:
             peaks[name] = high[name]
         else:
             peaks[f"{name}, max"], peaks[f"{name}, min"] = high[name], low[name]
