@@ -20,10 +20,10 @@ J. Struct. Eng. 132(2): 244-252 (the integration); OpenSees documentation, beamI
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from pound_deck.model import Card, Element
-from pound_solve.laws.refusal import ItemError
 from pound_solve.opensees import rules
 from pound_solve.opensees.script import Material, Script, literal
 from pound_solve.structure.elements.base import direction, signed
@@ -32,7 +32,13 @@ from pound_solve.structure.elements.beam import pair, pinned
 GAUSS = 0.5 / math.sqrt(3.0)  #: distance of Gauss's two points from the middle, share of the length
 OWN_WEIGHT = 0.1  #: weight of a hinge that has its own stiffness
 RELEASES = {"NONE": 0, "I": 1, "J": 2, "BOTH": 3}
-TRANSFORMATIONS = {"SMALL": "Linear", "PDELTA": "Linear", "PDELTA_VARYING": "PDelta"}
+FOLLOWING = ("PDELTA_VARYING", "LARGE")  #: geometries that follow the axial force of each instant
+TRANSFORMATIONS = {
+    "SMALL": "Linear",
+    "PDELTA": "Linear",
+    "PDELTA_VARYING": "PDelta",
+    "LARGE": "Corotational",
+}
 
 
 class Line(NamedTuple):
@@ -53,19 +59,18 @@ def line(script: Script, element: Element, card: Card) -> Line:
 
 
 def frame(script: Script, element: Element, card: Card) -> None:
-    """Write a member."""
-    for item in ("FJ", "M0", "N0"):
-        if any(card[item]) if isinstance(card[item], tuple) else card[item]:
-            raise ItemError(f"{item} of a member", item)
-    geometry = script.model.geometry
-    if geometry not in TRANSFORMATIONS:
-        raise ItemError(f"GEOMETRY {geometry}", "GEOMETRY")
+    """Write a member, or refuse every item of it that has no counterpart."""
+    hinges = [end for end in ("I", "J") if card[f"M{end}"] is not None]
+    refusals = [*_refused(card, script.model.geometry), *(_refused_of_hinges(card) if hinges else ())]
+    for what, item in refusals:
+        script.refuse(f"{what} ({card.label})", card.place(item))
+    if refusals:
+        return
     at = line(script, element, card)
-    if geometry == "PDELTA":
+    if script.model.geometry == "PDELTA":
         cos, sin = at.axis
         row = (element.id, element.i, element.j, at.full, cos, sin)
         script.sway.append(f"({', '.join(map(literal, row))})")
-    hinges = [end for end in ("I", "J") if card[f"M{end}"] is not None]
     if hinges:
         _hinged(script, element, card, at, hinges)
     elif card["I"] == 0.0:
@@ -74,15 +79,44 @@ def frame(script: Script, element: Element, card: Card) -> None:
         _beam(script, element, card, at)
 
 
+def _refused(card: Card, geometry: str) -> Iterator[tuple[str, str]]:
+    """Yield what has no counterpart, and its item, of a member of any kind."""
+    for item in ("FJ", "M0", "N0"):
+        if any(card[item]) if isinstance(card[item], tuple) else card[item]:
+            yield f"{item} of a member", item
+    if geometry not in TRANSFORMATIONS:
+        yield f"GEOMETRY {geometry}", "GEOMETRY"
+    if card["I"] == 0.0 and geometry == "PDELTA_VARYING":
+        yield "a bar under PDELTA_VARYING", "I"
+    if card["I"] == 0.0 and (card["END1"] or card["END2"]):
+        yield "rigid blocks of a bar", "END1" if card["END1"] else "END2"
+    if card["AS"] > 0.0 and card["PIN"] != "NONE":
+        yield "a pinned end of a beam with shear deformation", "PIN"
+    for item in ("AS", "END1", "END2"):
+        if card[item] and geometry in FOLLOWING:
+            yield f"{item} of a member with GEOMETRY {geometry}", item
+
+
+def _refused_of_hinges(card: Card) -> Iterator[tuple[str, str]]:
+    """Yield what has no counterpart, and its item, of a member with hinges."""
+    (rule,) = card.laws["RULE"]
+    if rule.name not in rules.RULES:
+        yield f"hinges of RULE={rule.name}", "RULE"
+    elif rule.name == "ELASTO_PLASTIC" or card["R"] <= 0.0:
+        what = "hinges without hardening, whose sections would have no flexibility"
+        yield what, "RULE" if rule.name == "ELASTO_PLASTIC" else "R"
+    if pinned(card):
+        yield "a pinned end of a member with a hinge", "PIN"
+    if card["AS"] > 0.0:
+        yield "shear deformation of a member with hinges", "AS"
+
+
 def _bar(script: Script, element: Element, card: Card) -> None:
     """Write a truss element."""
-    if script.model.geometry == "PDELTA_VARYING":
-        raise ItemError("a bar under PDELTA_VARYING", "I")
-    if card["END1"] or card["END2"]:
-        raise ItemError("rigid blocks of a bar", "END1" if card["END1"] else "END2")
     material = script.material(rules.elastic(card["E"]))
     ends = (element.i, element.j)
-    script.call("elements", "element", "Truss", element.id, *ends, card["A"], material, "-doRayleigh", 1)
+    kind = "corotTruss" if script.model.geometry == "LARGE" else "Truss"
+    script.call("elements", "element", kind, element.id, *ends, card["A"], material, "-doRayleigh", 1)
 
 
 def _beam(script: Script, element: Element, card: Card, at: Line) -> None:
@@ -91,8 +125,6 @@ def _beam(script: Script, element: Element, card: Card, at: Line) -> None:
     e, area, inertia = card["E"], card["A"], card["I"]
     head = ("element", "elasticBeamColumn", element.id, element.i, element.j)
     if card["AS"] > 0.0:
-        if card["PIN"] != "NONE":
-            raise ItemError("a pinned end of a beam with shear deformation", "PIN")
         timoshenko = (e, card["G"], area, inertia, card["AS"], transformation)
         head = ("element", "ElasticTimoshenkoBeam", *head[2:])
         script.call("elements", *head, *timoshenko)
@@ -116,15 +148,6 @@ def _transformation(script: Script, card: Card, at: Line) -> int:
 def _hinged(script: Script, element: Element, card: Card, at: Line, hinges: list[str]) -> None:
     """Write a member with hinges."""
     (rule,) = card.laws["RULE"]
-    if rule.name not in rules.RULES:
-        raise ItemError(f"RULE={rule.name}", "RULE")
-    if rule.name == "ELASTO_PLASTIC" or card["R"] <= 0.0:
-        item = "RULE" if rule.name == "ELASTO_PLASTIC" else "R"
-        raise ItemError("a hinge without hardening, whose section has no flexibility,", item)
-    if pinned(card):
-        raise ItemError("a pinned end of a member with a hinge", "PIN")
-    if card["AS"] > 0.0:
-        raise ItemError("shear deformation of a member with hinges", "AS")
     e, area, inertia = card["E"], card["A"], card["I"]
     lengths = dict(zip("IJ", pair(card["LP"] or (0.0,))))
     stiffnesses = dict(zip("IJ", pair(card["KH"] or (0.0,))))

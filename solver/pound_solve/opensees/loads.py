@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pound_deck.model import Card, Element
 from pound_solve.laws.refusal import ItemError
-from pound_solve.opensees.frames import line
+from pound_solve.opensees.frames import FOLLOWING, line
 from pound_solve.opensees.script import Script
 from pound_solve.structure.dofs import Dof
 
@@ -23,6 +23,9 @@ def member(script: Script, element: Element, card: Card) -> None:
     weight = card["WGT"] if script.structure.self_weight else 0.0
     if not cards and not weight:
         return
+    geometry = script.model.geometry
+    if geometry == "LARGE":  # there the loads of OpenSees turn with the member
+        raise ItemError("a load on a member with GEOMETRY LARGE", "WGT")
     if card["I"] == 0.0:
         _at_ends(script, element)
         return
@@ -33,6 +36,9 @@ def member(script: Script, element: Element, card: Card) -> None:
     cos, sin = line(script, element, card).axis
     wx = sum(c["WX"] for c in cards)
     wy = sum(c["WY"] for c in cards) - weight
+    along = [cos * wx + sin * wy, *(cos * c["PX"] + sin * c["PY"] for c in cards)]
+    if geometry in FOLLOWING and any(abs(x) > 1e-12 * (abs(wx) + abs(wy)) for x in along):
+        raise ItemError(f"a load along a member with GEOMETRY {geometry}", "WGT")
     head = ("loads", "eleLoad", "-ele", element.id, "-type")
     if wx or wy:
         script.call(*head, "-beamUniform", cos * wy - sin * wx, cos * wx + sin * wy)

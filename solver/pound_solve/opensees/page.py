@@ -12,7 +12,8 @@ HEADS = ("quantity", "ours", "at h", "at h/2", "at h/4", "order", "limit", "ours
 def page(comparison: Comparison) -> str:
     """Table of the peaks and a sentence on them."""
     rows = [_row(x) for x in comparison.rows]
-    h = f"{comparison.program}, Newmark, h = {comparison.step:g}; ours by {comparison.method}"
+    h = f"{comparison.program}, Newmark, h = {comparison.step:g}; ours: {comparison.method}"
+    h += f", estimated error {comparison.error:.1e}" if comparison.error else ""
     return f"{h}\n\n{aligned([HEADS, *rows])}\n\n{sentence(comparison)}"
 
 

@@ -8,22 +8,35 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pound_deck.diagnostics import Diagnostic
+from pound_solve.check import Subject
 from pound_solve.driver.prepare import prepare
 from pound_solve.driver.request import Request
 from pound_solve.driver.run import in_temporary_folder
 from pound_solve.opensees import environment
 from pound_solve.opensees.export import export
 from pound_solve.opensees.extrapolation import Limit, limit
-from pound_solve.opensees.peaks import our_peaks
+from pound_solve.opensees.peaks import our_peaks, word
 
 HALVINGS = (1, 2, 4)  #: parts of the coarsest step
 
 
 class Compared(NamedTuple):
-    """One quantity: its name, our peak, those of OpenSees at the halved steps, and their limit."""
+    """One quantity.
+
+    Attributes
+    ----------
+    name : str
+    ours, our_error : float
+        Our peak, and its error as our method estimates it; 0 for a method that makes none but rounding.
+    theirs : tuple of float
+        Peaks of OpenSees at the halved steps.
+    limit : Limit
+        Of `theirs`.
+    """
 
     name: str
     ours: float
+    our_error: float
     theirs: tuple[float, ...]
     limit: Limit
 
@@ -34,17 +47,20 @@ class Compared(NamedTuple):
 
     @property
     def agrees(self) -> bool:
-        """Whether our peak lies within the uncertainty of the limit."""
-        return abs(self.deviation) <= self.limit.uncertainty
+        """Whether our peak lies within the uncertainty of the limit and its own error."""
+        return abs(self.deviation) <= self.limit.uncertainty + self.our_error
 
 
 class Comparison(NamedTuple):
-    """All quantities, the version of OpenSees, its coarsest step [T], and the method of our run."""
+    """All quantities, the version of OpenSees, its coarsest step [T], our method and its estimated error,
+    relative to a peak.
+    """
 
     rows: list[Compared]
     program: str
     step: float
     method: str
+    error: float
 
 
 def verify(
@@ -89,9 +105,11 @@ def verify(
         if results.status != "done":
             raise environment.OpenSeesError(f"our run stops: {results.message}")
         ours = our_peaks(results, exported.compared)
-    (method,) = (c["METHOD"] for c in ready.model.analyses if c.spec.name == "HISTORY")
+        error = max((c.value for c in results.checks if c.subject is Subject.ERROR), default=0.0)
+        (method,) = (word(row["value"]) for row in results.table("run") if word(row["item"]) == "method")
     rows = []
     for name, peak in ours.items():
         values = tuple(run.peaks[name] for run in runs)
-        rows.append(Compared(name, peak, values, limit(*values)))
-    return Comparison(rows, runs[0].program, step, method), ready.warnings, ready.files
+        rows.append(Compared(name, peak, error * abs(peak), values, limit(*values)))
+    comparison = Comparison(rows, runs[0].program, step, method, error)
+    return comparison, ready.warnings, ready.files
