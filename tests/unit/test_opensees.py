@@ -306,6 +306,17 @@ def test_export_writes_the_script_and_its_motion(
     assert '"""A frame beside a wall' in text and str(tmp_path) not in text
 
 
+def test_names_of_a_user_do_no_harm(tmp_path: Path) -> None:
+    text = DECK.format(law=LAW, rule=RULE).replace('NAME="roof"', 'NAME="a\\\'{0}"')
+    text = text.replace("A frame beside a wall", 'A """frame""" \\')
+    compile(exported(tmp_path, text).text, "script", "exec")
+
+
+def test_consistent_masses_are_refused(tmp_path: Path) -> None:
+    (told,) = refusals(tmp_path, "MASS CONSISTENT\n" + DECK.format(law=LAW, rule=RULE))
+    assert "CONSISTENT" in told.message and told.span is not None
+
+
 def test_options_of_a_deck_need_opensees(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "model.h5", "--set", "a=1"]) == 2
     assert "--set belongs to --opensees" in capsys.readouterr().err

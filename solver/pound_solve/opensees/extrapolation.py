@@ -32,7 +32,7 @@ class Limit(NamedTuple):
     Attributes
     ----------
     order : float
-        Observed order; NaN where the changes do not show one.
+        Observed order; NaN where it is chance.
     value : float
         In the unit of the quantity.
     uncertainty : float
@@ -53,4 +53,4 @@ def limit(coarse: float, middle: float, fine: float) -> Limit:
         change = second / (2.0**order - 1.0)
         return Limit(order, fine - change, max(SAFETY * abs(change), floor))
     outer = (coarse - fine) / 15.0
-    return Limit(order, fine - outer, max(SAFETY * max(abs(outer), abs(second) / 3.0), floor))
+    return Limit(math.nan, fine - outer, max(SAFETY * max(abs(outer), abs(second) / 3.0), floor))

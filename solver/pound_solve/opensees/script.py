@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import count
@@ -98,7 +99,7 @@ class Script:
 def literal(value: Any) -> str:
     """Python text of a word or number; floats with all digits."""
     if isinstance(value, str):
-        return f'"{value}"'
+        return json.dumps(value, ensure_ascii=False)
     return repr(int(value) if isinstance(value, bool | int) else float(value))
 
 

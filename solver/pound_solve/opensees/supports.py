@@ -68,8 +68,8 @@ def _masses(script: Script) -> None:
     mass: dict[int, list[float]] = {}
     for _, dofs, matrix in script.structure.mass_blocks:
         if (matrix != np.diag(np.diag(matrix))).any():
-            first = next(iter(script.model.props.values()))
-            script.refuse("MASS CONSISTENT of members", first.span, "write MASS LUMPED")
+            heavy = next(p for p in script.model.props.values() if p.values.get("WGT"))
+            script.refuse("MASS CONSISTENT of members", heavy.place("WGT"), "write MASS LUMPED")
             return
         for (node, d), value in zip(dofs, np.diag(matrix).tolist()):
             mass.setdefault(node, [0.0, 0.0, 0.0])[d] += value
