@@ -21,12 +21,13 @@ from pound_solve.loading.piecewise import Piecewise
 from pound_solve.opensees import environment
 from pound_solve.opensees.damping import STIFF
 from pound_solve.opensees.export import ELEMENTS, Exported, export
-from pound_solve.opensees.extrapolation import limit
+from pound_solve.opensees.extrapolation import Limit, limit
 from pound_solve.opensees.impacts import LAWS
 from pound_solve.opensees.motions import corners
 from pound_solve.opensees.page import page
+from pound_solve.opensees.peaks import ComparedItems
 from pound_solve.opensees.rules import RULES
-from pound_solve.opensees.verify import verify
+from pound_solve.opensees.verify import Compared, evened, verify
 from samples import written
 
 ROOT = Path(__file__).parents[2]
@@ -285,6 +286,14 @@ def test_values_that_turn_show_no_order() -> None:
     extrapolated = limit(1.0, 1.2, 1.1)
     assert math.isnan(extrapolated.order)
     assert extrapolated.uncertainty == pytest.approx(0.1)
+
+
+def test_values_that_are_close_by_chance_are_no_more_certain_than_others() -> None:
+    items = ComparedItems({"a": 1}, {}, {})
+    uncertain = {"contact a, force": 1e-3, "x": 2e-6, "y": 4e-6, "z": 1e-9}
+    rows = [Compared(n, 2.0, 0.0, (), Limit(2.0, 2.0, 2.0 * u)) for n, u in uncertain.items()]
+    relative = [x.limit.uncertainty / 2.0 for x in evened(rows, items)]
+    assert relative == pytest.approx([1e-3, 2e-6, 4e-6, 2e-6])
 
 
 def test_equal_values_are_their_own_limit() -> None:

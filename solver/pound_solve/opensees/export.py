@@ -85,7 +85,7 @@ def export(ready: Prepared, deck: str) -> Exported:
     damping.damping(script)
     motions.motions(script, ready.motions, Path(deck).stem)
     motions.velocities(script)
-    motions.refuse_forces(script, script.model.forces)
+    motions.forces(script, ready.forces, Path(deck).stem)
     if history is None or script.refusals:
         raise DeckError([_worded(x) for x in script.refusals], ready.files)
     compared = compared_items(script.model)

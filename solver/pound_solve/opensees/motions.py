@@ -1,4 +1,4 @@
-"""Ground motions and initial velocities.
+"""Ground motions, forces and initial velocities.
 
 A motion accelerates the whole base (UniformExcitation).  A SINE is the series Trig; others are straight
 lines between samples, which stand in a file of times and accelerations beside the script.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_deck.model import Card
+from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.loading.piecewise import Piecewise
 from pound_solve.opensees.script import Script, literal
@@ -33,7 +33,7 @@ def motions(script: Script, shaken: tuple[GroundMotion, ...], stem: str) -> None
         if card.spec.name == "SINE":
             _sine(script, series, motion)
         elif motion.acceleration.degree <= 1:
-            _samples(script, series, motion, f"{stem}_motion{n}.txt")
+            _samples(script, series, motion.acceleration, f"{stem}_motion{n}.txt")
         else:
             script.refuse(f"the motion {card.spec.name}, which is no straight lines", card.span)
             continue
@@ -50,13 +50,13 @@ def _sine(script: Script, series: int, motion: GroundMotion) -> None:
     script.call("motion", "timeSeries", "Trig", series, *times, *amplitude)
 
 
-def _samples(script: Script, series: int, motion: GroundMotion, name: str) -> None:
+def _samples(script: Script, series: int, history: Piecewise, name: str) -> None:
     """Write a series Path that reads its samples from a file of the script."""
-    t, a = corners(motion.acceleration)
+    t, a = corners(history)
     rows = "".join(f"{x!r} {y!r}\n" for x, y in zip(t.tolist(), a.tolist()))
     script.files[name] = rows
-    script.lines["motion"].append(f"times, accelerations = samples({literal(name)})")
-    words = f'"Path", {series}, "-time", *times, "-values", *accelerations'
+    script.lines["motion"].append(f"times, ordinates = samples({literal(name)})")
+    words = f'"Path", {series}, "-time", *times, "-values", *ordinates'
     script.lines["motion"].append(f"ops.timeSeries({words})")
 
 
@@ -87,7 +87,15 @@ def velocities(script: Script) -> None:
                     script.call("motion", "setNodeVel", node, direction, card[item], "-commit")
 
 
-def refuse_forces(script: Script, cards: tuple[Card, ...]) -> None:
-    """Refuse forces that vary with time."""
-    for card in cards:
-        script.refuse(f"a force that varies with time (FORCES {card.spec.name})", card.span)
+def forces(script: Script, acting: tuple[Force, ...], stem: str) -> None:
+    """Write the forces that vary along straight lines; `stem` begins the names of their files."""
+    for n, (card, force) in enumerate(zip(script.model.forces, acting, strict=True), 1):
+        if force.history.degree > 1:
+            script.refuse(f"a force that is no straight lines (FORCES {card.spec.name})", card.span)
+            continue
+        series = script.tag()
+        _samples(script, series, force.history, f"{stem}_force{n}.txt")
+        script.settled &= float(force.history.value(0.0)) == 0.0
+        script.call("motion", "pattern", "Plain", series, series)
+        for node in force.nodes:
+            script.call("motion", "load", node, *force.push)

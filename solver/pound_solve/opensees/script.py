@@ -20,7 +20,7 @@ SECTIONS: Final = {
     "loads": "Static loads.",
     "released": "Loads that the history releases at its start.",
     "damping": "Damping: factors on masses and on initial stiffnesses; contacts have none.",
-    "motion": "Ground motions and initial velocities.",
+    "motion": "Ground motions, forces and initial velocities.",
 }
 
 

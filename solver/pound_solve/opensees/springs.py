@@ -38,7 +38,7 @@ def spring(script: Script, element: Element, card: Card) -> None:
 
 
 def dashpot(script: Script, element: Element, card: Card) -> None:
-    """Write the components of a linear DASHPOT."""
+    """Write the components of a DASHPOT without limits and play."""
     parts = []
     for component, direction, limit in COMPONENTS:
         if card["C" + component] == 0.0:
@@ -46,9 +46,7 @@ def dashpot(script: Script, element: Element, card: Card) -> None:
         for item in (limit, f"GAP{component}"):
             if card[item] is not None:
                 raise ItemError(f"a dashpot with {item}", item)
-        if card["ALPHA"] != 1.0:
-            raise ItemError("a dashpot with a power of the rate", "ALPHA")
-        parts.append((direction, Material("Viscous", (card["C" + component], 1.0))))
+        parts.append((direction, Material("Viscous", (card["C" + component], float(card["ALPHA"])))))
     _write(script, element, card, parts, damped=False)
 
 

@@ -17,9 +17,9 @@ import openseespy.opensees as ops
 #: functions after the model
 RUN: Final = '''
 def samples(name):
-    """Times and accelerations of a file beside this script."""
+    """Times and values of a file beside this script."""
     rows = [line.split() for line in (Path(__file__).resolve().parent / name).read_text().splitlines()]
-    return [float(t) for t, _ in rows], [float(a) for _, a in rows]
+    return [float(t) for t, _ in rows], [float(x) for _, x in rows]
 
 
 def equations():
@@ -83,7 +83,7 @@ def values():
     """Compared quantities now."""
     now = {}
     for name, element in CONTACTS:
-        now[f"contact {name}, force"] = -ops.eleResponse(element, "material", 1, "stress")[0]
+        now[f"contact {name}, force"] = 0.0 - ops.eleResponse(element, "material", 1, "stress")[0]
     for name, i, j, direction in DRIFTS:
         now[f"drift {name}"] = ops.nodeDisp(j, direction) - ops.nodeDisp(i, direction)
     for name, node, direction in DISPLACEMENTS:
