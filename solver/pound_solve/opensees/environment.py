@@ -38,7 +38,8 @@ def version(python: str) -> str:
     done = _output([python, "-c", PROBE])
     if done.returncode:
         hint = f"{python} -m pip install openseespy, or name another interpreter with --python"
-        raise OpenSeesError(f"{python} has no OpenSees ({_tail(done.stderr)}): {hint}")
+        (why,) = done.stderr.strip().splitlines()[-1:] or ("it says nothing",)
+        raise OpenSeesError(f"{python} has no OpenSees ({why[:200]}): {hint}")
     return done.stdout.split()[-1]
 
 

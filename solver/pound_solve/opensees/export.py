@@ -87,11 +87,17 @@ def export(ready: Prepared, deck: str) -> Exported:
     motions.velocities(script)
     motions.forces(script, ready.forces, Path(deck).stem)
     if history is None or script.refusals:
-        raise DeckError([_worded(x) for x in script.refusals], ready.files)
+        raise DeckError([_worded(x) for x in sorted(script.refusals, key=_line)], ready.files)
     compared = compared_items(script.model)
     step = default_step(script, ready, history["T"])
     text = _text(script, compared, history["T"], step, Path(deck).name)
     return Exported(text, script.files, compared, step)
+
+
+def _line(refusal: Diagnostic) -> tuple[str, int, int]:
+    """Place of a refusal, for its order."""
+    assert refusal.span is not None
+    return refusal.span.file, refusal.span.line, refusal.span.column
 
 
 def _worded(refusal: Diagnostic) -> Diagnostic:
