@@ -342,6 +342,7 @@ def test_a_free_collision_in_a_deck(model: str, tension: str, r: float, tmp_path
         (hit,), (law,) = results.table("collisions"), results.table("contact_laws")
         (theory,) = results.table("collision_theory")
         x1, x2 = results.history("node/u")[-1, :, 0]
+        v1, v2 = results.history("node/v")[-1, :, 0]
     e = TABLE_4.e_paper if model == "PAPER" else TABLE_4.e
     assert law["e_asked"] == pytest.approx(r * e, rel=1e-12)
     assert hit["restitution"] == pytest.approx(law["e_given"], rel=1e-9)
@@ -349,6 +350,10 @@ def test_a_free_collision_in_a_deck(model: str, tension: str, r: float, tmp_path
         assert hit["restitution"] == pytest.approx(r * e, rel=1e-9)
     if model == "PAPER" and tension == "YES":
         assert hit["t_end"] - hit["t_start"] == pytest.approx(B1.period, rel=1e-9)
+        # Eqs 20 and 21 as they are printed
+        m, t = B1.mass / B2.mass, B2.period / B1.period
+        assert v1 == pytest.approx(1 - (2 * r / (1 + t * m) + (1 - r) / (1 + m)), rel=1e-9)
+        assert v2 == pytest.approx(2 * r / (t + 1 / m) + (1 - r) / (1 + 1 / m), rel=1e-9)
     if model == "EXACT" and tension == "NO":  # the centres of mass leave on the lines of the bars'
         impulse = (1 + r * e) * TABLE_4.mass
         moment = impulse * TABLE_4.centroid

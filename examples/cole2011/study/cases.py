@@ -45,7 +45,8 @@ def lumped(name: str, kc: float, cc: float = 0.0) -> Test:
 
 def distributed(n: int, method: str = "EXACT", dt: float | None = None) -> Test:
     """A test with n axial elements in every diaphragm."""
-    return Test(str(n), DISTRIBUTED, {"n": n}, (), method, dt)
+    name = f"{n}, steps of {dt:g} s" if dt else str(n)
+    return Test(name, DISTRIBUTED, {"n": n}, (), method, dt)
 
 
 def system(name: str, law: str, method: str | None = None, dt: float | None = None) -> Test:
@@ -55,12 +56,26 @@ def system(name: str, law: str, method: str | None = None, dt: float | None = No
     )
 
 
-def until(name: str, duration: float, pair: Pair = PAIR) -> Test:
-    """The lumped buildings with the exact restitution and another duration; released at zero force."""
-    xi = restitution.no_tension_ratio(pair.e)
-    k = pair.mass * (restitution.no_tension_time(xi) / duration) ** 2
-    params = {"kc": repr(k), "cc": repr(2.0 * xi * (k * pair.mass) ** 0.5), "stick": '"NO"'}
+def released(name: str, e: float, per: float, time: float) -> Test:
+    """The lumped buildings with a contact of restitution `e`, which lets go at zero force; its undamped
+    frequency is `per` over a `time` [s].
+    """
+    xi = restitution.no_tension_ratio(e)
+    k = PAIR.mass * (per / time) ** 2
+    params = {"kc": repr(k), "cc": repr(2.0 * xi * (k * PAIR.mass) ** 0.5), "stick": '"NO"'}
     return Test(name, LUMPED, params, (), "EXACT")
+
+
+def until(name: str, e: float, duration: float) -> Test:
+    """Contact that lasts a `duration` [s]."""
+    return released(name, e, restitution.no_tension_time(restitution.no_tension_ratio(e)), duration)
+
+
+def centred(name: str, e: float, centroid: float) -> Test:
+    """Contact whose force has its centroid at a time [s]."""
+    xi = restitution.no_tension_ratio(e)
+    per = e / (1.0 + e) * (restitution.no_tension_time(xi) + 2.0 * xi)
+    return released(name, e, per, centroid)
 
 
 TESTS = (
@@ -71,16 +86,29 @@ TESTS = (
     *(distributed(n) for n in (1, 2, 3, 4, 5, 20)),
 )
 EXACT_EQUIVALENT = Test("0(exact)", EQUIVALENT, {"model": '"EXACT"'}, (), "EXACT")
-#: the same restitution with other durations: twice the centroid of the bars' force, its impulse over
-#: its first
-#: value, and the time the bars touch
-CANDIDATES = (
-    until("0(centroid)", 2 * PAIR.centroid),
-    until("0(impulse)", PAIR.impulse / PAIR.force),
-    until("0(touch)", PAIR.duration),
+#: restitution and time apart: those of the paper, one of each, and those of the bars; all let go at zero
+#: force.  The last is 0(exact).
+APART = (
+    until("e of Eq. 14, T1", PAIR.e_paper, PAIR.first.period),
+    until("exact e, T1", PAIR.e, PAIR.first.period),
+    centred("e of Eq. 14, exact centroid", PAIR.e_paper, PAIR.centroid),
+    centred("exact e, exact centroid", PAIR.e, PAIR.centroid),
 )
-FINER = (distributed(50), distributed(100, "CENTRAL", 2e-5), distributed(200, "CENTRAL", 1e-5))
-E = 0.65  #: restitution that is usual for concrete
+FINER = (
+    distributed(50),
+    distributed(100, "CENTRAL", 2e-5),
+    distributed(200, "CENTRAL", 2e-5),
+    distributed(200, "CENTRAL", 1e-5),
+)
+#: the benchmark by its own method and by steps [s]
+METHODS = (
+    Test("EXACT", DISTRIBUTED, {"n": 20}, (), "EXACT"),
+    *(
+        Test(f"NEWMARK, {dt:g} s", DISTRIBUTED, {"n": 20}, (), "NEWMARK", dt)
+        for dt in (1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
+    ),
+)
+E = 0.65  #: restitution that is usual for concrete, and the plasticity index that stands for it
 #: stiffness of the Hertz laws [kN/m^1.5]: at 0.3 m/s the peak force of the linear spring k_D, no dashpot
 HERTZ = (0.3 * (KD1 * PAIR.mass) ** 0.5 / (1.25 * PAIR.mass * 0.3**2) ** 0.6) ** 2.5
 SYSTEMS = (
@@ -98,6 +126,8 @@ SYSTEMS = (
     system("Hertzdamp, published relation", f"HERTZDAMP K={HERTZ!r} E={E} RELATION=PUBLISHED"),
     Test("equivalent lumped mass, paper", EQUIVALENT, {"model": '"PAPER"'}),
     Test("equivalent lumped mass, exact", EQUIVALENT, {"model": '"EXACT"'}),
+    Test(f"equivalent lumped mass, paper, r = {E}", EQUIVALENT, {"model": '"PAPER"', "r": E}),
+    Test(f"equivalent lumped mass, exact, r = {E}", EQUIVALENT, {"model": '"EXACT"', "r": E}),
     Test("distributed masses, n = 20", DISTRIBUTED, {"n": 20}),
 )
 FACTORS = (
@@ -128,7 +158,7 @@ def stiffened() -> Iterator[tuple[float, tuple[Test, ...]]]:
             (
                 Test("0(equiv)", EQUIVALENT, {"model": '"PAPER"', **changed}, (), "EXACT"),
                 Test("0(exact)", EQUIVALENT, {"model": '"EXACT"', **changed}, (), "EXACT"),
-                until("0(touch)", pair.duration, pair),
+                until("0(touch)", pair.e, pair.duration),
                 Test("20", DISTRIBUTED, {"n": 20, "ka": repr(min(kd1, KD2)), **changed}, (), "EXACT"),
             ),
         )

@@ -8,11 +8,8 @@ from dataclasses import dataclass
 from cases import BENCHMARK
 from runs import PLACES, Hit, Run
 
-TOGETHER = (
-    0.1  #: collisions of two tests within this time are the same one [s]: half a period of building 1
-)
-
-
+#: collisions of two tests within this time are the same one [s]: half a period of building 1
+TOGETHER = 0.1
 YIELD = {"B1": 1e3 * 2400 / 420000, "B2": 1e3 * 1400 / 350000}  #: drift at yield [mm], Table IV
 
 
@@ -45,8 +42,9 @@ class Drift:
 
 
 def drifts(runs: Iterable[Run], benchmark: Run, strength: float = 1.0) -> Iterator[Drift]:
-    """Every test's drifts against the benchmark of the same record; `strength` is that of Table IV "
-    "times."""
+    """Every test's drifts against the benchmark of the same record; the yield is `strength` times that of
+    Table IV.
+    """
     for run in runs:
         for place in PLACES:
             for direction in ("left", "right"):
@@ -86,12 +84,15 @@ def predictions(run: Run, benchmark: Run, per_speed: float, of: str = "peak") ->
     per_speed : float
         Force of Eq. 11 for a closing speed of one [kN s/m].
     of : str
-        ``peak`` or ``plateau``: the force that is taken for the recorded one.
+        The force that is taken for the recorded one, as `Hit.force` has it.  Collisions that no sample
+        meets are not recorded.
     """
     for hit in benchmark.hits:
-        force = getattr(hit, of)
-        own = match(hit, run.hits) if run is not benchmark else hit
-        error = 100 * (per_speed * own.approach / force - 1) if own else -100.0
+        force = hit.force(of)
+        if not force > 0.0:
+            continue
+        same = match(hit, run.hits) if run is not benchmark else hit
+        error = 100 * (per_speed * same.approach / force - 1) if same else -100.0
         yield Prediction(run.record, run.test, hit.floor, hit.t, force, error)
 
 

@@ -1,4 +1,7 @@
-"""The paper's figures from the study's numbers, and two that it does not have."""
+"""The paper's figures from the study's numbers, and two that it does not have.
+
+Figures 1 to 4 are sketches of ideas and left out: two oscillators, two bars, contact elements.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 from cases import PAIR, TESTS, G
-from choices import Record
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from motions import Record
 from runs import PLACES, Run
 from waves import INSTANTS, waves
 
@@ -75,10 +78,10 @@ def force_errors(found: Mapping[str, Sequence[Prediction]], title: str, path: Pa
     cycle = [*COLOURS.values(), "#7a3d7a", "#8a7a0b", "#0b8a7a", "#c03030", "0.3", "#5a5ad0", "0.6"]
     for colour, (name, points) in zip(cycle, found.items()):
         for floor, mark in ((1, "s"), (2, "o")):
-            own = [p for p in points if p.floor == floor]
+            there = [p for p in points if p.floor == floor]
             axes.plot(
-                [p.force for p in own], [p.error for p in own], mark, color=colour, markersize=4,
-                label=f"{name}, floor {floor}" if own else None,
+                [p.force for p in there], [p.error for p in there], mark, color=colour, markersize=4,
+                label=f"{name}, floor {floor}" if there else None,
             )  # fmt: skip
     axes.set_xlabel("recorded force of the benchmark [kN]")
     axes.set_ylabel("error of Eq. 11 [%]")
@@ -148,6 +151,71 @@ def over_stiffness(groups: Mapping[float, Sequence[Run]], path: Path) -> None:
     left.set_ylabel("peak force of floor 2 [kN]")
     right.set_ylabel("mean drift error [%]")
     left.legend(fontsize=7)
+    style.save(figure, path)
+
+
+def methods(found: Sequence[tuple[str, float, float]], path: Path) -> None:
+    """Largest drift error [%] of steps over their CPU time [s]; the time of the exact method."""
+    figure = style.figure(6, 3.4)
+    axes = axes_of(figure)[0]
+    steps = [x for x in found if x[2] > 0]
+    axes.loglog([cost for _, cost, _ in steps], [error for *_, error in steps], "o-", color=style.RED)
+    for name, cost, error in steps:
+        axes.annotate(
+            name.split(", ")[1], (cost, error), xytext=(5, 5), textcoords="offset points", fontsize=8
+        )
+    exact = next(cost for _, cost, error in found if error == 0.0)
+    axes.axvline(exact, color=COLOURS["El Centro"], linestyle="-")
+    axes.annotate(
+        "EXACT", (exact, min(x[2] for x in steps)), xytext=(5, 0), textcoords="offset points", fontsize=8
+    )
+    axes.set_xlabel("CPU time [s]")
+    axes.set_ylabel("largest error of drifts [%]")
+    style.save(figure, path)
+
+
+def share_bars(found: Sequence[tuple[str, float, float]], path: Path) -> None:
+    """Shares of readings [%] in which statements hold as written and leniently, by a short name."""
+    figure = style.figure(7, 4.2)
+    axes = axes_of(figure)[0]
+    rows = range(len(found))
+    axes.barh(rows, [lenient for *_, lenient in found], color="0.8")
+    axes.barh(rows, [strict for _, strict, _ in found], color=COLOURS["El Centro"])
+    axes.set_yticks(rows, [f"{n}  {name}" for n, (name, *_) in enumerate(found, 1)], fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xlim(0, 100)
+    axes.set_xlabel("share of the readings [%]")
+    style.save(figure, path)
+
+
+def layout(path: Path) -> None:
+    """Figures 8 and 10: the two buildings, and the numbers of elements of a floor."""
+    figure = style.figure(9, 5.0)
+    whole, mesh = axes_of(figure, 2, 1, sharex=True, height_ratios=(1.2, 1.0))
+    floors = ((0.0, 20.0, COLOURS["El Centro"]), (24.0, 50.0, COLOURS["Mexico City"]))  # gap: not to scale
+    for axes in (whole, mesh):
+        axes.set_axis_off()
+        axes.set_xlim(-16, 75)
+    for start, length, colour in floors:
+        end = start + length
+        for y in (7.0, 14.0):
+            whole.plot([start, end], [y, y], "-", color=colour, linewidth=4)
+            whole.plot([start, start], [y - 7.0, y], "-", color=colour, linewidth=1.2)
+            whole.plot([end, end], [y - 7.0, y], "-", color=colour, linewidth=1.2)
+        whole.plot([start - 1, end + 1], [0, 0], "-", color="0.4", linewidth=0.8)
+        whole.annotate(f"{length:g} m long, 10 m wide", (start + length / 2, -2.6), ha="center", fontsize=8)
+    whole.annotate("8 mm", (22.0, 15.2), ha="center", fontsize=8)
+    whole.set_ylim(-4, 17)
+    for n, (name, elements) in enumerate((("0: rigid", 0), ("1", 1), ("2", 2), ("n", 5))):
+        mesh.annotate(f"elements {name}", (-15.0, -n), va="center", fontsize=8)
+        for start, length, colour in floors:
+            nodes = np.linspace(start, start + length, elements + 1) if elements else [start + length / 2]
+            line = [start, start + length]
+            mesh.plot(line, [-n, -n], "-", color=colour, linewidth=1 if elements else 3)
+            mesh.plot(nodes, [-n] * len(nodes), "o", color=colour, markersize=6)
+        mesh.plot([20.0, 24.0], [-n, -n], ":", color="0.4", linewidth=1.2)
+        mesh.annotate("k_C", (22.0, 0.15 - n), ha="center", fontsize=8)
+    mesh.set_ylim(-3.6, 0.7)
     style.save(figure, path)
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 from cases import TESTS
-from choices import Record
+from choices import COSTLY, READINGS, STRUCTURES, Structure
+from motions import RECORDS, Record
 from runs import Run
 
 Group = list[Run]
@@ -18,9 +20,10 @@ class Study:
 
     Parameters
     ----------
-    runs : iterable of (place, Run)
-        The place is ``reading, name, record``; ``systems``; ``finer``; ``variant, name``; ``stiffness,
-        factor``; or ``disturbed, reading, record, number``.
+    runs : iterable of (place, Run, float)
+        With the CPU time [s].  The place is ``reading, name, record``; ``systems``; ``finer``; ``method``;
+        ``variant, name``; ``stiffness, factor``; ``disturbed, reading, record, number``; or ``cell,
+        structure, record's text``.
     records : mapping
         Records of every reading.
     folders : sequence of Path
@@ -29,17 +32,22 @@ class Study:
         What was left out, or done otherwise, for want of a record.
     """
 
+    #: storey yield of every reading over that of Table IV
+    strength: ClassVar[Mapping[str, float]] = {r.name: r.structure.strength for r in READINGS}
+
     def __init__(
         self,
-        runs: Iterable[tuple[tuple[str, ...], Run]],
+        runs: Iterable[tuple[tuple[str, ...], Run, float]],
         records: Mapping[str, Sequence[Record]],
         folders: Sequence[Path],
         left_out: Sequence[str],
     ) -> None:
         self.records, self.folders = records, folders
         self._groups: dict[tuple[str, ...], Group] = {}
-        for place, run in runs:
+        self._costs: dict[tuple[str, ...], list[float]] = {}
+        for place, run, cost in runs:
             self._groups.setdefault(place, []).append(run)
+            self._costs.setdefault(place, []).append(cost)
         self.left_out = left_out
 
     def _under(self, *start: str) -> dict[tuple[str, ...], Group]:
@@ -57,8 +65,21 @@ class Study:
 
     def paper(self, reading: str) -> dict[str, Group]:
         """The paper's own tests of every record."""
-        own = {t.name for t in TESTS}
-        return {name: [r for r in group if r.test in own] for name, group in self.readings[reading].items()}
+        names = {t.name for t in TESTS}
+        return {
+            record: [r for r in group if r.test in names]
+            for record, group in self.readings[reading].items()
+        }
+
+    @cached_property
+    def cells(self) -> dict[tuple[Structure, Record], Group]:
+        """All tests by structure and record."""
+        structures = {repr(s): s for s in (*STRUCTURES, *(s for s, _ in COSTLY))}
+        records = {r.says: r for group in RECORDS for r in group}
+        return {
+            (structures[structure], records[says]): group
+            for (structure, says), group in self._under("cell").items()
+        }
 
     @property
     def systems(self) -> Group:
@@ -69,6 +90,16 @@ class Study:
     def finer(self) -> Group:
         """More elements than the benchmark."""
         return self._groups.get(("finer",), [])
+
+    @property
+    def methods(self) -> list[tuple[Run, float]]:
+        """The benchmark by its own method and by steps, with the CPU time [s]."""
+        return list(zip(self._groups.get(("method",), []), self._costs.get(("method",), [])))
+
+    @property
+    def seconds(self) -> float:
+        """CPU time of all runs [s]."""
+        return sum(map(sum, self._costs.values()))
 
     @property
     def variants(self) -> dict[str, Group]:

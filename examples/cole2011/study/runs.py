@@ -13,21 +13,36 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from cases import Test
-from choices import Record
+import numpy as np
+from cases import BENCHMARK, Test
+from motions import Record
 
 import pound_solve
 from pound_solve.driver.run import DeckError
 from pound_solve.loading.records import known
 from pound_solve.loading.records.base import RecordError
 
+#: intervals of the histories from which a program without peaks between the rows takes its largest force
+STORED = ("1 ms", "2 ms", "5 ms")
 PLACES = tuple(f"B{b} storey {s} {end}" for b in (1, 2) for s in (1, 2) for end in ("left", "right"))
 
 
 @dataclass(frozen=True)
 class Hit:
-    """One collision: floor, time and length [s], approach speed [m/s], peak force and plateau of it "
-    "[kN]."""
+    """One collision.
+
+    Attributes
+    ----------
+    floor : int
+    t, lasts : float
+        Time and length [s].
+    approach : float
+        Closing speed [m/s].
+    peak, plateau : float
+        Force [kN].
+    stored : tuple of float
+        Largest force among samples every 1, 2 and 5 ms [kN], of the benchmark alone.
+    """
 
     floor: int
     t: float
@@ -35,6 +50,15 @@ class Hit:
     approach: float
     peak: float
     plateau: float
+    stored: tuple[float, ...] = ()
+
+    def force(self, of: str) -> float:
+        """Return what is taken for the recorded force [kN]: ``peak``, ``plateau``, ``1 ms``, ``2 ms`` or
+        ``5 ms``.
+        """
+        if of in STORED:
+            return self.stored[STORED.index(of)]
+        return self.plateau if of == "plateau" else self.peak
 
 
 @dataclass(frozen=True)
@@ -64,12 +88,15 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to be made; the deck takes those of `params` that it has."""
+    """One run to be made; the deck takes those of `params` that it has.  `damping` is a card in place of
+    the deck's own damping.
+    """
 
     record: Record
     test: Test
     params: Mapping[str, object]
     folders: tuple[Path, ...]
+    damping: str = ""
 
 
 def write_deck(job: Job, folder: Path) -> tuple[Path, set[str]]:
@@ -80,13 +107,23 @@ def write_deck(job: Job, folder: Path) -> tuple[Path, set[str]]:
         for old, new in job.test.edits:
             text = text.replace(old, new)
         text = text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
-        if source == job.test.deck:  # peaks do not hang on what is stored, but time does
-            text += "\nOUTPUT\n   EVERY=1\n"
+        if job.damping:
+            text = re.sub(
+                r"^DAMPING.*?(?=^DRIFT)", f"DAMPING\n   {job.damping}\n\n", text, flags=re.M | re.S
+            )
+        if source == job.test.deck:  # peaks do not depend on what is stored, but time does
+            rows = "EVERY=0.001  NODES=1000  MEMBERS=9001,9002" if benchmark(job.test) else "EVERY=1"
+            text += f"\nOUTPUT\n   {rows}\n"
             names |= params_of(text)
         elif f'INCLUDE "{source.name}"' in job.test.deck.read_text(encoding="utf-8"):
             names |= params_of(text)
         (folder / source.name).write_text(text, encoding="utf-8")
     return folder / job.test.deck.name, names
+
+
+def benchmark(test: Test) -> bool:
+    """Whether the recorded forces of a test are those that Eq. 11 is compared with."""
+    return test.name == BENCHMARK
 
 
 def params_of(text: str) -> set[str]:
@@ -127,6 +164,7 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
             float(row["approach_velocity"]),
             float(row["peak_force"]),
             float(row["plateau_force"]),
+            stored(results, row) if benchmark(job.test) else (),
         )
         for row in results.table("collisions")
     )
@@ -141,6 +179,19 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
         tuple(int(row["closures"]) for row in summary),
         abs(float(energy["residual"]["share"])) / 100,
     )
+
+
+def stored(results: pound_solve.results.Results, row: Any) -> tuple[float, ...]:
+    """Largest force of a collision among samples every 1, 2 and 5 ms [kN]."""
+    t, forces = results.course("contact/force")
+    force = forces[:, results.labels("contact/force").index(str(row["contact"]))]
+    inside = (t >= row["t_start"]) & (t <= row["t_end"])
+    out = []
+    for interval in STORED:
+        step = 1e-3 * float(interval.split()[0])
+        sampled = inside & (np.abs(t / step - np.round(t / step)) < 1e-6)
+        out.append(float(force[sampled].max(initial=0.0)))
+    return tuple(out)
 
 
 def found(record: Record, folders: Sequence[Path]) -> bool:
@@ -204,12 +255,13 @@ def key(job: Job) -> str:
         job.test.dt,
         job.test.name,
     ]
-    return json.dumps([job.record.params, job.record.items, test, dict(job.params)], sort_keys=True)
+    job_of = [job.record.params, job.record.items, test, dict(job.params), job.damping]
+    return json.dumps(job_of, sort_keys=True)
 
 
 def read_run(kept: Mapping[str, Any]) -> Run:
     """A run from its fields, as `dataclasses.asdict` gives them."""
-    hits = tuple(Hit(**hit) for hit in kept["hits"])
+    hits = tuple(Hit(**{**hit, "stored": tuple(hit["stored"])}) for hit in kept["hits"])
     return Run(
         **{**kept, "hits": hits, "forces": tuple(kept["forces"]), "closures": tuple(kept["closures"])}
     )

@@ -38,7 +38,7 @@ FORMS = {
     ),
     "underestimate": Form(
         "The lumped masses frequently underestimate the response", 653,
-        "a third of the errors are negative", "each model underestimates some drift under each record",
+        "a third of the errors are -0.1 % or less", "a quarter",
     ),
     "better": Form(
         "0(equiv) provides a significant increase in accuracy over the traditional models", 653,
@@ -72,12 +72,13 @@ FORMS = {
     "yielding": Form(
         "El Centro induces little, Mexico City moderate, Loma Prieta significant inelastic "
         "deformation", 652,
-        "ductilities rise in this order, that of El Centro is at most 2 and that of Loma Prieta above 1",
+        "ductilities rise in this order, each to 1.2 times the one before at least; that of El Centro is "
+        "at most 1.5, that of Mexico City above 1.2, that of Loma Prieta above 2",
         "ductilities rise in this order",
     ),
     "equation 11": Form(
         "Eq. 11 is very accurate when using the 20 element model (Figure 13)", 653,
-        "within 15 % of every recorded peak above 1000 kN", "their mean error is within 15 %",
+        "within 10 % of every recorded peak above 1000 kN", "within 15 %",
     ),
     "weak hits": Form(
         "The accuracy of Eq. 11 drops at lower force magnitudes (Figure 13)", 653,
@@ -99,8 +100,7 @@ FORMS = {
     ),
     "all tests": Form(
         "Without the traditional models all results above 1000 kN are within 15 %, and all except two "
-        "within "
-        "10 % (Figure 14, El Centro)", 653,
+        "within 10 % (Figure 14, El Centro)", 653,
         "both", "within 15 %",
     ),
     "major": Form(
@@ -113,12 +113,20 @@ FORMS = {
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the runs say of a statement; None where they have nothing to judge it by, or the form is "
-    "none."""
+    """What the runs say of a statement; None where they have nothing to judge it by.
+
+    Attributes
+    ----------
+    strict, lenient : bool or None
+        Whether it holds as written, and in its lenient form.  One form: the same twice.
+    figures, rests : str
+        Numbers, and on how many errors, collisions or records they rest.
+    """
 
     strict: bool | None
     lenient: bool | None
     figures: str
+    rests: str = ""
 
     @property
     def word(self) -> str:
@@ -141,6 +149,11 @@ def judge(runs: Runs, strength: float = 1.0) -> dict[str, Verdict]:
     strength : float
         Storey yield of the reading over that of Table IV.
     """
+    return {**of_drifts(runs, strength), **forces(runs)}
+
+
+def of_drifts(runs: Runs, strength: float) -> dict[str, Verdict]:
+    """Statements on drifts, yielding and first-floor contact."""
     found = [d for group in runs.values() for d in drifts(group, benchmark_of(group), strength)]
     return {
         "traditional": traditional(found),
@@ -153,7 +166,6 @@ def judge(runs: Runs, strength: float = 1.0) -> dict[str, Verdict]:
         "progressive": progressive(found),
         "floor 1": first_floor(runs),
         "yielding": yielding(runs, strength),
-        **forces(runs),
     }
 
 
@@ -178,20 +190,20 @@ def traditional(found: Sequence[Drift]) -> Verdict:
         len(seen) == wanted,
         f"{len(large)} of {len(errors)} errors are 10 % or more, the smallest is {small:.1f} %; "
         f"{len(seen)} of {wanted} models and storeys have one",
+        f"{len(errors)} errors",
     )
 
 
 def underestimate(found: Sequence[Drift]) -> Verdict:
     errors = some(found, *TRADITIONAL)
-    low = [d for d in errors if d.error < 0]
-    seen = {(d.test, d.record) for d in low if d.error < -1}
-    every = {(d.test, d.record) for d in errors}
+    low = [d for d in errors if d.error <= -0.1]
+    nearly = sum(-0.1 < d.error < 0 for d in errors)
     return Verdict(
         3 * len(low) >= len(errors),
-        seen == every,
-        f"{len(low)} of {len(errors)} errors are negative; {len(seen)} of {len(every)} models and "
-        f"records have "
-        "one beyond -1 %",
+        4 * len(low) >= len(errors),
+        f"{len(low)} of {len(errors)} errors are -0.1 % or less; {nearly} more are negative, by "
+        "rounding or nearly so",
+        f"{len(errors)} errors",
     )
 
 
@@ -199,19 +211,21 @@ def better(found: Sequence[Drift]) -> Verdict:
     equiv = mean(some(found, "0(equiv)"))
     old = [mean(some(found, name)) for name in TRADITIONAL]
     figures = f"mean errors {equiv:.2f} %, and " + ", ".join(f"{m:.2f}" for m in old) + " %"
-    return Verdict(2 * equiv < min(old), equiv < min(old), figures)
+    return Verdict(2 * equiv < min(old), equiv < min(old), figures, "4 means")
 
 
 def like_one_element(found: Sequence[Drift]) -> Verdict:
     equiv, one = mean(some(found, "0(equiv)")), mean(some(found, "1"))
-    return Verdict(equiv <= 1.25 * one, equiv <= 1.5 * one, f"mean errors {equiv:.2f} % and {one:.2f} %")
+    figures = f"mean errors {equiv:.2f} % and {one:.2f} %"
+    return Verdict(equiv <= 1.25 * one, equiv <= 1.5 * one, figures, "2 means")
 
 
 def only_one_beyond(found: Sequence[Drift]) -> Verdict:
     where = {(d.record, d.place[:11]) for d in some(found, "0(equiv)") if abs(d.error) > 10}
     there = all(place == "B2 storey 2" for _, place in where)
     names = ", ".join(sorted(f"{place} ({record})" for record, place in where)) or "none"
-    return Verdict(there and len(where) == 1, there and len(where) <= 1, f"above 10 %: {names}")
+    rests = f"{len(some(found, '0(equiv)'))} errors"
+    return Verdict(there and len(where) == 1, there and len(where) <= 1, f"above 10 %: {names}", rests)
 
 
 def far_ends(found: Sequence[Drift]) -> Verdict:
@@ -220,7 +234,7 @@ def far_ends(found: Sequence[Drift]) -> Verdict:
         (far if d.far else near).append(d)
     holds = mean(far) > mean(near)
     figures = f"mean errors {mean(far):.2f} % at the far ends, {mean(near):.2f} % at the interface"
-    return Verdict(holds, holds, figures)
+    return Verdict(holds, holds, figures, "2 means")
 
 
 def two_elements(found: Sequence[Drift]) -> Verdict:
@@ -231,8 +245,8 @@ def two_elements(found: Sequence[Drift]) -> Verdict:
         small == len(errors),
         scaled < 5,
         f"{small} of {len(errors)} errors are below 5 %, the largest is {worst(errors):.1f} %; relative "
-        f"to no less "
-        f"than half the yield drift it is {scaled:.1f} %",
+        f"to no less than half the yield drift it is {scaled:.1f} %",
+        f"{len(errors)} errors",
     )
 
 
@@ -244,6 +258,7 @@ def progressive(found: Sequence[Drift]) -> Verdict:
         rises == 0,
         rises <= 1,
         f"mean errors with {', '.join(tests)} elements: " + ", ".join(f"{m:.2f}" for m in means) + " %",
+        f"{len(means)} means",
     )
 
 
@@ -251,7 +266,9 @@ def first_floor(runs: Runs) -> Verdict:
     met = {record: bool(benchmark_of(group).closures[0]) for record, group in runs.items()}
     holds = met == {record: record == "El Centro" for record in runs}
     names = [record for record, yes in met.items() if yes]
-    return Verdict(holds, holds, f"floor 1 collides in {', '.join(names) or 'none'}")
+    touches = sum(benchmark_of(group).closures[0] for group in runs.values())
+    figures = f"floor 1 collides in {', '.join(names) or 'none'}"
+    return Verdict(holds, holds, figures, f"{touches} {'touch' if touches == 1 else 'touches'}")
 
 
 def yielding(runs: Runs, strength: float) -> Verdict:
@@ -265,35 +282,37 @@ def yielding(runs: Runs, strength: float) -> Verdict:
         )
     ordered = [reached[r] for r in ("El Centro", "Mexico City", "Loma Prieta") if r in reached]
     rising = all(a < b for a, b in pairwise(ordered))
+    apart = len(ordered) == 3 and all(1.2 * a <= b for a, b in pairwise(ordered))
     return Verdict(
-        rising and ordered[0] <= 2 and ordered[-1] > 1,
+        apart and ordered[0] <= 1.5 and ordered[1] > 1.2 and ordered[2] > 2,
         rising,
         "largest drift over yield drift: " + ", ".join(f"{r} {x:.2f}" for r, x in reached.items()),
+        f"{len(ordered)} drifts",
     )
 
 
 def forces(runs: Runs, of: str = "peak") -> dict[str, Verdict]:
-    """Statements on Eq. 11; `of` is what is taken for the recorded force, ``peak`` or ``plateau``."""
-    own = {
+    """Statements on Eq. 11; `of` is what is taken for the recorded force, as `Hit.force` has it."""
+    of_bench = {
         record: list(predictions(benchmark_of(group), benchmark_of(group), PAIR.force, of))
         for record, group in runs.items()
     }
-    together = [p for found in own.values() for p in found]
+    together = [p for found in of_bench.values() for p in found]
     group = runs["El Centro"]
     every = [p for run in group for p in predictions(run, benchmark_of(group), PAIR.force, of)]
     strong = [p for p in together if p.force > 1000]
     weak = [p for p in together if p.force <= 1000]
-    first, second = ([p for p in own["El Centro"] if p.floor == n] for n in (1, 2))
+    first, second = ([p for p in of_bench["El Centro"] if p.floor == n] for n in (1, 2))
     rest = [p for p in every if p.force > 1000 and p.test not in TRADITIONAL and p.test != "0(exact)"]
     major = [p for p in every if p.force > 2000 and p.test != "0(exact)"]
     return {
-        "equation 11": within(strong, of_mean=True),
+        "equation 11": within(strong, 10),
         "weak hits": worse(weak, strong, "below 1000 kN", "above"),
         "first-floor hits": worse(first, second, "at floor 1", "at floor 2"),
-        "alike": alike({r: [p for p in found if p.force > 1000] for r, found in own.items()}),
+        "alike": alike({r: [p for p in found if p.force > 1000] for r, found in of_bench.items()}),
         "complexity": more_complex([p for p in every if p.force > 1000]),
-        "all tests": within(rest, beyond10=2),
-        "major": within(major),
+        "all tests": within(rest, 15, beyond10=2),
+        "major": within(major, 15),
     }
 
 
@@ -304,7 +323,8 @@ def alike(strong: Mapping[str, Sequence[Prediction]]) -> Verdict:
         return Verdict(None, None, "fewer than two records have such collisions")
     ratio = max(means.values()) / min(means.values())
     figures = ", ".join(f"{record} {m:.1f} %" for record, m in means.items())
-    return Verdict(ratio <= 2, ratio <= 3, f"mean errors: {figures}")
+    rests = ", ".join(str(len(found)) for found in strong.values()) + " collisions"
+    return Verdict(ratio <= 2, ratio <= 3, f"mean errors: {figures}", rests)
 
 
 def more_complex(strong: Sequence[Prediction]) -> Verdict:
@@ -315,7 +335,8 @@ def more_complex(strong: Sequence[Prediction]) -> Verdict:
     means = [fmean(errors_of([p for p in strong if p.test == n])) for n in names]
     rises = sum(a <= b for a, b in pairwise(means))
     listed = ", ".join(f"{m:.1f}" for m in means)
-    return Verdict(rises == 0, rises <= 1, f"mean errors with {', '.join(names)} elements: {listed} %")
+    figures = f"mean errors with {', '.join(names)} elements: {listed} %"
+    return Verdict(rises == 0, rises <= 1, figures, of_collisions(strong))
 
 
 def errors_of(found: Sequence[Prediction]) -> list[float]:
@@ -323,16 +344,23 @@ def errors_of(found: Sequence[Prediction]) -> list[float]:
     return [abs(p.error) for p in found]
 
 
-def within(found: Sequence[Prediction], beyond10: int | None = None, of_mean: bool = False) -> Verdict:
-    """Whether all errors are within 15 %, and all but `beyond10` within 10 %."""
+def of_collisions(found: Sequence[Prediction]) -> str:
+    """Number of collisions that some predictions, of several tests, are of."""
+    count = len({(p.record, p.floor, p.t) for p in found})
+    return f"{count} collision{'s' * (count != 1)}"
+
+
+def within(found: Sequence[Prediction], limit: float, beyond10: int | None = None) -> Verdict:
+    """Whether all errors are within the limit [%], and all but `beyond10` within 10 %; leniently, within
+    15 %.
+    """
     if not found:
         return Verdict(None, None, "no such collision")
     errors = errors_of(found)
     good, far = sum(e <= 15 for e in errors), sum(e > 10 for e in errors)
-    strict = good == len(errors) and (beyond10 is None or far <= beyond10)
-    lenient = fmean(errors) <= 15 if of_mean else good == len(errors)
+    strict = max(errors) <= limit and (beyond10 is None or far <= beyond10)
     figures = f"{good} of {len(errors)} within 15 %, {far} beyond 10 %, mean {fmean(errors):.1f} %"
-    return Verdict(strict, lenient, figures)
+    return Verdict(strict, good == len(errors), figures, of_collisions(found))
 
 
 def worse(ones: Sequence[Prediction], others: Sequence[Prediction], where: str, elsewhere: str) -> Verdict:
@@ -341,7 +369,7 @@ def worse(ones: Sequence[Prediction], others: Sequence[Prediction], where: str, 
         return Verdict(None, None, f"no collision {elsewhere if ones else where}")
     one, other = fmean(errors_of(ones)), fmean(errors_of(others))
     figures = f"mean error {one:.1f} % {where} ({len(ones)}), {other:.1f} % {elsewhere} ({len(others)})"
-    return Verdict(one > other, one > other, figures)
+    return Verdict(one > other, one > other, figures, f"{len(ones)} and {len(others)} collisions")
 
 
 def sensitivity(variant: str, runs: Sequence[Run]) -> list[object]:
