@@ -454,9 +454,9 @@ def brick_row() -> Rows:
     ratio agrees. **Peak and fall disagree**: in the array the ratio peaks where the table's stroke equals
     the clearance, and falls below 1 between 5.3 and 7.2 Hz; the bricks of the row stay engaged at 8 Hz,
     and their largest ratio is at 7.2 Hz. Friction, keys and the second direction take energy from the
-    array and are missing in the row; with restitution near zero, which takes most energy, the row does disengage at 7.2
-    Hz. A row is therefore no model of the array. That impact must return velocity for a high peak holds in
-    both."""
+    array and are missing in the row; with restitution near zero, which takes most energy, the row does
+    disengage at 7.2 Hz. A row is therefore no model of the array. That impact must return velocity for a
+    high peak holds in both."""
     low, high = (3.0, 3.5, 4.0), (5.0, 6.0, 7.2, 8.0)
     elastic = {f: brick_ratio(f, 0.9) for f in low + high}
     plastic = {f: brick_ratio(f, 0.01) for f in high[:3]}
