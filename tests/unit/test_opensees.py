@@ -33,7 +33,10 @@ from samples import written
 ROOT = Path(__file__).parents[2]
 #: interpreter with openseespy, where there is one
 PEER = Path(os.environ.get("POUND_PEER", ROOT / ".venv-peer/bin/python"))
-EXAMPLES = sorted(p for p in (ROOT / "examples").rglob("*.inp") if p.stem != "steel_20x6")
+#: decks of ``validation/open`` wait for numbers
+EXAMPLES = sorted(
+    p for p in (ROOT / "examples").rglob("*.inp") if p.stem != "steel_20x6" and p.parent.name != "open"
+)
 
 DECK = """TITLE  A frame beside a wall
 UNITS  kN m s
