@@ -25,8 +25,6 @@ BAD = [path for path in DECKS if path not in OF_THE_SOLVER]
 ON_THE_FLY = {"P101", "P102", "P103", "P104", "P107", "P110", "P232", "P233"}
 #: no mistake of a deck; tests/unit/test_opensees.py shows it for every law and rule
 OF_THE_EXPORT = {"P380"}
-    "P380"
-}  #: no mistake of a deck; tests/unit/test_opensees.py shows it for every law and rule
 
 
 @pytest.mark.parametrize("path", BAD, ids=lambda p: p.stem)

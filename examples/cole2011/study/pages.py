@@ -107,7 +107,7 @@ def of_paper(study: Study, readings: Sequence[Judged], folder: Path) -> dict[str
         figures.share_bars(bars, folder / "shares.png")
         figures.methods([(name, cost, drift) for name, cost, drift, _ in errors], folder / "methods.png")
     kinds = [s.kind for s in found.values()]
-    cells: list[Cell] = [(s.strength, group) for (s, _), group in study.cells.items()]
+    cells = cells_of(study)
     return {
         "methods": tables.methods_table(errors),
         **{f"{kind} count": str(kinds.count(kind)) for kind in KINDS},
@@ -152,6 +152,11 @@ def of_theory(study: Study) -> dict[str, str]:
     }
 
 
+def cells_of(study: Study) -> list[Cell]:
+    """Every structure under every record."""
+    return [Cell(s.strength, group, s.contact == "softer") for (s, _), group in study.cells.items()]
+
+
 def of_statements(
     study: Study, found: Mapping[str, Share], shown: Callable[[str, str], str]
 ) -> dict[str, str]:
@@ -168,16 +173,17 @@ def of_statements(
     names = list(study.readings)
     last = names[-1]
     figures = [f"figure {n} {last}: Figure {n}, {last} reading" for n in (11, 12, 13, 14)]
-    cells: list[Cell] = [(s.strength, group) for (s, _), group in study.cells.items()]
+    cells = cells_of(study)
     return {
         "number of statements": str(len(FORMS)),
         **{name: kind(name) for name in KINDS},
         "names": ", ".join(names[:-1]) + " and " * (len(names) > 1) + last,
         "counted": tables.counted(study),
         "statements": tables.statements_table(study, found),
-        "error at peaks": first_force(study)[0],
-        "error at plateaus": first_force(study)[1],
-        "reasons": tables.reasons_table(reasons(study)),
+        "error at peaks": first_force(study),
+        "distinct": str(len(study.cells) and len(judged(study.cells)) // len(RECORDED)),
+        "five force": times(peaks(cells, "5")),
+        "reasons": tables.reasons_list(reasons(study)),
         "pictures 11 to 14 modal": "\n\n".join(shown(*f.split(": ")) for f in figures),
         "usual force": times([x for name in TRADITIONAL for x in peaks(cells, name)]),
         "exact force": times(peaks(cells, EXACT_EQUIVALENT.name)),

@@ -121,7 +121,7 @@ LEADING_HEAD = (
 )
 
 
-def leading(readings: Sequence[Judged], most: int = 12) -> list[list[str]]:
+def leading(readings: Sequence[Judged], most: int = 6) -> list[list[str]]:
     """The readings under which most statements hold as written."""
     ranked = sorted(readings, key=count, reverse=True)[:most]
     return [

@@ -60,9 +60,9 @@ def inelastic() -> str:
         ["18", "fully plastic, r = 0", after(plastic), "0"],
         ["19", f"lumped masses, e = {E}", after([(1 + E) * a for a in lumped]), f"{E}"],
         ["12", "distributed, elastic, r = 1", after(elastic), f"{PAIR.e_paper:.4f}"],
-        ["20, 21", f"distributed, r = {E}", after(mixed), f"{E * PAIR.e_paper:.4f}"],
-        ["22, exact", f"the same with the exact e, r = {E}", after([(1 + E * PAIR.e) * a for a in lumped]),
-         f"{E * PAIR.e:.4f}"],
+        ["20 to 22", f"distributed, r = {E}", after(mixed), f"{E * PAIR.e_paper:.4f}"],
+        ["exact", f"distributed with the exact restitution, r = {E}",
+         after([(1 + E * PAIR.e) * a for a in lumped]), f"{E * PAIR.e:.4f}"],
     ]  # fmt: skip
     return table(["equation", "collision", "velocities afterwards [m/s]", "restitution"], rows)
 
@@ -75,16 +75,28 @@ def verdicts_of(study: Study) -> dict[str, dict[str, Verdict]]:
 def statements_table(study: Study, shares: Mapping[str, Share]) -> str:
     """Verdicts on every statement, in how many readings it holds, and on how much that rests."""
     judged = verdicts_of(study)
-    last = list(judged)[-1]
     rows = []
     for n, (key, form) in enumerate(FORMS.items(), 1):
         verdict = [v[key].word for v in judged.values()]
         share = shares.get(key)
         counted = f"{percent(share.strict, share.readings)} / " if share else "- / "
         counted += percent(share.lenient, share.readings) if share and form.lenient else "-"
-        rows.append([str(n), form.statement, *verdict, counted, judged[last][key].rests or "-"])
-    head = ["", "statement", *judged, "readings, as written / leniently", f"rests on ({last})"]
+        rows.append(
+            [
+                str(n),
+                form.statement,
+                *verdict,
+                counted,
+                rests([v[key].rests or "-" for v in judged.values()]),
+            ]
+        )
+    head = ["", "statement", *judged, "readings, as written / leniently", "rests on"]
     return table(head, rows)
+
+
+def rests(told: Sequence[str]) -> str:
+    """On how much the verdicts of the readings rest; once where it is the same."""
+    return told[0] if len(set(told)) == 1 else "; ".join(told)
 
 
 def counted(study: Study) -> str:
@@ -97,9 +109,9 @@ def counted(study: Study) -> str:
     return ", ".join(told)
 
 
-def reasons_table(reasons: Mapping[str, str]) -> str:
+def reasons_list(reasons: Mapping[str, str]) -> str:
     """Why the statements hold or fail."""
-    return table(["", "reason"], [[str(n), reasons[key]] for n, key in enumerate(FORMS, 1)])
+    return "\n".join(f"{n}. {reasons[key]}" for n, key in enumerate(FORMS, 1))
 
 
 def forms_table() -> str:
