@@ -179,14 +179,15 @@ def crossing(t: Array, y: Array, level: float) -> float:
 def steel_bars() -> Rows:
     """A striker of 304.8 mm hits two bars of 1828.8 mm at 18.95 m/s; all have the same section and steel.
     The computed wave speed is the distance between the gauges, 2438.4 mm through the joint, over the time
-    between the half-rises of the two member forces. The limit, 1 %, is three standard deviations of the 39
-    shots. Part of the agreement is luck: with finer elements the computed speed tends to sqrt(E/rho) = 4974
-    m/s, 0.3 % above the mean. Force and duration were not measured; their rows compare with one-dimensional
-    theory (force Z v/2, duration 2 L/c), and their limits are those of this mesh of lumped masses. **The
-    gauge amplitude disagrees**: the gauge reads 14 to 28 % more than both the theory and the program.
-    Momentum balance ties the strain to the velocity of the striker, so the likely cause is the calibration
-    of the gauge, which the source does not report; the file and the table of the source also differ by 2 %
-    on the velocity of this shot."""
+    between the half-rises of the two member forces. The limit, 1 %, is three standard deviations of single
+    shots; the mean of 39 is known to 0.05 %, so the deviation is one of the model. The source does not say
+    whether E or density was derived from a wave speed. Part of the agreement is luck: with finer elements
+    the computed speed tends to sqrt(E/rho) = 4974 m/s, 0.3 % above the mean. Force and duration were not
+    measured; their rows compare with one-dimensional theory (force Z v/2, duration 2 L/c), and their limits
+    are those of this mesh of lumped masses. **The gauge amplitude disagrees**: the gauge reads 14 to 28 %
+    more than both the theory and the program. Momentum balance ties the strain to the velocity of the
+    striker, so the cause is the calibration of the gauge, which the source does not report, or the
+    velocity; the file and the table of the source also differ by 2 % on the velocity of this shot."""
     length, c_theory = 2.4384, math.sqrt(199.99e9 / 8082.5)
     area, modulus, v = 71.25147e-6, 199.99e9, 18.95
     plateau = modulus * area / c_theory * v / 2
@@ -206,17 +207,17 @@ def steel_bars() -> Rows:
 
 # ---------------------------------------------------------------------- cantilevers
 
-#: natural frequencies of the rig [Hz] in ascending order, and their limits
+#: natural frequencies of the rig [Hz] in ascending order, and whether they agree
 RIG = (
-    ("right 1", 28.2, 0.025),
-    ("left 1", 30.95, 0.025),
-    ("left 2", 199.04, 0.025),
-    ("right 2", 205.54, 0.025),
-    ("mini-beam 1", 277.74, 0.025),
-    ("left 3", 556.82, 0.025),
-    ("right 3", 594.98, 0.025),
-    ("left 4", 1085.93, 0.025),
-    ("right 4", 1168.62, 0.05),
+    ("right 1", 28.2, True),
+    ("left 1", 30.95, True),
+    ("left 2", 199.04, True),
+    ("right 2", 205.54, True),
+    ("mini-beam 1", 277.74, True),
+    ("left 3", 556.82, True),
+    ("right 3", 594.98, True),
+    ("left 4", 1085.93, True),
+    ("right 4", 1168.62, False),
 )
 
 
@@ -235,12 +236,14 @@ def cantilevers() -> Rows:
     """Two steel cantilevers of 392.5 mm, one with a tuning plate and a nut, the other with a mini-beam that
     the nut strikes. Because the authors fitted four factors to these frequencies, the case replicates a
     calibrated model; it tests members, masses and modes, and no collision. The left beam is the cleanest
-    part: one factor over 40 mm, four modes. Limits are 2.5 %, and 5 % for the highest mode. The response
-    with collisions was measured too (DaRUS doi 10.18419/darus-4501, 13 GB) and is not compared yet."""
+    part: one factor over 40 mm, four modes. The source gives no scatter; the limit is 2.5 %. **The highest
+    mode disagrees**; its cause is not known, but the deck leaves out the rotary inertia of plate and
+    clamping, which lowers the highest modes most. The response with collisions was measured too (DaRUS doi
+    10.18419/darus-4501, 13 GB) and is not compared yet."""
     computed = example("cantilevers/cantilevers.inp").column("modes", "frequency")
     return tuple(
-        Row(f"mode {i + 1}, {name}", f, float(computed[i]), tol, "Hz")
-        for i, (name, f, tol) in enumerate(RIG)
+        Row(f"mode {i + 1}, {name}", f, float(computed[i]), 0.025, "Hz", digits=5, agrees=agrees)
+        for i, (name, f, agrees) in enumerate(RIG)
     )
 
 
@@ -569,13 +572,20 @@ def summary() -> str:
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for c in CASES.values():
         rows = c.rows()
-        agreed = sum(r.within for r in rows)
-        tally = f"{agreed} of {len(rows)} agree"
+        tally = tallied(rows)
         link = f"[{c.title}](#{anchor(c.title)})"
         lines.append(
             "| " + " | ".join((link, c.source, c.measured, c.authors, c.ours, offs(rows), tally)) + " |"
         )
     return "\n".join(lines)
+
+
+def tallied(rows: Rows) -> str:
+    """How many rows agree, of those with a measurement or an observation and of the others."""
+    seen = [r.within for r in rows if r.basis in ("measured", "observed")]
+    others = [r.within for r in rows if r.basis not in ("measured", "observed")]
+    parts = [(seen, "experiment"), (others, "theory")]
+    return ", ".join(f"{what}: {sum(x)} of {len(x)} agree" for x, what in parts if x)
 
 
 def offs(rows: Rows) -> str:
