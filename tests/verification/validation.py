@@ -237,8 +237,8 @@ def cantilevers() -> Rows:
     the nut strikes. Because the authors fitted four factors to these frequencies, the case replicates a
     calibrated model; it tests members, masses and modes, and no collision. The left beam is the cleanest
     part: one factor over 40 mm, four modes. The source gives no scatter; the limit is 2.5 %. **The highest
-    mode disagrees**; its cause is not known, but the deck leaves out the rotary inertia of plate and
-    clamping, which lowers the highest modes most. The response with collisions was measured too (DaRUS doi
+    mode disagrees**; its cause is not known: the rotary inertia of plate and clamping, which the deck
+    leaves out, would lower it further. The response with collisions was measured too (DaRUS doi
     10.18419/darus-4501, 13 GB) and is not compared yet."""
     computed = example("cantilevers/cantilevers.inp").column("modes", "frequency")
     return tuple(
