@@ -169,6 +169,7 @@ def methods(found: Sequence[tuple[str, float, float]], path: Path) -> None:
     axes.annotate(
         "EXACT", (exact, min(x[2] for x in steps)), xytext=(5, 0), textcoords="offset points", fontsize=8
     )
+    axes.margins(0.2)
     axes.set_xlabel("CPU time [s]")
     axes.set_ylabel("largest error of drifts [%]")
     style.save(figure, path)
