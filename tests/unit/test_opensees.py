@@ -18,7 +18,7 @@ from pound_solve.catalog import catalog
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError, Request, prepare
 from pound_solve.loading.piecewise import Piecewise
-from pound_solve.opensees import environment
+from pound_solve.opensees import environment, impacts
 from pound_solve.opensees.damping import STIFF
 from pound_solve.opensees.export import ELEMENTS, Exported, export
 from pound_solve.opensees.extrapolation import Limit, limit
@@ -27,7 +27,7 @@ from pound_solve.opensees.motions import corners
 from pound_solve.opensees.page import page
 from pound_solve.opensees.peaks import ComparedItems
 from pound_solve.opensees.rules import RULES
-from pound_solve.opensees.verify import Compared, evened, verify
+from pound_solve.opensees.verify import AGREES, DIFFERS, UNDECIDED, Compared, Comparison, evened, verify
 from samples import written
 
 ROOT = Path(__file__).parents[2]
@@ -295,8 +295,57 @@ def test_values_that_are_close_by_chance_are_no_more_certain_than_others() -> No
     items = ComparedItems({"a": 1}, {}, {})
     uncertain = {"contact a, force": 1e-3, "x": 2e-6, "y": 4e-6, "z": 1e-9}
     rows = [Compared(n, 2.0, 0.0, (), Limit(2.0, 2.0, 2.0 * u)) for n, u in uncertain.items()]
-    relative = [x.limit.uncertainty / 2.0 for x in evened(rows, items)]
-    assert relative == pytest.approx([1e-3, 2e-6, 4e-6, 2e-6])
+    rows.append(Compared("w", 1e-20, 0.0, (), Limit(1.0, 1e-20, 1e-8)))  # next to zero: no share of itself
+    even = evened(rows, items)
+    assert [x.limit.uncertainty / 2.0 for x in even[:4]] == pytest.approx([1e-3, 2e-6, 4e-6, 2e-6])
+    assert even[4].limit.uncertainty == 1e-8 and even[4].size == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(
+    ("ours", "uncertainty", "error", "outcome"),
+    [
+        (2.001, 0.002, 0.0, AGREES),
+        (2.003, 0.002, 0.0, DIFFERS),
+        (2.003, 0.002, 0.002, AGREES),
+        (2.003, 0.5, 0.0, UNDECIDED),
+        (2.7, 0.5, 0.0, DIFFERS),
+    ],
+)
+def test_a_peak_agrees_only_where_its_uncertainty_is_small(
+    ours: float, uncertainty: float, error: float, outcome: str
+) -> None:
+    row = Compared("x", ours, error, (2.0, 2.0, 2.0), Limit(2.0, 2.0, uncertainty), 3.0)
+    assert row.outcome == outcome
+    told = page(Comparison([row], "OpenSees 3", 1e-3, "TAYLOR", error, "Know this."))
+    assert outcome in told and told.endswith("Know this.")
+    assert ("smaller --step" in told) == (outcome != AGREES)
+
+
+def test_silent_interpreters_and_far_too_coarse_steps_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deck = tmp_path / "frame.inp"
+    deck.write_text(DECK.format(law=LAW, rule=RULE), "utf-8")
+
+    def told(*options: str) -> str:
+        assert main([*options]) != 0
+        return capsys.readouterr().err
+
+    talks = _interpreter(tmp_path, "print('3.7.1')")
+    assert "--step 100 is too coarse" in told("verify", str(deck), "--python", talks, "--step", "100")
+    assert "OpenSees stops" in told("verify", str(deck), "--python", talks)
+    silent = _interpreter(tmp_path, "pass")
+    assert "has no OpenSees" in told("verify", str(deck), "--python", silent)
+    assert "--opensees" in told("export", str(deck))
+    row = '   5  WALL    5   NAME="roof"'
+    twice = DECK.format(law=LAW, rule=RULE).replace(row, f'{row}\n   60  WALL    5   NAME="roof"')
+    deck.write_text(twice, "utf-8")
+    assert "the contacts 5 and 60 have one name, 'roof'" in told("export", str(deck), "--opensees")
+
+
+def test_laws_whose_models_differ_are_told() -> None:
+    assert "GONTHIER" in impacts.remark({"GONTHIER", "LINEAR"})
+    assert impacts.remark({"LINEAR", "HERTZ"}) == ""
 
 
 def test_equal_values_are_their_own_limit() -> None:
@@ -368,4 +417,4 @@ def test_opensees_finds_our_peaks(tmp_path: Path, law: str) -> None:
     path.write_text(DECK.format(law=law, rule=RULE), "utf-8")
     comparison, _, _ = verify(Request(str(path)), str(PEER), 1e-4, lambda _: None)
     assert len(comparison.rows) == 5
-    assert all(x.agrees for x in comparison.rows), page(comparison)
+    assert all(x.outcome == AGREES for x in comparison.rows), page(comparison)

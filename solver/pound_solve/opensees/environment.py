@@ -36,7 +36,7 @@ def version(python: str) -> str:
         There is no such interpreter, or it has no openseespy.
     """
     done = _output([python, "-c", PROBE])
-    if done.returncode:
+    if done.returncode or not done.stdout.strip():
         hint = f"{python} -m pip install openseespy, or name another interpreter with --python"
         (why,) = done.stderr.strip().splitlines()[-1:] or ("it says nothing",)
         raise OpenSeesError(f"{python} has no OpenSees ({why[:200]}): {hint}")
@@ -56,8 +56,11 @@ def run(python: str, script: Path, dt: float) -> OpenSeesRun:
     if done.returncode or not lines:
         said = [x for x in done.stderr.splitlines() if x.startswith(("OpenSees", "the "))]
         raise OpenSeesError(f"OpenSees stops at dt={dt:g}: {said[-1] if said else _tail(done.stderr)}")
-    said_by: dict[str, Any] = json.loads(lines[-1])
-    return OpenSeesRun(**said_by)
+    try:
+        said_by: dict[str, Any] = json.loads(lines[-1])
+        return OpenSeesRun(**said_by)
+    except (ValueError, TypeError):
+        raise OpenSeesError(f"OpenSees prints no peaks at dt={dt:g}: {lines[-1][:200]}") from None
 
 
 def _output(command: list[str]) -> subprocess.CompletedProcess[str]:
@@ -65,7 +68,7 @@ def _output(command: list[str]) -> subprocess.CompletedProcess[str]:
     try:
         return subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
     except OSError as err:
-        raise OpenSeesError(f"{command[0]} cannot be started: {err.strerror or err}") from None
+        raise OpenSeesError(f"'{command[0]}' cannot be started: {err.strerror or err}") from None
 
 
 def _tail(text: str) -> str:

@@ -13,7 +13,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Element
 from pound_solve.driver.prepare import DeckError, Prepared
 from pound_solve.laws.refusal import ItemError
-from pound_solve.opensees import damping, frames, loads, motions, springs, supports, template
+from pound_solve.opensees import damping, frames, impacts, loads, motions, springs, supports, template
 from pound_solve.opensees.peaks import ComparedItems, compared_items
 from pound_solve.opensees.script import REFUSED, SECTIONS, Script, literal, table
 from pound_solve.version import __version__
@@ -44,12 +44,15 @@ class Exported(NamedTuple):
     compared : ComparedItems
     step : float
         Time step that the script takes unless told otherwise [T].
+    remark : str
+        Where the models differ; empty if they do not.
     """
 
     text: str
     files: Mapping[str, str]
     compared: ComparedItems
     step: float
+    remark: str
 
     def write(self, path: Path) -> list[Path]:
         """Write the script and its files, and return their paths."""
@@ -75,6 +78,8 @@ def export(ready: Prepared, deck: str) -> Exported:
     ------
     DeckError
         It contains what OpenSees has no exact counterpart of; every item is listed.
+    UserError
+        Two contacts have the same name.
     """
     script = Script(ready.structure.model, ready.structure)
     history = _history(script)
@@ -91,7 +96,8 @@ def export(ready: Prepared, deck: str) -> Exported:
     compared = compared_items(script.model)
     step = default_step(script, ready, history["T"])
     text = _text(script, compared, history["T"], step, Path(deck).name)
-    return Exported(text, script.files, compared, step)
+    laws = {card["LAW"] for card in script.model.props.values() if card.spec.name == "CONTACT"}
+    return Exported(text, script.files, compared, step, impacts.remark(laws))
 
 
 def _line(refusal: Diagnostic) -> tuple[str, int, int]:

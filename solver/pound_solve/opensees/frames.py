@@ -103,7 +103,7 @@ def _refused_of_hinges(card: Card) -> Iterator[tuple[str, str]]:
     if rule.name not in rules.RULES:
         yield f"hinges of RULE={rule.name}", "RULE"
     elif rule.name == "ELASTO_PLASTIC" or card["R"] <= 0.0:
-        what = "hinges without hardening, whose sections would have no flexibility"
+        what = "hinges without hardening: a section that yields must keep some stiffness, such as R=0.001"
         yield what, "RULE" if rule.name == "ELASTO_PLASTIC" else "R"
     if pinned(card):
         yield "a pinned end of a member with a hinge", "PIN"

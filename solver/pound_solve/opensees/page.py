@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
-from pound_solve.opensees.verify import Compared, Comparison
+from pound_solve.opensees.verify import DIFFERS, DOUBT, UNDECIDED, Compared, Comparison
 
-HEADS = ("quantity", "ours", "at h", "at h/2", "at h/4", "order", "limit", "ours - limit", "uncertainty")
+HEADS = (
+    "quantity", "ours", "at h", "at h/2", "at h/4", "order", "limit", "ours - limit", "uncertainty",
+    "outcome",
+)  # fmt: skip
 
 
 def page(comparison: Comparison) -> str:
@@ -32,25 +35,38 @@ def _row(x: Compared) -> tuple[str, ...]:
     values = (x.ours, *x.theirs)
     order = "-" if math.isnan(x.limit.order) else f"{x.limit.order:.2f}"
     tail = (f"{x.deviation:.1e}", f"{x.limit.uncertainty:.1e}")
-    return (x.name, *(f"{v:.8g}" for v in values), order, f"{x.limit.value:.8g}", *tail)
+    return (x.name, *(f"{v:.8g}" for v in values), order, f"{x.limit.value:.8g}", *tail, x.outcome)
 
 
 def sentence(comparison: Comparison) -> str:
-    """How far the peaks agree, in a sentence."""
-    count, off = len(comparison.rows), [x for x in comparison.rows if not x.agrees]
-    if not count:
+    """How far the peaks agree, in a few sentences."""
+    rows = comparison.rows
+    if not rows:
         return "The deck stores no peak to compare."
-    worst = max(comparison.rows, key=_relative)
+    differ, open_ = ([x for x in rows if x.outcome == kind] for kind in (DIFFERS, UNDECIDED))
+    worst = max(rows, key=_relative)
     largest = f"the largest deviation from a limit is {_relative(worst):.1e} of it ({worst.name})"
-    if not off:
-        return f"All {count} peaks lie within the uncertainty of their limits; {largest}."
-    names = ", ".join(x.name for x in off[:3]) + (", ..." if len(off) > 3 else "")
-    return (
-        f"{count - len(off)} of {count} peaks lie within the uncertainty of their limits, not {names}; "
-        f"{largest}. A smaller --step shows whether the step or a difference of the models is the cause."
-    )
+    agree = len(rows) - len(differ) - len(open_)
+    parts = [f"{agree} of {len(rows)} peaks lie within the uncertainty of their limits; {largest}."]
+    if open_:
+        parts.append(
+            f"{len(open_)} are undecided, because that uncertainty is more than {100 * DOUBT:g} % "
+            f"({_names(open_)}): give a smaller --step."
+        )
+    if differ:
+        smaller = "--step, or a smaller --tol," if comparison.error else "--step"
+        parts.append(
+            f"{len(differ)} differ ({_names(differ)}): a smaller {smaller} shows whether the step or a "
+            "difference of the models is the cause."
+        )
+    return " ".join([*parts, comparison.remark]).strip()
+
+
+def _names(rows: list[Compared]) -> str:
+    """Names of the first few."""
+    return ", ".join(x.name for x in rows[:3]) + (", ..." if len(rows) > 3 else "")
 
 
 def _relative(x: Compared) -> float:
-    """Deviation over the limit."""
-    return abs(x.deviation) / (abs(x.limit.value) or 1.0)
+    """Deviation over the size of the quantity."""
+    return abs(x.deviation) / (x.size or 1.0)

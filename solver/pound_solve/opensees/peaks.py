@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from pound_deck.model import Model
 from pound_solve.results import Results
+from pound_solve.user_error import UserError
 
 MOST_NODES = 12  #: nodes whose displacements are compared if a deck has neither contacts nor drifts
 
@@ -27,9 +28,22 @@ class ComparedItems(NamedTuple):
 
 
 def compared_items(model: Model) -> ComparedItems:
-    """Forces of contacts, drifts of DRIFT, and displacements along x of nodes at contacts."""
+    """Forces of contacts, drifts of DRIFT, and displacements along x of nodes at contacts.
+
+    Raises
+    ------
+    UserError
+        Two contacts have the same name.
+    """
     touching = [e for e in model.elements.values() if model.props[e.prop].spec.name == "CONTACT"]
-    contacts = {e.name or str(e.id): e.id for e in touching}
+    contacts: dict[str, int] = {}
+    for e in touching:
+        name = e.name or str(e.id)
+        if name in contacts:
+            raise UserError(
+                f"the contacts {contacts[name]} and {e.id} have one name, {name!r}: give one another"
+            )
+        contacts[name] = e.id
     drifts = {d.label: (d["I"], d["J"], "XY".index(d["DIRECTION"]) + 1) for d in model.drifts}
     nodes = [n for e in touching for n in (e.i, e.j) if n is not None]
     if not touching and not drifts:

@@ -40,6 +40,8 @@ def spring(script: Script, element: Element, card: Card) -> None:
 def dashpot(script: Script, element: Element, card: Card) -> None:
     """Write the components of a DASHPOT without limits and play."""
     parts = []
+    if card["ALPHA"] < 1.0:
+        raise ItemError("a dashpot with ALPHA below 1: OpenSees does not converge with it", "ALPHA")
     for component, direction, limit in COMPONENTS:
         if card["C" + component] == 0.0:
             continue

@@ -122,7 +122,7 @@ def history(dt):
         ops.setTime(0.0)
     high = values()
     low, before, last = dict(high), high, high
-    for _ in range(round(END / dt)):
+    for _ in range(math.ceil(END / dt - 1e-6)):
         advance(dt)
         now = values()
         for name, x in now.items():

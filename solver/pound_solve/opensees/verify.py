@@ -5,8 +5,8 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from statistics import median
-from typing import NamedTuple
+from statistics import median_low
+from typing import Final, NamedTuple
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.check import Subject
@@ -17,8 +17,12 @@ from pound_solve.opensees import environment
 from pound_solve.opensees.export import export
 from pound_solve.opensees.extrapolation import Limit, limit
 from pound_solve.opensees.peaks import ComparedItems, our_peaks, word
+from pound_solve.user_error import UserError
 
-HALVINGS = (1, 2, 4)  #: parts of the coarsest step
+HALVINGS: Final = (1, 2, 4)  #: parts of the coarsest step
+AGREES, UNDECIDED, DIFFERS = "agrees", "undecided", "differs"  #: outcomes of a quantity
+DOUBT: Final = 0.01  #: share of a quantity up to which its uncertainty decides
+COARSEST: Final = 50.0  #: largest step over that of the script
 
 
 class Compared(NamedTuple):
@@ -33,6 +37,8 @@ class Compared(NamedTuple):
         Peaks of OpenSees at the halved steps.
     limit : Limit
         Of `theirs`.
+    scale : float
+        Largest limit of the quantities of its kind, forces or displacements.
     """
 
     name: str
@@ -40,6 +46,7 @@ class Compared(NamedTuple):
     our_error: float
     theirs: tuple[float, ...]
     limit: Limit
+    scale: float = 0.0
 
     @property
     def deviation(self) -> float:
@@ -47,14 +54,24 @@ class Compared(NamedTuple):
         return self.ours - self.limit.value
 
     @property
-    def agrees(self) -> bool:
-        """Whether our peak lies within the uncertainty of the limit and its own error."""
-        return abs(self.deviation) <= self.limit.uncertainty + self.our_error
+    def size(self) -> float:
+        """What deviations and uncertainties are shares of: the limit, or a tenth of the scale."""
+        return max(abs(self.limit.value), 0.1 * self.scale)
+
+    @property
+    def outcome(self) -> str:
+        """AGREES if our peak lies within the uncertainty of the limit and its own error, and these are
+        small; UNDECIDED if it lies there and they are not; else DIFFERS.
+        """
+        doubt = self.limit.uncertainty + self.our_error
+        if abs(self.deviation) > doubt:
+            return DIFFERS
+        return AGREES if doubt <= DOUBT * self.size else UNDECIDED
 
 
 class Comparison(NamedTuple):
-    """All quantities, the version of OpenSees, its coarsest step [T], our method and its estimated error,
-    relative to a peak.
+    """All quantities, the version of OpenSees, its coarsest step [T], our method, its estimated error
+    relative to a peak, and a remark on differences of the models.
     """
 
     rows: list[Compared]
@@ -62,6 +79,7 @@ class Comparison(NamedTuple):
     step: float
     method: str
     error: float
+    remark: str
 
 
 def verify(
@@ -90,11 +108,18 @@ def verify(
     ------
     DeckError, OpenSeesError, OSError
         The deck has mistakes or parts that OpenSees has not; a run stops.
+    UserError
+        The step is far too coarse.
     """
     ready = prepare(request)
     exported = export(ready, request.deck)
     environment.version(python)
     step = step or exported.step
+    if step > COARSEST * exported.step:
+        most = COARSEST * exported.step
+        raise UserError(
+            f"--step {step:g} is too coarse: at most {most:g}; the default is {exported.step:g}"
+        )
     with tempfile.TemporaryDirectory(prefix="pound-solve-") as folder:
         (script, *_) = exported.write(Path(folder, f"{Path(request.deck).stem}_opensees.py"))
         runs = []
@@ -110,30 +135,31 @@ def verify(
         (method,) = (word(row["value"]) for row in results.table("run") if word(row["item"]) == "method")
     rows = []
     for name, peak in ours.items():
+        if any(name not in run.peaks for run in runs):
+            raise environment.OpenSeesError(f"OpenSees prints no peak of {name}")
         values = tuple(run.peaks[name] for run in runs)
         rows.append(Compared(name, peak, error * abs(peak), values, limit(*values)))
     rows = evened(rows, exported.compared)
-    comparison = Comparison(rows, runs[0].program, step, method, error)
+    comparison = Comparison(rows, runs[0].program, step, method, error, exported.remark)
     return comparison, ready.warnings, ready.files
 
 
 def evened(rows: list[Compared], items: ComparedItems) -> list[Compared]:
-    """Rows whose relative uncertainty is at least the median of their kind, forces or displacements.
+    """Rows with the scale of their kind, forces or displacements, whose relative uncertainty is at least
+    the median of that kind.
 
     Events within steps disturb all quantities; one whose three values are close by chance is not more
     certain than others.
     """
     forces = {f"contact {name}, force" for name in items.contacts}
-    shares: dict[bool, list[float]] = {True: [], False: []}
-    for x in rows:
-        if x.limit.value:
-            shares[x.name in forces].append(x.limit.uncertainty / abs(x.limit.value))
-    least = {kind: median(values) if values else 0.0 for kind, values in shares.items()}
-    return [
-        x._replace(
-            limit=x.limit._replace(
-                uncertainty=max(x.limit.uncertainty, least[x.name in forces] * abs(x.limit.value))
-            )
-        )
-        for x in rows
-    ]
+    out: dict[str, Compared] = {}
+    for kind in (True, False):
+        same = [x for x in rows if (x.name in forces) == kind]
+        scale = max((abs(x.limit.value) for x in same), default=0.0)
+        scaled = [x._replace(scale=scale) for x in same]
+        large = [x for x in scaled if abs(x.limit.value) == x.size > 0.0]
+        least = median_low([x.limit.uncertainty / x.size for x in large]) if large else 0.0
+        for x in scaled:
+            doubt = max(x.limit.uncertainty, least * abs(x.limit.value))
+            out[x.name] = x._replace(limit=x.limit._replace(uncertainty=doubt))
+    return [out[x.name] for x in rows]

@@ -61,6 +61,9 @@ def execute(args: argparse.Namespace) -> int:
     """Write the files and print their paths."""
     if args.opensees:
         return _opensees(args)
+    if Path(args.results).suffix == ".inp":
+        text = f"{args.results} is a deck: --opensees writes it for OpenSees"
+        return common.complain(text, common.MISTAKES)
     for option in ("set", "records"):
         if getattr(args, option):
             return common.complain(f"--{option} belongs to --opensees", common.MISTAKES)

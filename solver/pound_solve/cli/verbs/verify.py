@@ -26,10 +26,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run both programs and print the comparison; the status is 1 where a peak lies off its limit."""
+    """Run both programs and print the comparison; the status is 1 where a peak lies off its limit, or
+    is undecided.
+    """
     from pound_deck.diagnostics import render
     from pound_solve.opensees.page import page
-    from pound_solve.opensees.verify import verify
+    from pound_solve.opensees.verify import AGREES, verify
 
     if args.step is not None and args.step <= 0.0:
         return common.complain("--step must be above zero", common.MISTAKES)
@@ -41,4 +43,4 @@ def execute(args: argparse.Namespace) -> int:
     if warnings:
         terminal.tell(render(warnings, files))
     print(page(comparison))
-    return common.DONE if all(x.agrees for x in comparison.rows) else common.STOPPED
+    return common.DONE if all(x.outcome == AGREES for x in comparison.rows) else common.STOPPED
