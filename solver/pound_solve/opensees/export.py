@@ -30,7 +30,7 @@ ELEMENTS: Final[Mapping[str, Callable[[Script, Element, Card], None]]] = Mapping
 PER_CONTACT = 100  #: steps in the half period of a closed contact
 PER_SAMPLE = 4  #: least steps in the step of a record
 STEPS = 20000  #: of a history without contacts
-CLOSE = "OpenSees has no exact counterpart of"
+CLOSE = "no exact counterpart for OpenSees is known here"
 
 
 class Exported(NamedTuple):
@@ -108,17 +108,16 @@ def _line(refusal: Diagnostic) -> tuple[str, int, int]:
 
 def _worded(refusal: Diagnostic) -> Diagnostic:
     """Return a refusal as a whole sentence."""
-    message = f"{CLOSE} this: {refusal.message}"
+    message = f"{CLOSE}: {refusal.message}"
     return Diagnostic(REFUSED, message, refusal.span, refusal.hint)
 
 
 def _history(script: Script) -> Card | None:
     """Return the HISTORY card; refuse what a script cannot repeat."""
     cards = {card.spec.name: card for card in script.model.analyses}
-    for name in ("PUSHOVER",):
-        if name in cards:
-            script.refuse(name, cards[name].span, "leave it out: the script is a history")
     history = cards.get("HISTORY")
+    if history is not None and "PUSHOVER" in cards:
+        script.refuse("PUSHOVER", cards["PUSHOVER"].span, "leave it out: the script is a history")
     if history is None:
         place = script.model.analyses[0].span
         script.refuse("a deck without HISTORY", place, "add HISTORY")

@@ -117,10 +117,10 @@ def history(dt):
     motion()
     ops.integrator("Newmark", 0.5, 0.25)
     ops.analysis("Transient")
+    high = values()
     if not SETTLED:  # OpenSees starts without acceleration: a small step finds that of t = 0
         advance(1e-3 * dt)
         ops.setTime(0.0)
-    high = values()
     low, before, last = dict(high), high, high
     for _ in range(math.ceil(END / dt - 1e-6)):
         advance(dt)
