@@ -73,10 +73,6 @@ class Script:
         """Return a tag above all numbers of the deck."""
         return next(self._tags)
 
-    def comment(self, section: str, text: str) -> None:
-        """Add a comment."""
-        self.lines[section].append(f"# {text}")
-
     def call(self, section: str, command: str, *arguments: object) -> None:
         """Add a command of OpenSees."""
         self.lines[section].append(f"ops.{command}({', '.join(map(literal, arguments))})")
