@@ -127,6 +127,7 @@ WITHIN = {
         "page",
     ),
     "statistics": (
+        "over_records",
         "fragility",
         "separation",
         "incremental",
@@ -135,7 +136,7 @@ WITHIN = {
         "fragility_of_sweep",
         "needed_gaps",
     ),
-    "sweep": ("study", "execution", "plan", "table", "session", "ida"),
+    "sweep": ("study", "execution", "plan", "table", "session", "points", "ida"),
     "driver": (
         "request",
         "record_card",

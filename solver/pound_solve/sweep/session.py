@@ -38,7 +38,7 @@ class Session:
     def __init__(
         self, study: Study, engine: Engine, piece: tuple[int, int] = (1, 1), retry: bool = False
     ) -> None:
-        self.study, self.engine = study, engine
+        self.study, self.engine, self.retry = study, engine, retry
         self.journal = Journal(study.out / "runs")
         self.entries = self.journal.entries()
         self.runs = plan.piece(study.runs, *piece)

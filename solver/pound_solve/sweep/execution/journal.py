@@ -47,6 +47,8 @@ class JournalEntry:
         CPU time of the whole run, and of the method alone [s].
     values : mapping
         Quantities, see `quantities`.
+    sequence, gentlest : str, float
+        Events of the run, see `events.EventCourse`.
     at : float
         Time of its end [s since 1970].
     histories : mapping
@@ -61,6 +63,8 @@ class JournalEntry:
     cpu: float = 0.0
     solve: float = 0.0
     values: Values = field(default_factory=dict)
+    sequence: str = ""
+    gentlest: float = 1.0
     at: float = field(default_factory=time.time)
     histories: Mapping[str, Array] = field(default_factory=dict)
 

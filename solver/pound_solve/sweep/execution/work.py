@@ -30,6 +30,7 @@ from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Layout, Stage
 from pound_solve.results.sweep_file import DONE, FAILED, STOPPED
 from pound_solve.structure.structure import Structure
+from pound_solve.sweep.execution.events import events_of
 from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.execution.limits import Clock, TooLongError, within
 from pound_solve.sweep.study import pairs
@@ -176,6 +177,7 @@ def _analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
     record = sequence.record
     history = getattr(record, "history", None)
     started = history is not None and history.recorder.started
+    events = events_of(record)
     return JournalEntry(
         run.identity,
         STOPPED if message else DONE,
@@ -184,6 +186,8 @@ def _analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
         history.recorder.reached if history and started else float("nan"),
         solve=record.cpu_seconds,
         values=taken(kept.rows),
+        sequence=events.sequence,
+        gentlest=events.gentlest,
         histories=histories_of(record, settings.histories) if started else {},
     )
 

@@ -31,6 +31,7 @@ from pound_solve.loading.records.known import find, load
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.records import Suite, scaled
 from pound_solve.sweep.study.run import ParameterCase, Shaking, StudyRun, digest_of
+from pound_solve.sweep.study.variables import TABLE, StudyVariable, study_variables
 from pound_solve.user_error import UserError
 
 MAX_RUNS: Final = 10**6  #: runs
@@ -42,7 +43,12 @@ ITEMS: Final = (
 #: limits of a run, three years [s] and a petabyte [MB], and of the processes of a study
 LARGEST: Final[Mapping[str, float]] = MappingProxyType({"seconds": 1e8, "memory": 1e9, "workers": 1e4})
 #: tables read by other verbs
-OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType({"ida": "pound-solve ida"})
+OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType(
+    {"ida": "pound-solve ida", TABLE: "pound-solve sensitivity", "sensitivity": "pound-solve sensitivity"}
+)
+#: items of a sweep that give PARAMs several values, which a study with variables does not take
+SEVERAL: Final = ("decks", "grid", "zip", "cases")
+NUDGE: Final = 1e-6  #: relative change of a variable by which a deck is searched for an effect
 
 Params = tuple[tuple[str, str], ...]
 
@@ -79,6 +85,8 @@ class Study:
         Histories kept of each run.
     warnings : str
         Warnings about the decks with the first values of their PARAMs.
+    variables : tuple of StudyVariable
+        Variables, at whose values the runs are; empty for a verb that has none.
     """
 
     name: str
@@ -91,16 +99,19 @@ class Study:
     memory: float | None
     histories: tuple[str, ...] = ()
     warnings: str = ""
+    variables: tuple[StudyVariable, ...] = ()
 
 
-def read(document: Document, tables: Sequence[str] = ()) -> Study:
+def read(document: Document, tables: Sequence[str] = (), items: tuple[str, ...] = ()) -> Study:
     """The study of a document.
 
     Parameters
     ----------
     document : Document
     tables : sequence of str
-        Tables of it that other verbs read.
+        Tables of it that the verb reads beside those of a sweep.
+    items : tuple of str
+        Items of a variable that the verb reads, if it reads the table of variables.
 
     Raises
     ------
@@ -109,19 +120,23 @@ def read(document: Document, tables: Sequence[str] = ()) -> Study:
     """
     if document.diagnostics:  # not TOML
         raise StudyError(document.diagnostics, document.files)
-    return _Reader(document, tables).study()
+    return _Reader(document, tables, items).study()
 
 
 class _Reader:
     """Reads one document."""
 
-    def __init__(self, document: Document, tables: Sequence[str]) -> None:
-        self.document = document
+    def __init__(self, document: Document, tables: Sequence[str], items: tuple[str, ...]) -> None:
+        self.document, self.varies, self.items = document, TABLE in tables, items
         document.known((), (*ITEMS, *OF_OTHERS))
         for name, verb in OF_OTHERS.items():
             if name not in tables and document.at((name,)) is not None:
-                message = f"[{name}] is a table of {verb}, not of pound-solve sweep"
+                message = f"[{name}] is a table of {verb}, not of this command"
                 document.mistake("S602", message, (name,), f"run {verb}, or leave the table out")
+        for name in SEVERAL if self.varies else ():
+            if document.at((name,)) is not None:
+                message = f"{name} gives several cases, and this command finds its own by the variables"
+                document.mistake("S605", message, (name,), "take one deck, and PARAMs under [variables]")
         self.folders = tuple(self._beside(f) for f in document.listed(("records",), (str,)))
         self.motions = document.tables("motions")
         self.suites = [Suite(document, n, self.folders) for n in range(len(self.motions))]
@@ -144,6 +159,9 @@ class _Reader:
             document.mistake("S605", message, ("motions",))
         base = ParameterCase("", (), self.folders, texts["method"] or None, dt, tol)
         self._names(decks, combinations)
+        variables = tuple(self._variables())
+        if variables:
+            combinations = [tuple((v.name, repr(v.value)) for v in variables if self._is_param(v.name))]
         for deck in decks:
             self._tried(replace(base, deck=deck), combinations)
         self._stop_at_mistakes()
@@ -161,7 +179,17 @@ class _Reader:
             memory,
             self.histories,
             self._warnings(),
+            variables,
         )
+
+    def _variables(self) -> Iterator[StudyVariable]:
+        """Variables of the one deck, if the verb has any."""
+        if self.varies and self.models:
+            yield from study_variables(self.document, next(iter(self.models.values())), self.items)
+
+    def _is_param(self, name: str) -> bool:
+        """Whether the decks have a PARAM of that name: a variable may also be `MOTION`."""
+        return any(name.upper() in map(str.upper, model.params) for model in self.models.values())
 
     def _number(self, name: str, largest: float | None = None) -> float | None:
         """A number of the study, None where it is left out or wrong; DT and TOL have the deck's limits."""
@@ -282,6 +310,8 @@ class _Reader:
                 yield name, (table, name)
         for name in getattr(self, "columns", ()):
             yield name, ("cases",)
+        for name in self._table(TABLE) if self.varies else ():
+            yield name, (TABLE, name)
 
     def _names(self, decks: Sequence[str], combinations: Sequence[Params]) -> None:
         """Add a diagnostic for every PARAM that is given twice, and read the decks."""
@@ -345,7 +375,12 @@ class _Reader:
     ) -> None:
         """Add a diagnostic if a PARAM affects only the motion, which the study replaces."""
         first = dict(combinations[0])
-        other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
+        if name not in first:  # the factor on the records, or a variable with a mistake
+            return
+        values = [dict(c)[name] for c in combinations]
+        if self.varies:
+            values.append(repr(float(first[name]) * (1.0 + NUDGE) or NUDGE))
+        other = next((value for value in values if value != first[name]), None)
         if other is None or not self.suites:
             return
         models = [read_deck(Request(case.deck, params)).model for params in (first, {**first, name: other})]
