@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +14,10 @@ from pound_solve.cli.progress import StatusLine
 
 if TYPE_CHECKING:
     from pound_solve.sweep.execution.conduct import State
+    from pound_solve.sweep.points import Points
     from pound_solve.sweep.session import Session
     from pound_solve.sweep.study.document import Document
+    from pound_solve.sweep.study.study import Study
 
 
 def add_conduct(parser: argparse.ArgumentParser) -> None:
@@ -62,8 +66,35 @@ class StudyProgress:
         self.line.clear()
 
 
+@contextmanager
+def explored(
+    args: argparse.Namespace, study: Study, explore: Callable[[Points], None]
+) -> Iterator[tuple[Session, Path, bool]]:
+    """Call `explore` with the points of a study under the lock of its folder; write the table of all runs.
+
+    Yields once, still locked: the session, the path of the table, and whether Ctrl-C has not ended it.
+    """
+    from pound_solve.sweep.execution.executors import engine
+    from pound_solve.sweep.execution.lock import locked
+    from pound_solve.sweep.points import Interrupted, Points
+    from pound_solve.sweep.session import Session
+
+    if study.warnings and not args.quiet:
+        print(study.warnings, file=sys.stderr)
+    with locked(study.out):
+        session = Session(study, engine(args.executor, study.workers), retry=args.retry)
+        points, progress, complete = Points(session), StudyProgress(args), True
+        try:
+            with points.conducted(progress):
+                explore(points)
+        except Interrupted:
+            complete = False
+        progress.end()
+        yield session, session.write(), complete
+
+
 def ended(args: argparse.Namespace, session: Session, path: Path | None) -> int:
-    """Print the number of runs by status and the path of their table; return the exit status."""
+    """Print the number of runs by status and the paths of the results; return the exit status."""
     if not args.quiet:
         print("\n".join(session.summary()))
         if path is not None:

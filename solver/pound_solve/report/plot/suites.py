@@ -1,15 +1,19 @@
-"""Pictures of many runs: trends over a PARAM, curves of an incremental dynamic analysis with fractiles,
-fragilities, and probabilities of contact.
+"""Pictures of many runs: trends over a PARAM, bars, curves of an incremental dynamic analysis with
+fractiles, fragilities, and probabilities of contact.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
+
+import numpy as np
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
+
+BAR: Final = 0.8  #: width of all bars of a row, as a fraction of the distance of rows
 
 
 class Curves(NamedTuple):
@@ -94,6 +98,25 @@ class Trend(NamedTuple):
     records: Sequence[tuple[Array, Array]]
 
 
+class BarPanel(NamedTuple):
+    """Data of a picture: horizontal bars of one quantity.
+
+    Attributes
+    ----------
+    title, axis : str
+        Of the panel, and of its values with their unit.
+    names : sequence of str
+        Of the rows, from above.
+    bars : sequence of (str, Array)
+        Name of a set of bars, and its value in every row; NaN for none.
+    """
+
+    title: str
+    axis: str
+    names: Sequence[str]
+    bars: Sequence[tuple[str, Array]]
+
+
 class TrendPanel(NamedTuple):
     """Data of a picture: one quantity over a PARAM, with its unit and the trends of all cases."""
 
@@ -132,6 +155,31 @@ def _trends(panels: Sequence[TrendPanel], over: str) -> Any:
     if any(axes.get_legend_handles_labels()[1] for axes in all_axes):
         style.legend_below(figure, all_axes)
     return figure
+
+
+@style.sheet()
+def bars(panels: Sequence[BarPanel], path: Path) -> None:
+    """Draw a panel of horizontal bars for each quantity, see `incremental`."""
+    rows = max(len(panel.names) for panel in panels)
+    sets = max(len(panel.bars) for panel in panels)
+    figure, all_axes = style.panels(len(panels), "", (4.2, 1.1 + rows * (0.18 + 0.14 * sets)))
+    for axes, panel in zip(all_axes, panels):
+        style.grid(axes, panel.axis)
+        width = BAR / len(panel.bars)
+        for k, (name, values) in enumerate(panel.bars):
+            at = np.arange(len(values)) + (k + 0.5) * width - 0.5 * BAR
+            look = style.stroke(k)
+            axes.barh(at, values, width, color=look["color"], label=name or None)
+            for y, value in zip(at, values):
+                if np.isnan(value):
+                    axes.text(0.0, y, " none", fontsize="x-small", va="center")
+        axes.axvline(0.0, color="0.2", linewidth=0.8)
+        axes.set_yticks(range(len(panel.names)), panel.names)
+        axes.invert_yaxis()
+        axes.set_title(panel.title)
+    if sets > 1:
+        style.legend_below(figure, all_axes)
+    style.save(figure, path)
 
 
 @style.sheet()

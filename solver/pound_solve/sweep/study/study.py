@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import itertools
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
@@ -102,7 +102,12 @@ class Study:
     variables: tuple[StudyVariable, ...] = ()
 
 
-def read(document: Document, tables: Sequence[str] = (), items: tuple[str, ...] = ()) -> Study:
+def read(
+    document: Document,
+    tables: Sequence[str] = (),
+    items: tuple[str, ...] = (),
+    check: Callable[[Document, Sequence[StudyVariable]], None] = lambda document, variables: None,
+) -> Study:
     """The study of a document.
 
     Parameters
@@ -112,22 +117,30 @@ def read(document: Document, tables: Sequence[str] = (), items: tuple[str, ...] 
         Tables of it that the verb reads beside those of a sweep.
     items : tuple of str
         Items of a variable that the verb reads, if it reads the table of variables.
+    check : callable
+        Adds what is wrong with the variables for the verb to the document.
 
     Raises
     ------
     StudyError
         It has mistakes.
     """
-    if document.diagnostics:  # not TOML
+    if any(d.code == "S601" for d in document.diagnostics):  # not TOML
         raise StudyError(document.diagnostics, document.files)
-    return _Reader(document, tables, items).study()
+    return _Reader(document, tables, items, check).study()
 
 
 class _Reader:
     """Reads one document."""
 
-    def __init__(self, document: Document, tables: Sequence[str], items: tuple[str, ...]) -> None:
-        self.document, self.varies, self.items = document, TABLE in tables, items
+    def __init__(
+        self,
+        document: Document,
+        tables: Sequence[str],
+        items: tuple[str, ...],
+        check: Callable[[Document, Sequence[StudyVariable]], None],
+    ) -> None:
+        self.document, self.varies, self.items, self.check = document, TABLE in tables, items, check
         document.known((), (*ITEMS, *OF_OTHERS))
         for name, verb in OF_OTHERS.items():
             if name not in tables and document.at((name,)) is not None:
@@ -160,6 +173,7 @@ class _Reader:
         base = ParameterCase("", (), self.folders, texts["method"] or None, dt, tol)
         self._names(decks, combinations)
         variables = tuple(self._variables())
+        self.check(document, variables)
         if variables:
             combinations = [tuple((v.name, repr(v.value)) for v in variables if self._is_param(v.name))]
         for deck in decks:
