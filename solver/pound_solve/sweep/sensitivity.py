@@ -42,7 +42,7 @@ Key: TypeAlias = tuple[int, int, int]  #: numbers of a variable, a quantity and 
 
 
 @dataclass(frozen=True)
-class Aim:
+class SensitivityAim:
     """What sensitivities are asked for.
 
     Attributes
@@ -58,7 +58,7 @@ class Aim:
     step: float
 
 
-def aim(document: Document) -> Aim:
+def aim(document: Document) -> SensitivityAim:
     """Read the table ``[sensitivity]`` of a study; mistakes are added to the document."""
     document.take((TABLE,), dict, {})
     document.known((TABLE,), ITEMS)
@@ -70,7 +70,7 @@ def aim(document: Document) -> Aim:
     step = document.take((TABLE, "step"), float, STEP)
     if not 0.0 < step < 1.0:
         document.mistake("S603", "step is a fraction above 0 and below 1", (TABLE, "step"))
-    return Aim(quantities, over_records(document, (TABLE, "records"), OverRecords(EACH)), step)
+    return SensitivityAim(quantities, over_records(document, (TABLE, "records"), OverRecords(EACH)), step)
 
 
 def check_steps(document: Document, variables: Sequence[StudyVariable]) -> None:
@@ -90,7 +90,7 @@ class SensitivityAnalysis:
 
     Parameters
     ----------
-    aim : Aim
+    aim : SensitivityAim
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class SensitivityAnalysis:
         By record, the smallest approach speed of a collision over the largest.
     """
 
-    def __init__(self, aim: Aim) -> None:
+    def __init__(self, aim: SensitivityAim) -> None:
         self.aim = aim
         self.lines: list[Sensitivity] = []
         self.gentlest: dict[str, float] = {}

@@ -173,6 +173,7 @@ def bars(panels: Sequence[BarPanel], path: Path) -> None:
             for y, value in zip(at, values):
                 if np.isnan(value):
                     axes.text(0.0, y, " none", fontsize="x-small", va="center")
+        axes.margins(x=0.08)
         axes.axvline(0.0, color="0.2", linewidth=0.8)
         axes.set_yticks(range(len(panel.names)), panel.names)
         axes.invert_yaxis()
