@@ -22,7 +22,7 @@ from pound_solve.statistics.sensitivity import Derivative, Sensitivity, weighted
 from pound_solve.sweep.points import Point, PointResult, Points
 from pound_solve.sweep.study.asked import all_asked, over_records
 from pound_solve.sweep.study.document import Document
-from pound_solve.sweep.study.quantities import Values
+from pound_solve.sweep.study.quantities import Values, value_of
 from pound_solve.sweep.study.variables import StudyVariable
 
 TABLE: Final = "sensitivity"  #: of a study
@@ -202,14 +202,6 @@ class SensitivityAnalysis:
                     parts = [by_key[i, q, r] for r in counting.tolist()]
                     total = weighted(parts, weights[counting])
                     yield Sensitivity(asked, name, variable.name, variable.value, total)
-
-
-def value_of(values: Values, asked: Asked) -> float:
-    """Value of a quantity of one run, without a label the one of the largest magnitude; NaN without one."""
-    by_label = values.get(asked.quantity, {})
-    if asked.label:
-        return by_label.get(asked.label, math.nan)
-    return max((x for x in by_label.values() if not math.isnan(x)), key=abs, default=math.nan)
 
 
 def _error(values: Values) -> float:

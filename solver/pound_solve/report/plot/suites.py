@@ -13,6 +13,7 @@ import numpy as np
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
 
+FEW: Final = 20  #: values that are marked one by one
 BAR: Final = 0.8  #: width of all bars of a row, as a fraction of the distance of rows
 
 
@@ -117,6 +118,23 @@ class BarPanel(NamedTuple):
     bars: Sequence[tuple[str, Array]]
 
 
+class FitPanel(NamedTuple):
+    """Data of a picture: measured values and the fitted ones.
+
+    Attributes
+    ----------
+    title, x_axis, y_axis : str
+    x, measured, fitted : ndarray, shape (n,)
+    """
+
+    title: str
+    x_axis: str
+    y_axis: str
+    x: Array
+    measured: Array
+    fitted: Array
+
+
 class TrendPanel(NamedTuple):
     """Data of a picture: one quantity over a PARAM, with its unit and the trends of all cases."""
 
@@ -180,6 +198,23 @@ def bars(panels: Sequence[BarPanel], path: Path) -> None:
         axes.set_title(panel.title)
     if sets > 1:
         style.legend_below(figure, all_axes)
+    style.save(figure, path)
+
+
+@style.sheet()
+def fits(panels: Sequence[FitPanel], path: Path) -> None:
+    """Draw measured and fitted values, and below them their difference; see `incremental`."""
+    figure = style.figure(4.2 * len(panels), 4.6)
+    grid = figure.subplots(2, len(panels), squeeze=False, sharex="col", height_ratios=(2.5, 1.0))
+    for (above, below), panel in zip(grid.T, panels):
+        style.grid(above, "", panel.y_axis).set_title(panel.title)
+        style.grid(below, panel.x_axis, "difference")
+        marks = "o" if len(panel.x) <= FEW else ""
+        above.plot(panel.x, panel.measured, marker=marks, markersize=4, color="0.55", label="measured")
+        above.plot(panel.x, panel.fitted, marker=marks, markersize=3, color=style.BLUE, label="fitted")
+        below.plot(panel.x, panel.fitted - panel.measured, marker=marks, markersize=3, color=style.BLUE)
+        below.axhline(0.0, color="0.2", linewidth=0.8)
+    style.legend_below(figure, list(grid.flat))
     style.save(figure, path)
 
 

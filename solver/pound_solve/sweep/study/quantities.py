@@ -12,6 +12,7 @@ from pound_solve.check import Check, Subject, looked
 from pound_solve.results.contents import TABLES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Stage, Table
+from pound_solve.statistics.curves import Asked
 from pound_solve.sweep.study.pairs import PAIRS
 
 Values: TypeAlias = dict[str, dict[str, float]]  #: of one run: by quantity and by label
@@ -153,6 +154,14 @@ def taken(rows: Mapping[str, list[Fields]]) -> Values:
         if by_label:
             values[q.name] = by_label
     return values
+
+
+def value_of(values: Values, asked: Asked) -> float:
+    """Value of a quantity of one run, without a label the one of the largest magnitude; NaN without one."""
+    by_label = values.get(asked.quantity, {})
+    if asked.label:
+        return by_label.get(asked.label, math.nan)
+    return max((x for x in by_label.values() if not math.isnan(x)), key=abs, default=math.nan)
 
 
 def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]]]:

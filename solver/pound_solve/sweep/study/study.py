@@ -44,7 +44,13 @@ ITEMS: Final = (
 LARGEST: Final[Mapping[str, float]] = MappingProxyType({"seconds": 1e8, "memory": 1e9, "workers": 1e4})
 #: tables read by other verbs
 OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType(
-    {"ida": "pound-solve ida", TABLE: "pound-solve sensitivity", "sensitivity": "pound-solve sensitivity"}
+    {
+        "ida": "pound-solve ida",
+        TABLE: "pound-solve sensitivity",
+        "sensitivity": "pound-solve sensitivity",
+        "calibrate": "pound-solve calibrate",
+        "measured": "pound-solve calibrate",
+    }
 )
 #: items of a sweep that give PARAMs several values, which a study with variables does not take
 SEVERAL: Final = ("decks", "grid", "zip", "cases")
