@@ -195,6 +195,11 @@ def test_a_mistake_is_reported_at_its_line(tmp_path, variables, quantities, more
     assert [d.code for d in raised.value.diagnostics if d.severity == "error"] == [code]
 
 
+def test_a_label_that_is_not_there_is_named(tmp_path, capsys):
+    assert main(["sensitivity", str(study(tmp_path, "gap = {}", '["contact_force floor"]'))]) == 2
+    assert "contact_force has no label floor: there are 2" in capsys.readouterr().err
+
+
 def test_all_mistakes_come_in_one_pass(tmp_path):
     path = study(tmp_path, "gap = { low = 0.01 }\nkk = {}", '["force"]', "step = 2.0")
     with pytest.raises(StudyError) as raised:

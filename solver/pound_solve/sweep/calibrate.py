@@ -18,7 +18,7 @@ from pound_solve.sweep.points import PointResult, Points
 from pound_solve.sweep.study import measured
 from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.measured import Measured
-from pound_solve.sweep.study.quantities import QUANTITIES, value_of
+from pound_solve.sweep.study.quantities import QUANTITIES, require, value_of
 from pound_solve.sweep.study.scaling import Scaling
 
 TABLE: Final = "calibrate"  #: of a study
@@ -198,10 +198,10 @@ class CalibrationAnalysis:
             entry = result.entries[r]
             if not result.values[r]:
                 raise CurveError(f"the run with the values of the study {entry.status}: {entry.message}")
-            if m.asked is not None and math.isnan(value_of(result.values[r], m.asked)):
-                labels = [label for label in result.values[r].get(m.asked.quantity, {}) if label]
-                there = f": there are {', '.join(labels)}" if labels else ""
-                raise CurveError(f"the runs have no {m.name}{there}")
+            if m.asked is not None:
+                require(result.values[r], m.asked)
+                if math.isnan(value_of(result.values[r], m.asked)):
+                    raise CurveError(f"the run with the values of the study has no {m.name}")
             if m.history:
                 rows, labels = measured.column(self._kept(result, r), m.history, m.label)
                 if rows is None:

@@ -7,6 +7,7 @@ or an error that stays large leave a quantity without a derivative, and the reas
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from pound_solve.statistics.sensitivity import Derivative, Sensitivity, weighted
 from pound_solve.sweep.points import Point, PointResult, Points
 from pound_solve.sweep.study.asked import all_asked, over_records
 from pound_solve.sweep.study.document import Document
-from pound_solve.sweep.study.quantities import Values, value_of
+from pound_solve.sweep.study.quantities import Values, require, value_of
 from pound_solve.sweep.study.variables import StudyVariable
 
 TABLE: Final = "sensitivity"  #: of a study
@@ -112,9 +113,13 @@ class SensitivityAnalysis:
         ------
         Interrupted
             After Ctrl-C.
+        CurveError
+            The runs have other labels of a quantity.
         """
         self.points = points
         (self.center,) = points.results([points.nominal])
+        for asked, values in itertools.product(self.aim.quantities, self.center.values):
+            require(values, asked)
         self.records = [run.shaking.record.name if run.shaking else "" for run in self.center.runs]
         self.gentlest = {name: e.gentlest for name, e in zip(self.records, self.center.entries)}
         varied = list(range(len(points.variables)))

@@ -47,7 +47,7 @@ def _calibrated(args: argparse.Namespace) -> int:
             return studies.ended(args, session, path)
         sweep, result = Sweep.open(path), analysis.result
         path = path.with_name("calibrate.h5")
-        lines = list(report.report(sweep, result))
+        lines = list(report.report(sweep, result, str(document.at(("deck",)))))
         write_table(path, report.columns(result), report.about(sweep, result))
         summary.write(path, sweep, "calibration", lines)
         if args.picture:

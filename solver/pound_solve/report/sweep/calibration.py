@@ -18,8 +18,8 @@ SAME: Final = 1e-3  #: relative difference of two sums of squares up to which tw
 LACKS: Final = 1.5  #: scatter over the known standard deviations above which the model lacks something
 
 
-def report(sweep: Sweep, result: Calibration) -> Iterator[str]:
-    """Lines of the report."""
+def report(sweep: Sweep, result: Calibration, deck: str) -> Iterator[str]:
+    """Lines of the report; `deck` is the name of the deck in the study."""
     units = units_of(sweep)
     yield from printed(units, variables_table(result.confidence), _variables(result))
     yield ""
@@ -31,7 +31,7 @@ def report(sweep: Sweep, result: Calibration) -> Iterator[str]:
     yield from _scatter(result)
     yield from _agreement(result)
     options = " ".join(f"--set {v.name}={v.value!r}" for v in result.variables)
-    yield from ("", "The run that fits best:", f"  pound-solve {sweep['deck'][0]} {options}")
+    yield from ("", "The run that fits best:", f"  pound-solve {deck} {options}")
 
 
 def _variables(result: Calibration) -> Iterator[Row]:
@@ -43,7 +43,8 @@ def _variables(result: Calibration) -> Iterator[Row]:
 def _fit(m: MeasuredFit) -> Row:
     peak = m.is_peak
     ends = (m.measured[0], m.fitted[0]) if peak else (np.abs(m.measured).max(), np.nanmax(np.abs(m.fitted)))
-    return m.name, m.record, m.unit, len(m.measured), *map(float, ends), m.scatter, m.sd, m.memory
+    peaks = [f"{end:.5g}" for end in ends]
+    return m.name, m.record, m.unit, len(m.measured), *peaks, m.scatter, m.sd, m.memory
 
 
 def _scatter(result: Calibration) -> Iterator[str]:
@@ -139,8 +140,8 @@ FITS: Final = Sheet(
         Column("record", doc="record"),
         Column("unit", doc="of the values"),
         Column("values", "values", fmt="int", doc="number of values"),
-        Column("peak", "measured\npeak", fmt="num", doc="largest measured magnitude, or the peak"),
-        Column("fitted", "fitted\npeak", fmt="num", doc="the same of the fitted run"),
+        Column("peak", "measured\npeak", doc="largest measured magnitude, or the peak"),
+        Column("fitted", "fitted\npeak", doc="the same of the fitted run"),
         Column("scatter", "scatter", fmt="short", doc="root mean square of the differences"),
         Column("sd", "given sd", fmt="short", doc="standard deviation of the measured values"),
         Column(

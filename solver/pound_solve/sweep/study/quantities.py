@@ -12,7 +12,7 @@ from pound_solve.check import Check, Subject, looked
 from pound_solve.results.contents import TABLES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Stage, Table
-from pound_solve.statistics.curves import Asked
+from pound_solve.statistics.curves import Asked, CurveError
 from pound_solve.sweep.study.pairs import PAIRS
 
 Values: TypeAlias = dict[str, dict[str, float]]  #: of one run: by quantity and by label
@@ -98,6 +98,10 @@ def _each(
 
 QUANTITIES: Final = (
     Quantity("period", "", "T", "period of the first mode of MODAL", "modes", _first_mode, _of("period")),
+    Quantity(
+        "frequency", "mode", "1/T", "natural frequency of each mode of MODAL",
+        "modes", lambda row: str(row["mode"]), _of("frequency"),
+    ),
     *_each("drift_envelope", "drift", _named("name"), (
         ("peak_drift", "L", "largest absolute drift", _largest),
         ("drift_ratio", "-", "largest absolute drift over its height", _of("ratio_max")),
@@ -162,6 +166,19 @@ def value_of(values: Values, asked: Asked) -> float:
     if asked.label:
         return by_label.get(asked.label, math.nan)
     return max((x for x in by_label.values() if not math.isnan(x)), key=abs, default=math.nan)
+
+
+def require(values: Values, asked: Asked) -> None:
+    """Check that a run which has a quantity has the label asked for.
+
+    Raises
+    ------
+    CurveError
+        It has others.
+    """
+    labels = list(values.get(asked.quantity, {}))
+    if asked.label and labels and asked.label not in labels:
+        raise CurveError(f"{asked.quantity} has no label {asked.label}: there are {', '.join(labels)}")
 
 
 def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]]]:
