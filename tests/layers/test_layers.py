@@ -128,6 +128,9 @@ WITHIN = {
     ),
     "statistics": (
         "over_records",
+        "distributions",
+        "replicates",
+        "sobol_indices",
         "fragility",
         "separation",
         "incremental",
@@ -150,6 +153,7 @@ WITHIN = {
         "ida",
         "sensitivity",
         "calibrate",
+        "uncertainty",
     ),
     "driver": (
         "request",

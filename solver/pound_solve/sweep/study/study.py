@@ -50,6 +50,8 @@ OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType(
         "sensitivity": "pound-solve sensitivity",
         "calibrate": "pound-solve calibrate",
         "measured": "pound-solve calibrate",
+        "uncertainty": "pound-solve uncertainty",
+        "correlation": "pound-solve uncertainty",
     }
 )
 #: items of a sweep that give PARAMs several values, which a study with variables does not take
