@@ -142,6 +142,7 @@ WITHIN = {
         "fractiles",
         "fragility_of_sweep",
         "needed_gaps",
+        "propagation",
     ),
     "sweep": (
         "study",

@@ -5,13 +5,19 @@ The points of a Sobol sequence or of a Latin hypercube are not independent, and 
 them is smaller than the standard deviation over the root of their number.  Independent randomizations of
 the plan are independent, and each gives an unbiased mean.  Of R replicates
 
-.. math:: \bar x \pm t_{R-1}\,s/\sqrt R
+.. math:: \bar x \pm t_\nu\,s/\sqrt R
 
-is Student's interval of the mean, with the standard deviation s of the means of the replicates (L'Ecuyer et
-al. 2023, Confidence intervals for randomized quasi-Monte Carlo estimators, Winter Simulation Conference).
-Other statistics take the pseudo-values of the jackknife, :math:`R\,T - (R-1)\,T_{-r}` with the statistic
-:math:`T_{-r}` of all replicates but r, in place of the means (Tukey 1958; Efron and Stein 1981, Ann. Stat.
-9: 586-596), which also removes most of the bias.
+is the interval of the mean, with the standard deviation s of the means of the replicates and Student's
+quantile t (L'Ecuyer et al. 2023, Confidence intervals for randomized quasi-Monte Carlo estimators, Winter
+Simulation Conference).  Those means are not normal: a kurtosis :math:`\kappa` of theirs leaves the variance
+:math:`s^2` the degrees of freedom (Satterthwaite 1946, Biometrics Bull. 2: 110-114)
+
+.. math:: \frac{2}{\nu} = \frac{2}{R-1} + \frac{\kappa-3}{R}.
+
+The kurtosis of Laplace's distribution, 6, is assumed, so that intervals of skewed functions keep their
+level.  Other statistics take the pseudo-values of the jackknife, :math:`R\,T - (R-1)\,T_{-r}` with the
+statistic :math:`T_{-r}` of all replicates but r, in place of the means (Tukey 1958; Efron and Stein 1981,
+Ann. Stat. 9: 586-596), which also removes most of the bias.
 
 A probability has the wider of this interval and that of Clopper and Pearson for independent points.  The
 latter holds for stratified points too, whose number of hits scatters less (Hoeffding 1956, Ann. Math.
@@ -31,6 +37,7 @@ from numpy.typing import NDArray
 from pound_solve.numerics.types import Array
 
 REPLICATES: Final = 8
+KURTOSIS: Final = 6.0  #: that is assumed for the means of replicates
 SAMPLINGS: Final = ("sobol", "latin")
 #: distance of a variate from 0 and 1, at which distributions without ends are infinite
 MARGIN: Final = 2.0**-32
@@ -85,7 +92,7 @@ def jackknifed(statistic: _Some, level: float, replicates: int = REPLICATES) -> 
     without = np.array([statistic(np.delete(every, r)) for r in every])
     pseudo = replicates * np.asarray(statistic(every)) - (replicates - 1) * without
     value = pseudo.mean(axis=0)
-    half = _student(level, replicates) * pseudo.std(axis=0, ddof=1) / np.sqrt(replicates)
+    half = _half(pseudo, level)
     return Estimate(value, value - half, value + half)
 
 
@@ -202,9 +209,9 @@ def _bounds(shares: Array, points: int, level: float) -> tuple[Array, Array]:
     """
     from scipy.special import betaincinv
 
-    replicates, tail = len(shares), 0.5 * (1.0 - level)
-    half = _student(level, replicates) * shares.std(axis=0, ddof=1) / np.sqrt(replicates)
-    mean, total = shares.mean(axis=0), replicates * points
+    tail = 0.5 * (1.0 - level)
+    half = _half(shares, level)
+    mean, total = shares.mean(axis=0), len(shares) * points
     hits, misses = total * mean, total * (1.0 - mean)
     with np.errstate(invalid="ignore"):
         low = np.where(hits > 0.0, betaincinv(hits, misses + 1.0, tail), 0.0)
@@ -212,8 +219,15 @@ def _bounds(shares: Array, points: int, level: float) -> tuple[Array, Array]:
     return np.minimum(low, np.maximum(mean - half, 0.0)), np.maximum(high, np.minimum(mean + half, 1.0))
 
 
-def _student(level: float, replicates: int) -> float:
+def _student(level: float, freedom: float) -> float:
     """Student's two-sided quantile."""
     from scipy.special import stdtrit
 
-    return float(stdtrit(replicates - 1, 0.5 * (1.0 + level)))
+    return float(stdtrit(freedom, 0.5 * (1.0 + level)))
+
+
+def _half(values: Array, level: float) -> Array:
+    """Half of the interval of the mean of replicates, which are the first axis."""
+    count = len(values)
+    freedom = 2.0 / (2.0 / (count - 1) + (KURTOSIS - 3.0) / count)
+    return np.asarray(_student(level, freedom) * values.std(axis=0, ddof=1) / np.sqrt(count))

@@ -7,8 +7,7 @@ records, of which each counts alike.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from types import MappingProxyType
 from typing import Final
 
@@ -25,6 +24,7 @@ from pound_solve.statistics.distributions import (
     Parameters,
     dependent,
 )
+from pound_solve.statistics.propagation import CONTACT, SPREAD, Propagated, UncertaintyAim
 from pound_solve.statistics.replicates import REPLICATES, SAMPLINGS, uniform
 from pound_solve.statistics.sobol_indices import mixed
 from pound_solve.sweep.execution.conduct import State
@@ -40,49 +40,9 @@ CORRELATION: Final = "correlation"  #: the other one
 TABLES: Final = (VARIABLES, TABLE, CORRELATION)
 VARIABLE_ITEMS: Final = ("distribution", "mean", "sd", "cov", "mode")  #: items of a variable
 ITEMS: Final = ("quantities", "limits", "sampling", "runs", "seed", "confidence", "indices")
-CONTACT: Final = Asked("closures")
 DEFAULTS: Final = (Asked("storey_drift"), Asked("contact_force"))  #: quantities without `quantities`
 LEAST: Final = 64  #: runs of a record, below which the scatter of the replicates says little
-SPREAD: Final = (0.16, 0.84)  #: fractiles of a variable between which the tornado varies it
 SMALLEST_EIGENVALUE: Final = 1e-8  #: of a matrix of correlations
-
-
-@dataclass(frozen=True)
-class UncertaintyAim:
-    """What an analysis of uncertainty asks for.
-
-    Attributes
-    ----------
-    distributions : mapping of str to Distribution
-        Of every variable, in the order of the study.
-    correlation : ndarray, shape (n_variables, n_variables)
-    quantities : tuple of Asked
-        Empty for `DEFAULTS`.
-    limits : tuple of (Asked, float)
-    sampling : str
-        One of `SAMPLINGS`.
-    runs, seed : int
-        Points of the sample, and the seed of its randomizations.
-    level : float
-        Of confidence.
-    with_indices : bool
-        Whether Sobol indices are asked for.
-    """
-
-    distributions: Mapping[str, Distribution]
-    correlation: Array
-    quantities: tuple[Asked, ...]
-    limits: tuple[tuple[Asked, float], ...]
-    sampling: str
-    runs: int
-    seed: int
-    level: float
-    with_indices: bool
-
-    @property
-    def is_dependent(self) -> bool:
-        """Whether any variables are correlated."""
-        return bool(np.any(self.correlation != np.eye(len(self.correlation))))
 
 
 def aim(document: Document) -> UncertaintyAim:
@@ -203,12 +163,11 @@ def _plan(document: Document, variables: int, with_indices: bool) -> tuple[str, 
     elif runs * each > MAX_RUNS:
         document.mistake("S603", f"the study has more than {MAX_RUNS} runs", path, "take fewer runs")
     elif sampling == "sobol" and runs & (runs - 1):
-        near = 2 ** round(math.log2(runs))
         message = f"a Sobol sequence has a power of 2 as its number of points, not {runs}"
-        document.mistake("S603", message, path, f'write runs = {near}, or sampling = "latin"')
+        document.mistake("S603", message, path, f"write runs = {2 ** (runs.bit_length() - 1)}")
     elif runs % REPLICATES:
         message = f"runs is a multiple of {REPLICATES}, the number of replicates, not {runs}"
-        document.mistake("S603", message, path, f"write runs = {-(-runs // REPLICATES) * REPLICATES}")
+        document.mistake("S603", message, path, f"write runs = {runs - runs % REPLICATES}")
     return sampling, runs
 
 
@@ -217,28 +176,6 @@ def _limits(document: Document) -> Iterator[tuple[Asked, float]]:
     for text in document.take((TABLE, "limits"), dict, {}):
         path = (TABLE, "limits", text)
         yield asked(document, path, text), document.take(path, float, math.nan)
-
-
-@dataclass(frozen=True)
-class Propagated:
-    """Demands of all runs of an analysis, in all arrays with the records along the last axis.
-
-    Attributes
-    ----------
-    nominal : mapping of Asked to ndarray, shape (n_records,)
-        At the values of the study.
-    sample : mapping of Asked to ndarray, shape (n_replicates, n_points, n_records)
-        With indices also at their second sample.
-    mixtures : mapping of Asked to ndarray, shape (n_variables, n_replicates, n_points, n_records)
-        At the mixed samples of the indices; without indices nothing.
-    tornado : mapping of Asked to ndarray, shape (1 + 2*n_variables, n_records)
-        At all medians, then with each variable at the ends of `SPREAD`.
-    """
-
-    nominal: Mapping[Asked, Array]
-    sample: Mapping[Asked, Array]
-    mixtures: Mapping[Asked, Array]
-    tornado: Mapping[Asked, Array]
 
 
 class UncertaintyAnalysis:

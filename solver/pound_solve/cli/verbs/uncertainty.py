@@ -54,7 +54,7 @@ def _analysed(args: argparse.Namespace) -> int:
             return studies.ended(args, session, session.write())
         progress.end()
         sweep = Sweep.open(session.write())
-        evaluation = Evaluation(sweep, points.variables, aim, runs)
+        evaluation = Evaluation(sweep, {v.name: v.value for v in points.variables}, aim, runs)
         lines = list(evaluation.report())
         path = study.out / "uncertainty.h5"
         write_table(path, evaluation.table(), sweep.about)

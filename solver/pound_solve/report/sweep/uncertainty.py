@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -15,13 +15,12 @@ from pound_solve.report.text import WIDTH, printed
 from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.statistics.curves import Asked, unit_of, units_of
+from pound_solve.statistics.propagation import CONTACT, SPREAD, Propagated, UncertaintyAim
 from pound_solve.statistics.replicates import REPLICATES, Estimate, fractiles, moments, share
 from pound_solve.statistics.sobol_indices import indices
-from pound_solve.sweep.study.variables import StudyVariable
-from pound_solve.sweep.uncertainty import CONTACT, SPREAD, Propagated, UncertaintyAim
 
 SHARES: Final = (0.05, 0.16, 0.5, 0.84, 0.95)  #: fractiles in tables
-RECORD: Final = "record"  #: the variable of the indices that is none of the study
+RECORD: Final = "record"  #: the variable of the indices beside those of the study
 MEAN, DEVIATION, FRACTILE, FIRST, TOTAL, SWING = (
     "mean", "standard deviation", "fractile", "first order", "total", "tornado",
 )  # fmt: skip
@@ -34,13 +33,14 @@ class Evaluation:
     ----------
     sweep : Sweep
         The runs.
-    variables : sequence of StudyVariable
+    variables : mapping of str to float
+        Values of the variables in the study.
     aim : UncertaintyAim
     runs : Propagated
     """
 
     def __init__(
-        self, sweep: Sweep, variables: Sequence[StudyVariable], aim: UncertaintyAim, runs: Propagated
+        self, sweep: Sweep, variables: Mapping[str, float], aim: UncertaintyAim, runs: Propagated
     ) -> None:
         self.sweep, self.variables, self.aim, self.runs = sweep, variables, aim, runs
         others = () if aim.quantities else (CONTACT,)
@@ -68,20 +68,20 @@ class Evaluation:
     @property
     def factors(self) -> list[str]:
         """Variables that have indices: the record too if there are several."""
-        names = [v.name for v in self.variables]
+        names = list(self.variables)
         several = next(iter(self.runs.nominal.values())).size > 1
         return [*names, *([RECORD] if several else [])]
 
     def of_variables(self) -> Iterator[Row]:
         """One row for each variable."""
-        for v in self.variables:
-            d = self.aim.distributions[v.name]
+        for name, value in self.variables.items():
+            d = self.aim.distributions[name]
             p = d.parameters
             given = [p.mean, p.sd, p.mode, p.low, p.high]
             known = (x if math.isfinite(x) else math.nan for x in given)
             yield (
-                v.name,
-                v.value,
+                name,
+                value,
                 d.family,
                 *known,
                 *d.quantile(np.array([SPREAD[0], 0.5, SPREAD[1]])).tolist(),
@@ -124,11 +124,10 @@ class Evaluation:
         """One row for each quantity and variable, the largest swing first: means of the records."""
         for q in self.shown:
             means = self.runs.tornado[q].mean(axis=1)
-            with np.errstate(invalid="ignore"):
-                rows = [
-                    (v.name, low, high, abs(high - low))
-                    for v, low, high in zip(self.variables, means[1::2].tolist(), means[2::2].tolist())
-                ]
+            rows = [
+                (name, low, high, abs(high - low))
+                for name, low, high in zip(self.variables, means[1::2].tolist(), means[2::2].tolist())
+            ]
             rows.sort(key=lambda row: -row[3] if row[3] == row[3] else math.inf)
             for name, low, high, swing in rows:
                 yield self.name(q), name, low, float(means[0]), high, swing
@@ -174,7 +173,7 @@ class Evaluation:
 
     def _correlations(self) -> Iterator[Row]:
         """One row for each pair of variables that depend on each other."""
-        names, matrix = [v.name for v in self.variables], self.aim.correlation
+        names, matrix = list(self.variables), self.aim.correlation
         for i, j in zip(*np.triu_indices(len(names), 1)):
             if matrix[i, j] != 0.0:
                 yield names[i], names[j], float(matrix[i, j])
@@ -209,9 +208,9 @@ class Evaluation:
                     yield *head, statistic, factor, math.nan, *(float(x[k]) for x in of)
             means = self.runs.tornado[q].mean(axis=1).tolist()
             yield *head, SWING, "", 0.5, means[0], *none
-            for i, v in enumerate(self.variables):
+            for i, name in enumerate(self.variables):
                 for at, value in zip(SPREAD, means[1 + 2 * i : 3 + 2 * i]):
-                    yield *head, SWING, v.name, at, value, *none
+                    yield *head, SWING, name, at, value, *none
         for q, limit, estimate in self.shares:
             yield " ".join(filter(None, q)), "", "probability", "", limit, *_numbers(estimate)
 
