@@ -87,7 +87,7 @@ def values(evaluation, statistic):
 
 @pytest.fixture(scope="module")
 def linear(tmp_path_factory):
-    study = STUDY + "indices = true\nlimits = { peak_drift = 0.05 }\n"
+    study = STUDY + "indices = true\nlimits = { peak_drift = 2 }\n"
     return analysed(folder(tmp_path_factory.mktemp("linear"), study, LINEAR))
 
 
@@ -109,7 +109,7 @@ def test_a_linear_oscillator_has_known_statistics(linear):
         swing = tornado[name, 0.84][0] - tornado[name, 0.16][0]
         assert swing == pytest.approx(0.68 * factor * c, rel=1e-9)
     assert [row[1] for row in linear.of_tornado()] == ["b", "a"]
-    at = next(at for _, at in values(linear, "probability") if at == 0.05)
+    at = next(at for _, at in values(linear, "probability") if at == 2.0)
     samples = np.random.default_rng(0).uniform(0.5, 1.5, (2, 200_000))
     assert inside(values(linear, "probability")["", at], (c * (samples[0] + 2 * samples[1]) >= at).mean())
     assert inside(values(linear, "fractile")["", 0.5], 3.0 * c)

@@ -312,7 +312,8 @@ def quantity_table(sure: str) -> Sheet:
             Column("sd", "standard\ndeviation", fmt="num", doc="over points and records"),
             *_ends(sure, "sd_"),
             Column("remark", doc="what is missing"),
-        )
+        ),
+        group="quantity",
     )
 
 
