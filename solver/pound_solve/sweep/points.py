@@ -15,6 +15,7 @@ from typing import TypeAlias
 from pound_solve.results.sweep_file import DONE
 from pound_solve.sweep.execution.conduct import Conductor, State
 from pound_solve.sweep.execution.journal import JournalEntry
+from pound_solve.sweep.execution.work import Analysis, analysed
 from pound_solve.sweep.session import Session
 from pound_solve.sweep.study.quantities import Values
 from pound_solve.sweep.study.run import StudyRun
@@ -101,20 +102,30 @@ class Points:
         for run in (run for runs in at for run in runs):
             self._asked.setdefault(run.identity, run)
         self._execute([run for runs in at for run in runs])
-        results = []
-        for runs in at:
-            entries, values = zip(*(self._results[run.identity] for run in runs))
-            results.append(PointResult(runs, entries, values))
-        return results
+        return [self._result(runs) for runs in at]
 
-    def _execute(self, runs: Sequence[StudyRun]) -> None:
+    def derived(self, point: Sequence[float], analysis: Analysis) -> PointResult:
+        """Results of another analysis of the runs at a point, which takes derivatives by the variables; see
+        `results`.  They are not runs of the study.
+        """
+        names = tuple(v.name for v in self.variables)
+        runs = tuple(replace(run, variables=names) for run in self.runs(point))
+        self._execute(runs, analysis)
+        return self._result(runs)
+
+    def _result(self, runs: tuple[StudyRun, ...]) -> PointResult:
+        """Results of the runs at a point, which have ended."""
+        entries, values = zip(*(self._results[run.identity] for run in runs))
+        return PointResult(runs, entries, values)
+
+    def _execute(self, runs: Sequence[StudyRun], analysis: Analysis = analysed) -> None:
         """Execute the runs that the journal has not, and read the results of all."""
         assert self._conductor is not None, "runs are executed within the context `conducted`"
         session = self.session
         missing = {r.identity: r for r in runs if r.identity not in self._results}
         ahead = [r for r in missing.values() if self._is_ahead(r)]
         self._tried |= {r.identity for r in ahead}
-        session.carry_on(self._conductor, ahead)
+        session.carry_on(self._conductor, ahead, analysis)
         entries = {i: session.entries[i] for i in missing if i in session.entries}
         for identity, values in session.journal.values(entries):
             self._results[identity] = entries[identity], values

@@ -15,7 +15,7 @@ from pound_solve.sweep.execution.conduct import Conductor, State
 from pound_solve.sweep.execution.executors import Engine, engine
 from pound_solve.sweep.execution.journal import Journal, JournalEntry
 from pound_solve.sweep.execution.lock import locked
-from pound_solve.sweep.execution.work import Settings, options_of_auto
+from pound_solve.sweep.execution.work import Analysis, Settings, analysed, options_of_auto
 from pound_solve.sweep.plan import TrialRuns
 from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.run import StudyRun
@@ -105,10 +105,12 @@ class Session:
         with self.conductor(report) as conductor:
             return self.carry_on(conductor, runs)
 
-    def carry_on(self, conductor: Conductor, runs: Sequence[StudyRun]) -> list[JournalEntry]:
+    def carry_on(
+        self, conductor: Conductor, runs: Sequence[StudyRun], analysis: Analysis = analysed
+    ) -> list[JournalEntry]:
         """Execute runs by a conductor that may have executed others before; see `carry_out`."""
         if runs:
-            conductor.run(runs)
+            conductor.run(runs, analysis)
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 

@@ -7,12 +7,13 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Final, Self
 
 from pound_solve.results.sweep_file import FAILED
 from pound_solve.sweep.execution.executors import Engine
 from pound_solve.sweep.execution.journal import Journal, JournalEntry
-from pound_solve.sweep.execution.work import Settings, carry_out
+from pound_solve.sweep.execution.work import Analysis, Settings, analysed, carry_out
 from pound_solve.sweep.study.run import ParameterCase, StudyRun
 
 INTERVAL: Final = 0.1  #: between two looks at the time [s]
@@ -97,6 +98,7 @@ class Conductor:
         self._deaths = dict[str, int]()
         self._begun = False  # whether a run has ended, and kernels are compiled
         self._since = time.time()
+        self._work = partial(carry_out, analysis=analysed)
 
     def __enter__(self) -> Self:
         return self
@@ -106,14 +108,21 @@ class Conductor:
             lane.executor.shutdown(wait=not lane.flying, cancel_futures=True)
         self._lanes.clear()
 
-    def run(self, runs: Iterable[StudyRun]) -> State:
+    def run(self, runs: Iterable[StudyRun], analysis: Analysis = analysed) -> State:
         """Execute runs; after an interruption, complete those in progress.
+
+        Parameters
+        ----------
+        runs : iterable of StudyRun
+        analysis : callable
+            What is done with each, see `carry_out`.
 
         Raises
         ------
         OSError
             The journal cannot be written.
         """
+        self._work = partial(carry_out, analysis=analysis)
         state = State(0)
         for run in runs:
             self._waiting.setdefault(run.case, deque()).append(run)
@@ -171,7 +180,7 @@ class Conductor:
         while len(lane.flying) < most and (self._suspects or self._waiting):
             run = self._suspects.popleft() if self._suspects else self._next(lane)
             try:
-                future = lane.executor.submit(carry_out, run, self.settings)
+                future = lane.executor.submit(self._work, run, self.settings)
             except BrokenExecutor:
                 self._suspects.appendleft(run)
                 self._renew(lane)

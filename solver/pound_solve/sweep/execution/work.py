@@ -10,7 +10,7 @@ import gc
 import threading
 import time
 import warnings
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from itertools import count
@@ -20,7 +20,7 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.model import Card, Model
-from pound_solve.driver.prepare import DeckError, Prepared, prepare, shaken
+from pound_solve.driver.prepare import Prepared, prepare, shaken
 from pound_solve.driver.sequence import AnalysisSequence, Settled
 from pound_solve.integrate.convergence.compared import ACCELERATIONS, FORCES, tolerances
 from pound_solve.numerics.providers import resident
@@ -38,6 +38,7 @@ from pound_solve.sweep.study.quantities import Fields, doubts, rows_at, taken
 from pound_solve.sweep.study.records import UnreadableError, scaled
 from pound_solve.sweep.study.run import ParameterCase, RecordFile, Shaking, StudyRun, digest_of
 from pound_solve.sweep.study.study import request_of
+from pound_solve.user_error import UserError
 
 #: runs of a process from one collection of garbage to the next: the histories of a run lie in cycles of
 #: references, and Python by itself waits for hundreds of them; one collection takes some 50 ms
@@ -62,6 +63,9 @@ class Settings:
     seconds: float | None = None
     memory: float | None = None
     histories: tuple[str, ...] = ()
+
+
+Analysis = Callable[[StudyRun, Settings, Clock], JournalEntry]
 
 
 class ChangedError(Exception):
@@ -103,67 +107,8 @@ class Kept:
         """Do nothing: no run is restarted from a run of a sweep."""
 
 
-def carry_out(run: StudyRun, settings: Settings) -> JournalEntry:
-    """Execute a run, write its result to the journal, and return it.
-
-    Raises
-    ------
-    OSError
-        The journal cannot be written.
-    """
-    with one_at_a_time(), resident():
-        entry = _carried_out(run, settings)
-        if next(numbers()) % COLLECT == 0:
-            gc.collect()
-        return entry
-
-
-@cache
-def one_at_a_time() -> threading.Lock:
-    """Lock of this process: a worker of Dask may have several threads, but CPU time, limits, and what runs
-    share belong to the process.
-    """
-    return threading.Lock()
-
-
-@cache
-def numbers() -> count[int]:
-    """Counter of the runs of this process, from 1."""
-    return count(1)
-
-
-def _carried_out(run: StudyRun, settings: Settings) -> JournalEntry:
-    """Execute a run within its limits; any failure becomes part of the entry, see `carry_out`."""
-    began = time.process_time()
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            with within(settings.seconds, settings.memory) as clock:
-                entry = _analysed(run, settings, clock)
-        except (DeckError, UnreadableError, ChangedError) as err:
-            entry = JournalEntry(run.identity, FAILED, str(err))
-        except TooLongError:
-            entry = JournalEntry(
-                run.identity, FAILED, f"it takes more than {settings.seconds:g} s of CPU time"
-            )
-        except MemoryError:
-            most = f"{settings.memory:g} MB" if settings.memory else "the machine has"
-            entry = JournalEntry(run.identity, FAILED, f"it takes more memory than {most}")
-        except Exception as err:
-            text = f"a fault of the program, not of the deck: {type(err).__name__}: {err}"
-            entry = JournalEntry(run.identity, FAILED, text)
-    if caught:
-        text = f"arithmetic at the limits of floating point ({caught[0].message})"
-        entry = replace(entry, doubt="; ".join(filter(None, [entry.doubt, text])))
-    entry = replace(entry, cpu=time.process_time() - began)
-    if settings.journal is not None:
-        Journal(settings.journal).add(entry)
-        entry = replace(entry, histories={})
-    return entry
-
-
-def _analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
-    """Run the analyses."""
+def analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
+    """Run the analyses of the deck, and take the quantities."""
     motion = scaled(run.shaking) if run.shaking else None
     request = request_of(run.case, motion)
     ready, settled = prepared(run.case, run.first, settings.histories)
@@ -190,6 +135,72 @@ def _analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
         gentlest=events.gentlest,
         histories=histories_of(record, settings.histories) if started else {},
     )
+
+
+def carry_out(run: StudyRun, settings: Settings, analysis: Analysis = analysed) -> JournalEntry:
+    """Execute a run, write its result to the journal, and return it.
+
+    Parameters
+    ----------
+    run : StudyRun
+    settings : Settings
+    analysis : callable
+        What is done with the run; it can be pickled.
+
+    Raises
+    ------
+    OSError
+        The journal cannot be written.
+    """
+    with one_at_a_time(), resident():
+        entry = _carried_out(run, settings, analysis)
+        if next(numbers()) % COLLECT == 0:
+            gc.collect()
+        return entry
+
+
+@cache
+def one_at_a_time() -> threading.Lock:
+    """Lock of this process: a worker of Dask may have several threads, but CPU time, limits, and what runs
+    share belong to the process.
+    """
+    return threading.Lock()
+
+
+@cache
+def numbers() -> count[int]:
+    """Counter of the runs of this process, from 1."""
+    return count(1)
+
+
+def _carried_out(run: StudyRun, settings: Settings, analysis: Analysis) -> JournalEntry:
+    """Execute a run within its limits; any failure becomes part of the entry, see `carry_out`."""
+    began = time.process_time()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            with within(settings.seconds, settings.memory) as clock:
+                entry = analysis(run, settings, clock)
+        except (UserError, UnreadableError, ChangedError) as err:
+            entry = JournalEntry(run.identity, FAILED, str(err))
+        except TooLongError:
+            entry = JournalEntry(
+                run.identity, FAILED, f"it takes more than {settings.seconds:g} s of CPU time"
+            )
+        except MemoryError:
+            most = f"{settings.memory:g} MB" if settings.memory else "the machine has"
+            entry = JournalEntry(run.identity, FAILED, f"it takes more memory than {most}")
+        except Exception as err:
+            text = f"a fault of the program, not of the deck: {type(err).__name__}: {err}"
+            entry = JournalEntry(run.identity, FAILED, text)
+    if caught:
+        text = f"arithmetic at the limits of floating point ({caught[0].message})"
+        entry = replace(entry, doubt="; ".join(filter(None, [entry.doubt, text])))
+    entry = replace(entry, cpu=time.process_time() - began)
+    if settings.journal is not None:
+        Journal(settings.journal).add(entry)
+        entry = replace(entry, histories={})
+    return entry
 
 
 @lru_cache(maxsize=2)

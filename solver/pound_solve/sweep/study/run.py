@@ -97,6 +97,8 @@ class StudyRun:
         The study's first record, with which the case is prepared, whichever run is executed first.
     inputs : str
         Digest of what the deck reads, see `digest_of`.
+    variables : tuple of str
+        Variables by which an analysis of the run takes derivatives; empty for a plain run.
     """
 
     number: int
@@ -104,6 +106,7 @@ class StudyRun:
     shaking: Shaking | None
     first: RecordFile | None
     inputs: str
+    variables: tuple[str, ...] = ()
 
     @cached_property
     def identity(self) -> str:
@@ -115,7 +118,7 @@ class StudyRun:
             "method": [self.case.method, self.case.dt, self.case.tol],
             "shaking": shaking and [shaking.record.sha256, sorted(shaking.record.items), shaking.scale],
             "version": __version__,
-        }
+        } | ({"variables": self.variables} if self.variables else {})
         return blake2b(json.dumps(content).encode(), digest_size=12).hexdigest()
 
     def at(self, level: float) -> StudyRun:
