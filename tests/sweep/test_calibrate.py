@@ -71,7 +71,7 @@ def calibrated(path, executor=None, stop=None):
     document = Document.read(str(path))
     aim = calibrate.aim(document)
     tables = (TABLE, measured.TABLE, calibrate.TABLE)
-    read_study = read(document, tables, (scaling.SCALE,), scaling.check_bounds)
+    read_study = read(document, tables, scaling.check_bounds)
     points = Points(Session(read_study, Engine(lambda: executor, 1, 1, 1, True)))
     analysis = calibrate.CalibrationAnalysis(aim, scaling.scaling(document, read_study.variables))
     with points.conducted(report):

@@ -145,3 +145,12 @@ def test_a_variable_that_changes_only_the_motion_is_a_mistake(tmp_path):
 )
 def test_values_of_all_records(how, values):
     assert OverRecords(how).of(np.array([4.0, 1.0, 3.0, 2.0])).tolist() == values
+
+
+def test_one_study_serves_several_verbs(tmp_path):
+    """The tables and items of other verbs are no mistakes beside [variables]."""
+    more = "k = {}\n[uncertainty]\nruns = 64\n[calibrate]\n[sensitivity]\n"
+    line = 'gap = { distribution = "uniform", low = 0.001, high = 0.02, scale = "log" }\n'
+    path = folder(tmp_path, f'deck = "wall.inp"\n[variables]\n{line}{more}')
+    study = read(Document.read(str(path)), (TABLE, "sensitivity"))
+    assert [v.name for v in study.variables] == ["gap", "k"]

@@ -60,7 +60,7 @@ def analysed(path, executor=None, stop=None):
     """Evaluation of a study, which may be interrupted after some runs."""
     document = Document.read(str(path))
     aim = uncertainty.aim(document)
-    study = read(document, uncertainty.TABLES, uncertainty.VARIABLE_ITEMS)
+    study = read(document, uncertainty.TABLES)
     lane = executor or Here()
     points = Points(Session(study, Engine(lambda: lane, 1, 1, 1, True)))
 
@@ -200,7 +200,7 @@ def test_a_mistake_is_reported_at_its_line(tmp_path, old, new, code, text):
     document = Document.read(str(path))
     uncertainty.aim(document)
     with pytest.raises(StudyError) as raised:
-        read(document, uncertainty.TABLES, uncertainty.VARIABLE_ITEMS)
+        read(document, uncertainty.TABLES)
     (told,) = raised.value.diagnostics
     assert told.code == code and text in str(raised.value)
     assert told.span.file == str(path) and told.span.line >= 4
@@ -214,7 +214,7 @@ def test_all_mistakes_are_reported_at_once(tmp_path):
     document = Document.read(str(path))
     uncertainty.aim(document)
     with pytest.raises(StudyError) as raised:
-        read(document, uncertainty.TABLES, uncertainty.VARIABLE_ITEMS)
+        read(document, uncertainty.TABLES)
     text = str(raised.value)
     assert "smallest eigenvalue of their matrix is -0.8" in text
     assert "no PARAM c" in text and "c has no distribution" in text and "power of 2" in text

@@ -38,7 +38,6 @@ from pound_solve.sweep.study.variables import given_values
 TABLE: Final = "uncertainty"  #: of a study
 CORRELATION: Final = "correlation"  #: the other one
 TABLES: Final = (VARIABLES, TABLE, CORRELATION)
-VARIABLE_ITEMS: Final = ("distribution", "mean", "sd", "cov", "mode")  #: items of a variable
 ITEMS: Final = ("quantities", "limits", "sampling", "runs", "seed", "confidence", "indices")
 DEFAULTS: Final = (Asked("storey_drift"), Asked("contact_force"))  #: quantities without `quantities`
 LEAST: Final = 64  #: runs of a record, below which the scatter of the replicates says little

@@ -40,7 +40,7 @@ def _calibrated(args: argparse.Namespace) -> int:
     studies.give_conduct(args, document)
     aim = calibrate.aim(document)
     tables = (TABLE, measured.TABLE, calibrate.TABLE)
-    study = read(document, tables, (scaling.SCALE,), scaling.check_bounds)
+    study = read(document, tables, scaling.check_bounds)
     analysis = calibrate.CalibrationAnalysis(aim, scaling.scaling(document, study.variables))
     with studies.explored(args, study, analysis.carry_out) as (session, path, complete):
         if not complete:

@@ -42,7 +42,7 @@ def _analysed(args: argparse.Namespace) -> int:
     document = Document.read(args.study)
     studies.give_conduct(args, document)
     aim = uncertainty.aim(document)
-    study = read(document, uncertainty.TABLES, uncertainty.VARIABLE_ITEMS)
+    study = read(document, uncertainty.TABLES)
     with locked(study.out):
         session = Session(study, engine(args.executor, study.workers), retry=args.retry)
         progress = studies.StudyProgress(args)

@@ -42,7 +42,7 @@ ITEMS: Final = (
 
 #: limits of a run, three years [s] and a petabyte [MB], and of the processes of a study
 LARGEST: Final[Mapping[str, float]] = MappingProxyType({"seconds": 1e8, "memory": 1e9, "workers": 1e4})
-#: tables read by other verbs
+#: tables read by other verbs; a study with variables may have those of several
 OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "ida": "pound-solve ida",
@@ -113,7 +113,6 @@ class Study:
 def read(
     document: Document,
     tables: Sequence[str] = (),
-    items: tuple[str, ...] = (),
     check: Callable[[Document, Sequence[StudyVariable]], None] = lambda document, variables: None,
 ) -> Study:
     """The study of a document.
@@ -123,8 +122,6 @@ def read(
     document : Document
     tables : sequence of str
         Tables of it that the verb reads beside those of a sweep.
-    items : tuple of str
-        Items of a variable that the verb reads, if it reads the table of variables.
     check : callable
         Adds what is wrong with the variables for the verb to the document.
 
@@ -135,7 +132,7 @@ def read(
     """
     if any(d.code == "S601" for d in document.diagnostics):  # not TOML
         raise StudyError(document.diagnostics, document.files)
-    return _Reader(document, tables, items, check).study()
+    return _Reader(document, tables, check).study()
 
 
 class _Reader:
@@ -145,13 +142,12 @@ class _Reader:
         self,
         document: Document,
         tables: Sequence[str],
-        items: tuple[str, ...],
         check: Callable[[Document, Sequence[StudyVariable]], None],
     ) -> None:
-        self.document, self.varies, self.items, self.check = document, TABLE in tables, items, check
+        self.document, self.varies, self.check = document, TABLE in tables, check
         document.known((), (*ITEMS, *OF_OTHERS))
         for name, verb in OF_OTHERS.items():
-            if name not in tables and document.at((name,)) is not None:
+            if name not in tables and not self.varies and document.at((name,)) is not None:
                 message = f"[{name}] is a table of {verb}, not of this command"
                 document.mistake("S602", message, (name,), f"run {verb}, or leave the table out")
         for name in SEVERAL if self.varies else ():
@@ -207,7 +203,7 @@ class _Reader:
     def _variables(self) -> Iterator[StudyVariable]:
         """Variables of the one deck, if the verb has any."""
         if self.varies and self.models:
-            yield from study_variables(self.document, next(iter(self.models.values())), self.items)
+            yield from study_variables(self.document, next(iter(self.models.values())))
 
     def _is_param(self, name: str) -> bool:
         """Whether the decks have a PARAM of that name: a variable may also be `MOTION`."""

@@ -16,7 +16,8 @@ from pound_solve.sweep.study.document import Document, Path_
 
 TABLE: Final = "variables"
 MOTION: Final = "motion"  #: name of the factor on all records of [[motions]], unless a PARAM has this name
-ITEMS: Final = ("value", "low", "high")
+#: items of a variable, those of all verbs: one study serves several
+ITEMS: Final = ("value", "low", "high", "scale", "distribution", "mean", "sd", "cov", "mode")
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def given_values(document: Document) -> dict[str, float | None]:
     return values
 
 
-def study_variables(document: Document, model: Model, items: tuple[str, ...]) -> Iterator[StudyVariable]:
+def study_variables(document: Document, model: Model) -> Iterator[StudyVariable]:
     """Yield the variables of a study; mistakes are added to the document.
 
     Parameters
@@ -64,13 +65,11 @@ def study_variables(document: Document, model: Model, items: tuple[str, ...]) ->
     document : Document
     model : Model
         Its deck, which has the other values.
-    items : tuple of str
-        Items beside `ITEMS` that the verb reads.
     """
     params = {name.upper(): value for name, value in model.params.items()}
     for name, given in given_values(document).items():
         path = (TABLE, name)
-        document.known(path, (*ITEMS, *items))
+        document.known(path, ITEMS)
         value = _value(document, name, given, params)
         if math.isnan(value):
             continue
