@@ -195,6 +195,15 @@ def test_a_mistake_is_reported_at_its_line(tmp_path, variables, quantities, more
     assert [d.code for d in raised.value.diagnostics if d.severity == "error"] == [code]
 
 
+def test_steps_of_unknown_error_are_told(tmp_path, capsys):
+    deck = YIELDS.replace("HISTORY 3", "HISTORY 3 METHOD=NEWMARK DT=0.002")
+    path = study(tmp_path, "k = {}", '["peak_drift"]', deck=deck)
+    assert main(["sensitivity", str(path), "--workers", "1"]) == 0
+    assert "steps whose error is not known" in capsys.readouterr().out
+    analysis, _ = analysed(study(tmp_path, "gap = {}", '["peak_drift"]'))
+    assert not analysis.unknown_error
+
+
 def test_a_label_that_is_not_there_is_named(tmp_path, capsys):
     assert main(["sensitivity", str(study(tmp_path, "gap = {}", '["contact_force floor"]'))]) == 2
     assert "contact_force has no label floor: there are 2" in capsys.readouterr().err

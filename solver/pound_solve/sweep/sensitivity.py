@@ -99,12 +99,15 @@ class SensitivityAnalysis:
         By quantity, record and variable.
     gentlest : dict of str to float
         By record, the smallest approach speed of a collision over the largest.
+    unknown_error : bool
+        Whether a run took steps whose error it does not estimate.
     """
 
     def __init__(self, aim: SensitivityAim) -> None:
         self.aim = aim
         self.lines: list[Sensitivity] = []
         self.gentlest: dict[str, float] = {}
+        self.unknown_error = False
 
     def carry_out(self, points: Points) -> None:
         """Execute the runs and form the derivatives.
@@ -122,6 +125,8 @@ class SensitivityAnalysis:
             require(values, asked)
         self.records = [run.shaking.record.name if run.shaking else "" for run in self.center.runs]
         self.gentlest = {name: e.gentlest for name, e in zip(self.records, self.center.entries)}
+        ends = zip(self.center.entries, self.center.values)
+        self.unknown_error = any(not e.exact and math.isnan(_estimate(values)) for e, values in ends)
         varied = list(range(len(points.variables)))
         best: dict[Key, Derivative] = {}
         for count in range(ROUNDS):
@@ -192,7 +197,8 @@ class SensitivityAnalysis:
             sides = f"{derivative.left:.4g} and {derivative.right:.4g}"
             return derivative.without(f"slopes of {sides} on the two sides within {derivative.step:.3g}")
         size = max(abs(derivative.slope), abs(derivative.value) / self._scale(key[0]))
-        of_runs = AMPLIFIED * _error(self.center.values[key[2]]) * size
+        estimate = _estimate(self.center.values[key[2]])
+        of_runs = 0.0 if math.isnan(estimate) else AMPLIFIED * estimate * size
         return derivative._replace(error=derivative.error + of_runs)
 
     def _lines(self, by_key: Mapping[Key, Derivative]) -> Iterator[Sensitivity]:
@@ -209,7 +215,6 @@ class SensitivityAnalysis:
                     yield Sensitivity(asked, name, variable.name, variable.value, total)
 
 
-def _error(values: Values) -> float:
-    """Relative error of the results of a run by steps, as AUTO estimates it; zero of an exact run."""
-    estimate = values.get("error_estimate", {}).get("", math.nan)
-    return 0.0 if math.isnan(estimate) else estimate
+def _estimate(values: Values) -> float:
+    """Relative error of the results of a run by steps, as AUTO estimates it; NaN without."""
+    return values.get("error_estimate", {}).get("", math.nan)

@@ -45,7 +45,7 @@ def _analysed(args: argparse.Namespace) -> int:
             return studies.ended(args, session, path)
         sweep = Sweep.open(path)
         path = path.with_name("sensitivity.h5")
-        lines = list(report.report(sweep, analysis.lines, analysis.gentlest))
+        lines = list(report.report(sweep, analysis.lines, analysis.gentlest, analysis.unknown_error))
         write_table(path, report.variables(sweep, analysis.lines), sweep.about)
         summary.write(path, sweep, "sensitivities", lines)
         if args.picture:

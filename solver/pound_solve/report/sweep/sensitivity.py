@@ -17,7 +17,9 @@ from pound_solve.statistics.sensitivity import Sensitivity
 GRAZING: Final = 1e-2  #: approach speed over the largest of a run below which a collision grazes
 
 
-def report(sweep: Sweep, lines: Sequence[Sensitivity], gentlest: Mapping[str, float]) -> Iterator[str]:
+def report(
+    sweep: Sweep, lines: Sequence[Sensitivity], gentlest: Mapping[str, float], unknown_error: bool
+) -> Iterator[str]:
     """Lines of the report: a table for each quantity.
 
     Parameters
@@ -26,8 +28,14 @@ def report(sweep: Sweep, lines: Sequence[Sensitivity], gentlest: Mapping[str, fl
     lines : sequence of Sensitivity
     gentlest : mapping of str to float
         By record, the smallest approach speed of a collision over the largest.
+    unknown_error : bool
+        Whether runs took steps whose error they do not estimate.
     """
     units = units_of(sweep)
+    if unknown_error:
+        yield "The runs take steps whose error is not known: errors are those of the differences alone."
+        yield "METHOD=AUTO estimates its error, or has none."
+        yield ""
     yield "Elasticity: relative change of the quantity over the relative change of the variable."
     for asked, some in by_quantity(lines).items():
         yield from ("", heading(sweep, asked), "")

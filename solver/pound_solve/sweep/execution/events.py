@@ -1,4 +1,4 @@
-"""Events of a run as far as a derivative depends on them: their sequence, and its gentlest collision.
+"""What a derivative by a run depends on: the sequence of its events, its gentlest collision, its exactness.
 
 A response is differentiable with respect to a variable as long as the sequence of events stays the same and
 no collision grazes: at a grazing contact the derivative grows like the inverse of the approach speed.
@@ -22,10 +22,13 @@ class EventCourse(NamedTuple):
         empty without a history.
     gentlest : float
         Smallest approach speed of a collision over the largest; 1 without collisions.
+    exact : bool
+        Whether the method has no error but rounding.
     """
 
     sequence: str = ""
     gentlest: float = 1.0
+    exact: bool = True
 
 
 def events_of(record: RunRecord) -> EventCourse:
@@ -37,4 +40,5 @@ def events_of(record: RunRecord) -> EventCourse:
     speeds = [abs(c.approach) for c in collisions if c.approach > 0.0]
     order = repr(([c.law for c in collisions], peaks.yields))
     digest = blake2b(order.encode(), digest_size=12).hexdigest()
-    return EventCourse(digest, min(speeds) / max(speeds) if speeds else 1.0)
+    gentlest = min(speeds) / max(speeds) if speeds else 1.0
+    return EventCourse(digest, gentlest, record.history.returned.exact)

@@ -47,8 +47,8 @@ class JournalEntry:
         CPU time of the whole run, and of the method alone [s].
     values : mapping
         Quantities, see `quantities`.
-    sequence, gentlest : str, float
-        Events of the run, see `events.EventCourse`.
+    sequence, gentlest, exact : str, float, bool
+        Events and exactness of the run, see `events.EventCourse`.
     at : float
         Time of its end [s since 1970].
     histories : mapping
@@ -65,6 +65,7 @@ class JournalEntry:
     values: Values = field(default_factory=dict)
     sequence: str = ""
     gentlest: float = 1.0
+    exact: bool = True
     at: float = field(default_factory=time.time)
     histories: Mapping[str, Array] = field(default_factory=dict)
 

@@ -133,6 +133,7 @@ def analysed(run: StudyRun, settings: Settings, clock: Clock) -> JournalEntry:
         values=taken(kept.rows),
         sequence=events.sequence,
         gentlest=events.gentlest,
+        exact=events.exact,
         histories=histories_of(record, settings.histories) if started else {},
     )
 

@@ -136,7 +136,9 @@ class Document:
         return Span(self.name, 1, 1, 2) if self.name in self.files else None
 
     def mistake(self, code: str, message: str, path: Path_ = (), hint: str = "") -> None:
-        """Add a diagnostic at an item, unless it is there already."""
+        """Add a diagnostic at an item, unless it is there already, or the file is not TOML."""
+        if any(d.code == "S601" for d in self.diagnostics):
+            return
         diagnostic = Diagnostic(code, message, self.place(path), hint)
         if diagnostic not in self.diagnostics:
             self.diagnostics.append(diagnostic)
