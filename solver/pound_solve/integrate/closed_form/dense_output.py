@@ -150,6 +150,13 @@ class DenseOutput:
 
         return self._motions(np.array([interval]), times[None], states)
 
+    def motions_within(self, chosen: Index, times: Array) -> Kinematics:
+        """Return the motion at the same `times` within each of some intervals, interval by interval, shape
+        (n, n_chosen * n_times) each.
+        """
+        t = np.tile(times, (len(chosen), 1))
+        return self._motions(chosen, t, partial(_trajectories, chosen, times))
+
     def enveloped_motions(self, times: Array) -> Kinematics:
         """Return the motion of the unknowns in the envelopes at several local times, zero for other
         unknowns, shape (n, n_times) each.

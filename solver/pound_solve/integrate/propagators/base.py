@@ -113,6 +113,10 @@ class Propagator(ABC):
         """Return q at one time `t`."""
 
     @abstractmethod
+    def free_motion(self, q: NDArray[Any], times: Array) -> NDArray[Any]:
+        """Return states, shape (..., n_times, n_q), each after its time without forcing."""
+
+    @abstractmethod
     def rate_rows(self, rows: NDArray[Any]) -> NDArray[Any]:
         """Return ``rows A``, of the shape of `rows`: the rate of ``rows q`` is ``rows A q`` plus `rows`
         times the forcing g.

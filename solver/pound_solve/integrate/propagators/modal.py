@@ -192,6 +192,11 @@ class ModalPropagator(Propagator):
             state = state[:, 0, 0]
         return state
 
+    def free_motion(self, q: Complex, times: Array) -> Complex:  # noqa: D102
+        after: Complex = q * np.exp(times[:, None] * self.eigenvalues)
+        after[..., self.rigid_u] += self.rigid_scale * times[:, None] * q[..., self.rigid_v]
+        return after
+
     def march(self, q: Complex, gs: Complex, lengths: Array) -> Complex:  # noqa: D102
         if len(self.rigid_u):
             return super().march(q, gs, lengths)

@@ -70,6 +70,11 @@ class SeriesPropagator(Propagator):
             q = self._substep(q, polynomial.shift(g, i * h), h)
         return q
 
+    def free_motion(self, q: Array, times: Array) -> Array:  # noqa: D102
+        from scipy.linalg import expm  # slow to import, and few runs need it
+
+        return np.einsum("tij,...tj->...ti", expm(times[:, None, None] * self.space.a), q)
+
     def _substep(self, q: Array, g: Array, h: float) -> Array:
         """Return the state after a substep with ``|a| h <= 1``, by the Taylor series of the solution."""
         term, total, j = q.copy(), q.copy(), 0

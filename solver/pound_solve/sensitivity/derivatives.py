@@ -1,0 +1,192 @@
+"""The derivatives of the response of one run by PARAMs of its deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from pound_deck.model import Model
+from pound_solve.driver.prepare import DeckError
+from pound_solve.driver.request import Request
+from pound_solve.integrate.condensed import condensed
+from pound_solve.integrate.protocol import Outcome, Problem
+from pound_solve.analyses.recorder import HistoryRecorder
+from pound_solve.numerics.types import Array
+from pound_solve.sensitivity import case
+from pound_solve.sensitivity.coefficients import Coefficients, coefficients, derivative
+from pound_solve.sensitivity.course import Course
+from pound_solve.sensitivity.crest import refined
+from pound_solve.sensitivity.dual import Dual, duals
+from pound_solve.sensitivity.equations import TangentEquations
+from pound_solve.sensitivity.instants import InputSlopes
+from pound_solve.sensitivity.law_tangent import LawTangent
+from pound_solve.sensitivity.quantities import Formula, Formulas
+from pound_solve.sensitivity.refusal import NoDerivativeError
+from pound_solve.sensitivity.samples import Reading, TangentSample, differentiated
+from pound_solve.sensitivity.tangent_run import Crossing, TangentRun
+from pound_solve.sensitivity.trajectory import Trajectory
+from pound_solve.sweep.study.quantities import Values, taken
+
+GRAZING = 1e-3  #: fraction of the largest speed of a law below which it meets an event in grazing
+SAME_VALUE = 1e-8  #: largest relative difference of a quantity from that of the run
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """The response of a run, and its derivatives.
+
+    Attributes
+    ----------
+    names : tuple of str
+        PARAMs.
+    values : dict
+        Of the run, by quantity and label, as a sweep keeps them.
+    slopes : dict of dict of ndarray, shape (n_params,)
+        Derivatives of the values, by quantity and label; a quantity that has none here is absent.
+    flags : tuple of str
+        Warnings: events near which the derivatives hold in a small neighbourhood only, and quantities
+        without a derivative.
+    sequence : tuple of (int, int)
+        Law and event function of all events in order.  Runs with the same sequence lie on one smooth branch
+        of the response.
+    """
+
+    names: tuple[str, ...]
+    values: Values
+    slopes: Mapping[str, Mapping[str, Array]]
+    flags: tuple[str, ...]
+    sequence: tuple[tuple[int, int], ...]
+
+
+def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
+    """Return the exact derivatives of the response of a run by PARAMs.
+
+    The run is integrated by EXACT; a deck with METHOD=AUTO too.
+
+    Parameters
+    ----------
+    request : Request
+        The deck, its PARAMs and its motion.
+    names : sequence of str
+        PARAMs that are numbers.
+
+    Raises
+    ------
+    NoDerivativeError
+        The run, or a PARAM, has no exact derivative here.
+    DeckError, OSError
+        See `driver.prepare`.
+    """
+    ready = case.ready_for(request)
+    given = {name.casefold(): value for name, value in ready.model.params.items()}
+    values = [_number(name, given) for name in names]
+    runs: list[tuple[Problem[HistoryRecorder], Trajectory]] = []
+
+    def follow(problem: Problem[HistoryRecorder]) -> Outcome:
+        trajectory = Trajectory(condensed(problem, "EXACT"))
+        runs.append((problem, trajectory))
+        with np.errstate(over="ignore", invalid="ignore"):
+            return trajectory.run()
+
+    record, rows, message = case.run(ready, request, follow)
+    if message:
+        raise NoDerivativeError(f"the run has no end: {message}")
+    (problem, trajectory), = runs
+    if trajectory.released:
+        raise NoDerivativeError("massless joints jump where a law loses its force: give the joints mass")
+    middle = case.Case(problem, problem.recorder.items, case.periods_of(record))
+    base, places = coefficients(middle)
+    each = [derivative(partial(_case_at, request, name), x, name, middle) for name, x in zip(names, values)]
+    slopes = Coefficients(
+        *(np.array(x).reshape(len(names), *y.shape) for x, y in zip(zip(*each) if each else [()] * len(base), base))
+    )
+    formulas = list(Formulas(record.history, base, slopes, places).all())
+    equations = TangentEquations(base, slopes)
+    inputs = InputSlopes(trajectory.system.excitation, slopes.excitation)
+    course = Course(trajectory.course)
+    none = InputSlopes(trajectory.system.excitation, slopes.excitation[:0])
+    formulas = [
+        f._replace(readings=tuple(refined(course, equations, none, r) for r in f.readings)) for f in formulas
+    ]
+    run = TangentRun(equations, inputs, _laws(problem, base, slopes))
+    samples = run.follow(course, [r.t for f in formulas for r in f.readings])
+    flags = list(_grazing(run.crossings, trajectory, ready.model))
+    known = taken(rows)
+    results: dict[str, dict[str, Array]] = {}
+    for f in formulas:
+        y = _evaluated(f, samples, equations)
+        expected = known.get(f.quantity, {}).get(f.label)
+        if expected is None or y.value < expected - SAME_VALUE * abs(expected):
+            continue  # another row with this label is larger
+        if abs(y.value - expected) > SAME_VALUE * abs(expected):
+            flags.append(f"{f.quantity} {f.label}: its peak lies where it jumps, and has no derivative here")
+            continue
+        results.setdefault(f.quantity, {})[f.label] = np.zeros(len(names)) + y.slopes
+    return Derivatives(tuple(names), known, results, tuple(flags), course.sequence)
+
+
+def _number(name: str, given: Mapping[str, float | str]) -> float:
+    """Return the value of a PARAM."""
+    value = given.get(name.casefold())
+    if value is None:
+        raise NoDerivativeError(f"the deck has no PARAM {name}")
+    if isinstance(value, str):
+        raise NoDerivativeError(f"PARAM {name} is a text, {value!r}, and has no derivative")
+    return float(value)
+
+
+def _case_at(request: Request, name: str, value: float) -> case.Case:
+    """Return the history of a deck with another value of a PARAM."""
+    params = {key: x for key, x in request.params.items() if key.casefold() != name.casefold()}
+    try:
+        return case.case_of(replace(request, params={**params, name: repr(value)}))
+    except DeckError as err:
+        raise NoDerivativeError(f"{name} = {value!r}, next to the value of the deck, is refused:\n{err}") from None
+
+
+def _laws(
+    problem: Problem[HistoryRecorder], base: Coefficients, slopes: Coefficients
+) -> list[LawTangent]:
+    """Return the laws at the start with their derivatives."""
+    laws = []
+    for i, (spring, state) in enumerate(zip(problem.system.structure.laws, problem.start.states)):
+        p = duals(spring.law.p, slopes.parameters[:, i])
+        m = duals(state[3], slopes.variables[:, i])
+        beta, secant = (Dual(getattr(base, x)[i], getattr(slopes, x)[:, i]) for x in ("beta", "secant"))
+        laws.append(LawTangent(spring, p, beta, secant, state[0], m))
+    return laws
+
+
+def _evaluated(
+    f: Formula, samples: Mapping[float, Sequence[TangentSample]], equations: TangentEquations
+) -> Dual:
+    """Return a quantity with its derivatives."""
+
+    def nearest(reading: Reading) -> Dual:
+        each = [differentiated(equations, reading.kind, reading.index, x) for x in samples[reading.t]]
+        return min(each, key=lambda y: abs(abs(y.value) - abs(reading.value)))
+
+    return f.value(*map(nearest, f.readings))
+
+
+def _grazing(
+    crossings: Sequence[Crossing], trajectory: Trajectory, model: Model
+) -> Iterator[str]:
+    """Yield a text for every event that is only just met."""
+    laws, fastest = trajectory.laws, trajectory.largest[1]
+    sharpest = np.zeros(len(laws))
+    for x in crossings:
+        sharpest[x.law] = max(sharpest[x.law], abs(x.second))
+    for x in crossings:
+        scale = abs(x.on_d) * fastest[x.law] + abs(x.on_v) * sharpest[x.law]
+        share = abs(x.speed) / scale if scale else 0.0
+        if share < GRAZING:
+            spring = laws[x.law]
+            yield (
+                f"{spring.component} of element {spring.element} has a grazing event at t = {x.t:.9g} "
+                f"{model.units.time}: it is met at {share:.1e} of the largest speed, so the derivatives hold "
+                "in a small neighbourhood only"
+            )
