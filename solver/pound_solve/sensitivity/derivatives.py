@@ -71,7 +71,7 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     request : Request
         The deck, its PARAMs and its motion.
     names : sequence of str
-        PARAMs that are numbers.
+        PARAMs that are numbers; without any, only the run and its events are returned.
 
     Raises
     ------
@@ -97,16 +97,16 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     (problem, trajectory), = runs
     if trajectory.released:
         raise NoDerivativeError("massless joints jump where a law loses its force: give the joints mass")
+    course, known = Course(trajectory.course), taken(rows)
+    if not names:
+        return Derivatives((), known, {}, (), course.sequence)
     middle = case.Case(problem, problem.recorder.items, case.periods_of(record))
     base, places = coefficients(middle)
     each = [derivative(partial(_case_at, request, name), x, name, middle) for name, x in zip(names, values)]
-    slopes = Coefficients(
-        *(np.array(x).reshape(len(names), *y.shape) for x, y in zip(zip(*each) if each else [()] * len(base), base))
-    )
+    slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
     formulas = list(Formulas(record.history, base, slopes, places).all())
     equations = TangentEquations(base, slopes)
     inputs = InputSlopes(trajectory.system.excitation, slopes.excitation)
-    course = Course(trajectory.course)
     none = InputSlopes(trajectory.system.excitation, slopes.excitation[:0])
     formulas = [
         f._replace(readings=tuple(refined(course, equations, none, r) for r in f.readings)) for f in formulas
@@ -114,7 +114,6 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     run = TangentRun(equations, inputs, _laws(problem, base, slopes))
     samples = run.follow(course, [r.t for f in formulas for r in f.readings])
     flags = list(_grazing(run.crossings, trajectory, ready.model))
-    known = taken(rows)
     results: dict[str, dict[str, Array]] = {}
     for f in formulas:
         y = _evaluated(f, samples, equations)

@@ -88,6 +88,11 @@ class Dual:
     def __abs__(self) -> Dual:
         return -self if self.value < 0.0 else self
 
+    def __int__(self) -> int:
+        if np.any(self.slopes):
+            raise TypeError("a number that is not whole has no derivative as a whole one")
+        return int(self.value)
+
     def __bool__(self) -> bool:
         return self.value != 0.0
 
