@@ -74,6 +74,8 @@ class TangentRun:
     input_slopes : InputSlopes
     laws : sequence of LawTangent
         At the start.
+    largest : ndarray, shape (2, n_laws)
+        Largest magnitudes of the deformations and of their rates in the run.
 
     Attributes
     ----------
@@ -84,14 +86,20 @@ class TangentRun:
     """
 
     def __init__(
-        self, equations: TangentEquations, input_slopes: InputSlopes, laws: Sequence[LawTangent]
+        self,
+        equations: TangentEquations,
+        input_slopes: InputSlopes,
+        laws: Sequence[LawTangent],
+        largest: Array,
     ) -> None:
-        self.equations, self.input_slopes, self.laws = equations, input_slopes, laws
+        self.equations, self.input_slopes = equations, input_slopes
+        self.laws, self.largest = laws, largest
         self.su, self.sv = equations.slopes.u.copy(), equations.slopes.v.copy()
         self.crossings: list[Crossing] = []
         self.branches = branch_slopes(laws, equations.n_params)
         self._moved = np.zeros(equations.n_params)  # derivative of the instant of the last event
         self._before: Instants | None = None  # motion just before the events at the present time
+        self._at_once = False  # whether the last piece has no length
         self._changed = False  # whether an event has occurred since the last piece
         self._here = list[float]()  # times of samples at this event
 
@@ -141,6 +149,7 @@ class TangentRun:
             self.su, self.sv = self._carried(piece, np.arange(i, end), float(lengths[i]))
             i = end
         self._before = self._instants(piece, len(lengths) - 1, float(lengths[-1]))
+        self._at_once = not lengths.any()
 
     def _pass(self, change: Change, here: list[float], samples: dict[float, list[TangentSample]]) -> None:
         """Let a law change its branch."""
@@ -163,9 +172,9 @@ class TangentRun:
         on_d, on_v, constant = self.laws[change.law].event(change.event)
         a, b, c = map(value_of, (on_d, on_v, constant))
         d, rate, second = (float(self.equations.deformations(x, i)[change.law, 0]) for i in range(3))
-        value, size = a * d + b * rate + c, abs(a * d) + abs(b * rate) + abs(c)
-        if value > OVERDUE * size:  # overdue: it occurs at the instant of the change before it
-            return self._moved
+        size = abs(a) * self.largest[0, change.law] + abs(b) * self.largest[1, change.law] + abs(c)
+        if self._at_once and a * d + b * rate + c > OVERDUE * size:
+            return self._moved  # it follows from the change before it, at the same instant
         dd, drate = self._law_slopes(change.law, x)
         slope = a * dd + b * drate + d * slopes_of(on_d) + rate * slopes_of(on_v) + slopes_of(constant)
         crossing = Crossing(change.t, change.law, a, b, rate, second)

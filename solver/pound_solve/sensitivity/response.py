@@ -111,7 +111,7 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     formulas = [
         f._replace(readings=tuple(refined(course, equations, none, r) for r in f.readings)) for f in formulas
     ]
-    run = TangentRun(equations, inputs, _laws(problem, base, slopes))
+    run = TangentRun(equations, inputs, _laws(problem, base, slopes), trajectory.largest)
     samples = run.follow(course, [r.t for f in formulas for r in f.readings])
     flags = list(_grazing(run.crossings, trajectory, ready.model))
     results: dict[str, dict[str, Array]] = {}
