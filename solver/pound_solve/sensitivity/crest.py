@@ -15,15 +15,26 @@ from pound_solve.sensitivity.trajectory import Piece
 SPREAD = 1e-3  #: distance of the values of a difference, in intervals or in radians of the fastest mode
 FAR = 0.5  #: largest correction of an instant, likewise
 CORRECTIONS = 3  #: number of them
+AT_END = 1e-9  #: fraction of an interval up to which an instant is at its end
 
 
 def refined(
     course: Course, equations: TangentEquations, none: InputSlopes, reading: Reading
-) -> Reading:
+) -> Reading | None:
     """Return the reading of a peak at the zero of its rate next to the instant that the run has.
 
     The envelopes of a run find the value of a peak, which depends little on its instant, to all digits, but
-    not its instant.  An instant at an event, or at the end of an interval, stays.
+    not its instant.  An instant at an event stays, and one at the end of an interval of the excitation if
+    the rate is not zero there: these are corners.  None: the peak lies elsewhere and is not at rest, so it
+    is the limit at a jump.
+
+    Parameters
+    ----------
+    course : Course
+    equations : TangentEquations
+    none : InputSlopes
+        Of no parameters.
+    reading : Reading
     """
     at = course.place(reading.t)
     piece = course.parts[at.part]
@@ -33,18 +44,15 @@ def refined(
     radius = max((x.decomposition.propagator.spectral_radius for x in subsystems), default=0.0)
     unit = min(length, 1.0 / radius) if radius else length
     h, tau = SPREAD * unit, at.tau
-    chosen = np.array([at.interval])
     branches = present_branches(piece)
-    for _ in range(CORRECTIONS):
-        if not h <= tau <= length - h:
-            return reading
-        x = instants(piece, chosen, np.array([tau - h, tau, tau + h]), none)
+    for _ in range(CORRECTIONS):  # the motion of the interval continues smoothly beyond its ends
+        x = instants(piece, np.array([at.interval]), np.array([tau - h, tau, tau + h]), none)
         low, middle, high = read(equations, reading.kind, reading.index, x, branches).tolist()
         bend = high - 2.0 * middle + low
-        step = -0.5 * h * (high - low) / bend if bend else np.inf
-        if abs(step) > FAR * unit:
-            return reading
-        tau += step
+        tau += -0.5 * h * (high - low) / bend if bend else np.inf
+        if abs(tau - at.tau) > FAR * unit or not -h <= tau <= length + h:
+            at_end = min(at.tau, length - at.tau) <= AT_END * length
+            return reading if at_end else None
     return reading._replace(t=reading.t + tau - at.tau)
 
 

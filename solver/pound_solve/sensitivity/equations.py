@@ -54,6 +54,16 @@ class TangentEquations:
             slopes += self.slopes.law_inputs @ x.s[order]
         return slopes
 
+    def forces_at_fixed_motion(self, x: Instants, branches: BranchSlopes, order: int = 0) -> Array:
+        """Return the derivatives of the forces of the laws, or of their rates, at fixed motion, shape
+        (n_params, n_laws, n_times).
+        """
+        d, rate = self.deformations(x, order), self.deformations(x, order + 1)
+        dd, drate = (self.deformations_at_fixed_motion(x, i) for i in (order, order + 1))
+        k, c, _ = branches.values[:, :, None]
+        dk, dc, df0 = branches.slopes[..., None]
+        return np.asarray(dk * d + dc * rate + (df0 if order == 0 else 0.0) + k * dd + c * drate)
+
     def residual(self, x: Instants, branches: BranchSlopes, order: int = 0) -> Array:
         """Return R, or its rate without the inertia, shape (n_params, n, n_times).
 
@@ -66,15 +76,11 @@ class TangentEquations:
         for terms, y in zip(self._terms, motion):
             for j, matrix in terms:
                 r[j] -= matrix @ y
-        d, rate = self.deformations(x, order), self.deformations(x, order + 1)
-        dd, drate = (self.deformations_at_fixed_motion(x, i) for i in (order, order + 1))
-        k, c, f0 = branches.values[:, :, None]
-        dk, dc, df0 = branches.slopes[..., None]
-        df = dk * d + dc * rate + constant * df0 + k * dd + c * drate
-        r -= base.law_rows.T @ df
+        r -= base.law_rows.T @ self.forces_at_fixed_motion(x, branches, order)
         if self._rows_move:
-            f = k * d + c * rate + constant * f0
-            r -= slopes.law_rows.swapaxes(1, 2) @ f
+            d, rate = self.deformations(x, order), self.deformations(x, order + 1)
+            k, c, f0 = branches.values[:, :, None]
+            r -= slopes.law_rows.swapaxes(1, 2) @ (k * d + c * rate + constant * f0)
         return r
 
     def accelerations(self, x: Instants, branches: BranchSlopes, su: Array, sv: Array) -> Array:

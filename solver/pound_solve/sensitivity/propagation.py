@@ -19,16 +19,35 @@ Najfeld I, Havel TF (1995), Derivatives of the matrix exponential and their comp
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any, NamedTuple
 
-from pound_solve.integrate.propagators.base import gauss
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate.propagators.base import Propagator, gauss
 from pound_solve.numerics.types import Array, Index
 from pound_solve.sensitivity.equations import TangentEquations
-from pound_solve.sensitivity.instants import InputSlopes, Instants, instants
+from pound_solve.sensitivity.instants import InputSlopes, instants
 from pound_solve.sensitivity.law_tangent import BranchSlopes
 from pound_solve.sensitivity.trajectory import Piece
 
 AT_ONCE = 2**21  #: numbers of the load R that are evaluated at once
+
+
+class Carried(NamedTuple):
+    """Derivatives after some intervals, shape (n_params, n) or (n_params, n_laws).
+
+    Attributes
+    ----------
+    su, sv : ndarray
+        Of displacements and velocities at the end.
+    impulse : ndarray
+        Of the integrals of the laws' forces over the intervals.
+    """
+
+    su: Array
+    sv: Array
+    impulse: Array
 
 
 def carried(
@@ -39,8 +58,8 @@ def carried(
     chosen: Index,
     tau: float,
     start: tuple[Array, Array],
-) -> tuple[Array, Array]:
-    """Return the derivatives of displacements and velocities after some intervals of a piece.
+) -> Carried:
+    """Return the derivatives after some intervals of a piece.
 
     Parameters
     ----------
@@ -55,57 +74,59 @@ def carried(
         Their length, or for one interval a part of it [T].
     start : tuple of ndarray, shape (n_params, n) each
         Derivatives at the start of the first one.
-
-    Returns
-    -------
-    tuple of ndarray, shape (n_params, n) each
     """
-    radius = max((x.decomposition.propagator.spectral_radius for x in piece.dense.subsystems.present),
-                 default=0.0)  # fmt: skip
+    present = piece.dense.subsystems.present
+    radius = max((x.decomposition.propagator.spectral_radius for x in present), default=0.0)
     weights, points = gauss(tau, radius)
     at_once = max(1, AT_ONCE // (len(points) * start[0].size))
+    k, c, _ = branches.values
+    rows, impulse = equations.base.law_rows, np.zeros((equations.n_params, len(k)))
+    su, sv = start
     for first in range(0, len(chosen), at_once):
         some = chosen[first : first + at_once]
         inner = instants(piece, some, points, input_slopes)
         end = instants(piece, some[-1:], np.array([tau]), input_slopes)
-        load = equations.residual(inner, branches)
-        loads = load.reshape(*load.shape[:2], len(some), len(points)).transpose(0, 2, 3, 1)
-        start = _superposed(equations, piece, branches, loads, weights, tau - points, tau, end, start)
-    return start
+        final = [equations.residual(end, branches, order)[:, :, 0] for order in (0, 1)]
+        load = equations.residual(inner, branches).reshape(*su.shape, len(some), len(points))
+        load = load.transpose(0, 2, 3, 1)
+        before, area = su, np.zeros_like(su)
+        su, sv = su.copy(), sv.copy()
+        for subsystem in present:
+            unknowns, propagator = subsystem.decomposition.unknowns, subsystem.decomposition.propagator
+            q = propagator.state_of(su[:, unknowns].T, sv[:, unknowns].T).T
+            q, total = _marched(propagator, q, load[..., unknowns], weights, tau - points, tau)
+            su[:, unknowns], sv[:, unknowns] = (q @ propagator.u_q.T).real, (q @ propagator.v_q.T).real
+            area[:, unknowns] = (total @ propagator.u_q.T).real
+            if propagator.u_p is not None and propagator.v_p is not None:  # massless unknowns
+                force, rate = (x[:, unknowns] for x in final)
+                su[:, unknowns] += force @ propagator.u_p.T
+                sv[:, unknowns] += force @ propagator.v_p.T + rate @ propagator.u_p.T
+                over_time = np.einsum("k,pmkn->pn", weights, load[..., unknowns])
+                area[:, unknowns] += over_time @ propagator.u_p.T
+        fixed = equations.forces_at_fixed_motion(inner, branches)
+        impulse += fixed @ np.tile(weights, len(some)) + k * (area @ rows.T) + c * ((su - before) @ rows.T)
+    return Carried(su, sv, impulse)
 
 
-def _superposed(
-    equations: TangentEquations,
-    piece: Piece,
-    branches: BranchSlopes,
-    loads: Array,
-    weights: Array,
-    left: Array,
-    tau: float,
-    end: Instants,
-    start: tuple[Array, Array],
-) -> tuple[Array, Array]:
-    """Return the derivatives at the end of intervals of length `tau`.
+def _marched(
+    propagator: Propagator, q: NDArray[Any], load: Array, weights: Array, left: Array, tau: float
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the state of the derivatives after intervals of length `tau`, and its integral over them,
+    shape (n_params, n_q) each.
 
     Parameters
     ----------
-    loads : ndarray, shape (n_params, n_intervals, n_points, n)
-        R at the Gauss points, `left` before the ends of the intervals.
-    end : Instants
-        Motion at the end of the last interval.
+    propagator : Propagator
+    q : ndarray, shape (n_params, n_q)
+        State at the start.
+    load : ndarray, shape (n_params, n_intervals, n_points, n)
+        R at Gauss points with their `weights`, `left` before the ends of the intervals.
     """
-    su, sv = start[0].copy(), start[1].copy()
-    final = [equations.residual(end, branches, order)[:, :, 0] for order in (0, 1)]
-    for subsystem in piece.dense.subsystems.present:
-        unknowns, propagator = subsystem.decomposition.unknowns, subsystem.decomposition.propagator
-        q = propagator.state_of(su[:, unknowns].T, sv[:, unknowns].T).T
-        forcing = propagator.load_forcing(loads[..., unknowns])
-        gained = np.einsum("k,pmkq->pmq", weights, propagator.free_motion(forcing, left))
-        for gain in gained.swapaxes(0, 1):
-            q = propagator.free_motion(q[:, None], np.array([tau]))[:, 0] + gain
-        su[:, unknowns], sv[:, unknowns] = (q @ propagator.u_q.T).real, (q @ propagator.v_q.T).real
-        if propagator.u_p is not None and propagator.v_p is not None:  # massless unknowns
-            force, rate = (x[:, unknowns] for x in final)
-            su[:, unknowns] += force @ propagator.u_p.T
-            sv[:, unknowns] += force @ propagator.v_p.T + rate @ propagator.u_p.T
-    return su, sv
+    forcing = propagator.load_forcing(load)
+    gained = np.einsum("k,pmkq->pmq", weights, propagator.free_motion(forcing, left))
+    total = np.einsum("k,pmkq->pq", weights, propagator.free_integral(forcing, left))
+    step = np.array([tau])
+    for gain in gained.swapaxes(0, 1):
+        total = total + propagator.free_integral(q[:, None], step)[:, 0]
+        q = propagator.free_motion(q[:, None], step)[:, 0] + gain
+    return q, total

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -95,6 +96,9 @@ class Formulas:
                 yield Formula("contact_force", name, (force,), lambda f: f)
             else:
                 yield Formula("contact_force", name, (), lambda n=nothing: n)
+            total = sum(c.impulse for c in collisions)
+            impulse = Reading(ReadingKind.IMPULSE, law, math.nan, total)
+            yield Formula("impulse", name, (impulse,), lambda p: p)
             peak = peaks.deformation[law]
             closest = Reading(ReadingKind.DEFORMATION, law, peak.t_high, peak.high)
             yield Formula("min_gap", name, (closest,), lambda d, g=gap: g - d)

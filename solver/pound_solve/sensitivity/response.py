@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,7 +26,7 @@ from pound_solve.sensitivity.instants import InputSlopes
 from pound_solve.sensitivity.law_tangent import LawTangent
 from pound_solve.sensitivity.quantities import Formula, Formulas
 from pound_solve.sensitivity.refusal import NoDerivativeError
-from pound_solve.sensitivity.samples import Reading, TangentSample, differentiated
+from pound_solve.sensitivity.samples import Reading, ReadingKind, TangentSample, differentiated
 from pound_solve.sensitivity.tangent_run import Crossing, TangentRun
 from pound_solve.sensitivity.trajectory import Trajectory
 from pound_solve.sweep.study.quantities import Values, taken
@@ -108,15 +109,22 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     equations = TangentEquations(base, slopes)
     inputs = InputSlopes(trajectory.system.excitation, slopes.excitation)
     none = InputSlopes(trajectory.system.excitation, slopes.excitation[:0])
-    formulas = [
-        f._replace(readings=tuple(refined(course, equations, none, r) for r in f.readings)) for f in formulas
-    ]
-    run = TangentRun(equations, inputs, _laws(problem, base, slopes), trajectory.largest)
-    samples = run.follow(course, [r.t for f in formulas for r in f.readings])
-    flags = list(_grazing(run.crossings, trajectory, ready.model))
-    results: dict[str, dict[str, Array]] = {}
+    flags = []
+    at_rest = []
     for f in formulas:
-        y = _evaluated(f, samples, equations)
+        readings = [
+            refined(course, equations, none, r) if math.isfinite(r.t + r.value) else r for r in f.readings
+        ]
+        if None in readings:
+            flags.append(f"{f.quantity} {f.label}: its peak is the limit at a jump, and has no derivative")
+        else:
+            at_rest.append(f._replace(readings=tuple(filter(None, readings))))
+    run = TangentRun(equations, inputs, _laws(problem, base, slopes), trajectory.largest)
+    samples = run.follow(course, [r.t for f in at_rest for r in f.readings if r.t == r.t])
+    flags += _grazing(run.crossings, trajectory, ready.model)
+    results: dict[str, dict[str, Array]] = {}
+    for f in at_rest:
+        y = _evaluated(f, samples, run)
         expected = known.get(f.quantity, {}).get(f.label)
         if expected is None or y.value < expected - SAME_VALUE * abs(expected):
             continue  # another row with this label is larger
@@ -160,12 +168,14 @@ def _laws(
 
 
 def _evaluated(
-    f: Formula, samples: Mapping[float, Sequence[TangentSample]], equations: TangentEquations
+    f: Formula, samples: Mapping[float, Sequence[TangentSample]], run: TangentRun
 ) -> Dual:
     """Return a quantity with its derivatives."""
 
     def nearest(reading: Reading) -> Dual:
-        each = [differentiated(equations, reading.kind, reading.index, x) for x in samples[reading.t]]
+        if reading.kind is ReadingKind.IMPULSE:
+            return Dual(reading.value, run.impulse[:, reading.index])
+        each = [differentiated(run.equations, reading.kind, reading.index, x) for x in samples[reading.t]]
         return min(each, key=lambda y: abs(abs(y.value) - abs(reading.value)))
 
     return f.value(*map(nearest, f.readings))

@@ -21,6 +21,7 @@ class ReadingKind(Enum):
     DEFORMATION = auto()  #: of a law
     FORCE = auto()  #: of a law with its dashpot
     STATIC_FORCE = auto()  #: of a law without its dashpot
+    IMPULSE = auto()  #: integral of the force of a law up to the end
 
 
 class Reading(NamedTuple):

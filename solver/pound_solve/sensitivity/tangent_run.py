@@ -31,7 +31,7 @@ from pound_solve.sensitivity.dual import Dual, slopes_of, value_of
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes, Instants, instants
 from pound_solve.sensitivity.law_tangent import BranchSlopes, LawTangent, branch_slopes
-from pound_solve.sensitivity.propagation import carried
+from pound_solve.sensitivity.propagation import Carried, carried
 from pound_solve.sensitivity.samples import TangentSample, sampled
 from pound_solve.sensitivity.trajectory import Change, Piece
 
@@ -83,6 +83,8 @@ class TangentRun:
         Of all events.
     su, sv : ndarray, shape (n_params, n)
         Derivatives of displacements and velocities at the present time.
+    impulse : ndarray, shape (n_params, n_laws)
+        Derivatives of the integrals of the laws' forces up to then.
     """
 
     def __init__(
@@ -95,6 +97,7 @@ class TangentRun:
         self.equations, self.input_slopes = equations, input_slopes
         self.laws, self.largest = laws, largest
         self.su, self.sv = equations.slopes.u.copy(), equations.slopes.v.copy()
+        self.impulse = np.zeros((equations.n_params, len(laws)))
         self.crossings: list[Crossing] = []
         self.branches = branch_slopes(laws, equations.n_params)
         self._moved = np.zeros(equations.n_params)  # derivative of the instant of the last event
@@ -141,12 +144,14 @@ class TangentRun:
         while i < len(lengths):
             for at, t in here:
                 if at.interval == i:
-                    derivatives = self._carried(piece, np.array([i]), at.tau)
-                    samples[t].append(self._sampled(self._instants(piece, i, at.tau), *derivatives))
+                    there = self._carried(piece, np.array([i]), at.tau)
+                    x = self._instants(piece, i, at.tau)
+                    samples[t].append(self._sampled(x, there.su, there.sv))
             end = i + 1
             while end < len(lengths) and lengths[end] == lengths[i] and end not in stops:
                 end += 1
-            self.su, self.sv = self._carried(piece, np.arange(i, end), float(lengths[i]))
+            self.su, self.sv, impulse = self._carried(piece, np.arange(i, end), float(lengths[i]))
+            self.impulse += impulse
             i = end
         self._before = self._instants(piece, len(lengths) - 1, float(lengths[-1]))
         self._at_once = not lengths.any()
@@ -162,8 +167,11 @@ class TangentRun:
             rate, second = (float(self.equations.deformations(x, i)[change.law, 0]) for i in (1, 2))
             dd, drate = self._law_slopes(change.law, x)
             d, v = Dual(d.value, dd + rate * self._moved), Dual(v.value, drate + second * self._moved)
+        force = self.branches.values[:, change.law]
         self.laws[change.law].change(change.event, d, v, change.after[0])
         self.branches = branch_slopes(self.laws, self.equations.n_params)
+        jump = (self.branches.values[:, change.law] - force) @ (d.value, v.value, 1.0)
+        self.impulse[:, change.law] -= jump * self._moved
         self._changed = True
         self._here += here
 
@@ -190,7 +198,7 @@ class TangentRun:
         )
         return dd, drate
 
-    def _carried(self, piece: Piece, chosen: Index, tau: float) -> tuple[Array, Array]:
+    def _carried(self, piece: Piece, chosen: Index, tau: float) -> Carried:
         """Return the derivatives after intervals of a piece, at whose start the run is."""
         start = self.su, self.sv
         return carried(self.equations, self.input_slopes, piece, self.branches, chosen, tau, start)

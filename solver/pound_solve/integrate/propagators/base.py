@@ -117,6 +117,10 @@ class Propagator(ABC):
         """Return states, shape (..., n_times, n_q), each after its time without forcing."""
 
     @abstractmethod
+    def free_integral(self, q: NDArray[Any], times: Array) -> NDArray[Any]:
+        """Return the integrals of `free_motion` from zero to its times, of the same shape."""
+
+    @abstractmethod
     def rate_rows(self, rows: NDArray[Any]) -> NDArray[Any]:
         """Return ``rows A``, of the shape of `rows`: the rate of ``rows q`` is ``rows A q`` plus `rows`
         times the forcing g.

@@ -197,6 +197,12 @@ class ModalPropagator(Propagator):
         after[..., self.rigid_u] += self.rigid_scale * times[:, None] * q[..., self.rigid_v]
         return after
 
+    def free_integral(self, q: Complex, times: Array) -> Complex:  # noqa: D102
+        t = times[:, None]
+        integral: Complex = q * t * phi.duhamel(t * self.eigenvalues, 0)[0]
+        integral[..., self.rigid_u] += self.rigid_scale * 0.5 * t * t * q[..., self.rigid_v]
+        return integral
+
     def march(self, q: Complex, gs: Complex, lengths: Array) -> Complex:  # noqa: D102
         if len(self.rigid_u):
             return super().march(q, gs, lengths)

@@ -71,9 +71,20 @@ class SeriesPropagator(Propagator):
         return q
 
     def free_motion(self, q: Array, times: Array) -> Array:  # noqa: D102
+        return np.einsum("tij,...tj->...ti", self._exponentials(times)[0], q)
+
+    def free_integral(self, q: Array, times: Array) -> Array:  # noqa: D102
+        return np.einsum("tij,...tj->...ti", self._exponentials(times)[1], q)
+
+    def _exponentials(self, times: Array) -> tuple[Array, Array]:
+        """Return the exponentials of the state matrix times each time, and their integrals from zero."""
         from scipy.linalg import expm  # slow to import, and few runs need it
 
-        return np.einsum("tij,...tj->...ti", expm(times[:, None, None] * self.space.a), q)
+        n = len(self.space.a)
+        augmented = np.zeros((2 * n, 2 * n))
+        augmented[:n, :n], augmented[:n, n:] = self.space.a, np.eye(n)
+        whole = expm(times[:, None, None] * augmented)
+        return whole[:, :n, :n], whole[:, :n, n:]
 
     def _substep(self, q: Array, g: Array, h: float) -> Array:
         """Return the state after a substep with ``|a| h <= 1``, by the Taylor series of the solution."""
