@@ -1,4 +1,4 @@
-"""Generated pairs of small buildings that yield and pound, with a PARAM of 1 as a factor of many numbers."""
+"""Generated pairs of small buildings that yield and pound, with PARAMs of 1 as factors of their numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def deck(seed: int, count: int) -> tuple[str, list[str]]:
 
 def _with_params(text: str, rng: random.Random, count: int) -> tuple[str, list[str]]:
     places = [m for m in re.finditer(SCALED, text) if float(m[2])]
-    weights = [m for m in re.finditer(r"(?m)^ \d+ (W) ([\d.]+)", text)]
+    weights = list(re.finditer(r"(?m)^ \d+ (W) ([\d.]+)", text))
     chosen = rng.sample(places + weights, min(count, len(places)))
     names = []
     for m in sorted(chosen, key=lambda m: -m.start(2)):
@@ -72,7 +72,9 @@ def _shear_buildings(rng: random.Random) -> str:
         elements.append(f" {number} M{i} 1{i} 2{i}")
         gap = rng.uniform(0.002, 0.02)
         props.append(f" M{i} CONTACT GAP={gap:.5f} ANGLE=0 {_contact(rng, 300.0)}")
-    damping = rng.choice((" RAYLEIGH ALPHA=0.3 BETA=0.002", " RAYLEIGH XI=0.05 MODES=1,2", " RAYLEIGH ALPHA=0.5"))
+    damping = rng.choice(
+        (" RAYLEIGH ALPHA=0.3 BETA=0.002", " RAYLEIGH XI=0.05 MODES=1,2", " RAYLEIGH ALPHA=0.5")
+    )
     if rng.random() < 0.3:
         damping += " STIFFNESS=TANGENT" if "BETA" in damping or "XI" in damping else ""
     return _text(nodes, elements, props, weights, drifts, damping, _motion(rng, 3.0), 3.0)
@@ -88,7 +90,15 @@ def _frames(rng: random.Random) -> str:
         " 1 0 0 FIX=XYR", " 2 6 0 FIX=XYR", " 3 0 3", " 4 6 3",
         " 11 6.02 0 FIX=XYR", " 12 12 0 FIX=XYR", " 13 6.02 3", " 14 12 3",
     ]  # fmt: skip
-    elements = [" 1 A 1 3", " 2 A 2 4", " 3 G 3 4", " 11 S 11 13", " 12 S 12 14", " 13 G 13 14", " 99 M 4 13"]
+    elements = [
+        " 1 A 1 3",
+        " 2 A 2 4",
+        " 3 G 3 4",
+        " 11 S 11 13",
+        " 12 S 12 14",
+        " 13 G 13 14",
+        " 99 M 4 13",
+    ]
     props = [
         f" A FRAME E=2E7 A=0.16 I=0.002{hinge}",
         f" S FRAME E=2E7 A=0.16 I={rng.uniform(0.002, 0.006):.5f}",
@@ -96,7 +106,9 @@ def _frames(rng: random.Random) -> str:
         f" M CONTACT GAP={rng.uniform(0.003, 0.015):.5f} ANGLE=0 {_contact(rng, 300.0)}",
     ]
     turn = rng.choice(("", " W2"))
-    weights = [f" {n} W {rng.uniform(150.0, 300.0):.2f}{turn.replace('W2', ' 200 0.5')}" for n in (3, 4, 13, 14)]
+    weights = [
+        f" {n} W {rng.uniform(150.0, 300.0):.2f}{turn.replace('W2', ' 200 0.5')}" for n in (3, 4, 13, 14)
+    ]
     damping = rng.choice((" RAYLEIGH ALPHA=0.4 BETA=0.001", " RAYLEIGH ALPHA=0.4"))
     drifts = [' "left" 1 3', ' "right" 11 13']
     return _text(nodes, elements, props, weights, drifts, damping, _motion(rng, 1.5), 1.5)

@@ -66,7 +66,9 @@ def refuse(card: Card, structure: Structure) -> None:
     if method not in ("EXACT", "AUTO"):
         raise NoDerivativeError(f"derivatives follow METHOD=EXACT or AUTO, and the deck asks for {method}")
     if card["RESTART"]:
-        raise NoDerivativeError("a history with RESTART begins with a state whose derivatives are not saved")
+        raise NoDerivativeError(
+            "a history with RESTART begins with a state whose derivatives are not saved"
+        )
     if structure.corotational:
         geometry = structure.model.geometry
         raise NoDerivativeError(
@@ -84,7 +86,9 @@ def refuse(card: Card, structure: Structure) -> None:
             )
 
 
-def run(ready: Prepared, request: Request, method: Method) -> tuple[RunRecord, dict[str, list[Fields]], str]:
+def run(
+    ready: Prepared, request: Request, method: Method
+) -> tuple[RunRecord, dict[str, list[Fields]], str]:
     """Run the analyses of a prepared deck, its history by `method`; return the record, the rows of tables
     from which quantities are taken, and the reason of a stop, if any.
     """

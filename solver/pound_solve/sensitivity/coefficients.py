@@ -159,9 +159,7 @@ def shape_of(case: Case) -> tuple[object, ...]:
     )
 
 
-def derivative(
-    at: Callable[[float], Case], value: float, name: str, middle: Case
-) -> Coefficients:
+def derivative(at: Callable[[float], Case], value: float, name: str, middle: Case) -> Coefficients:
     """Return the derivatives of the numbers by one parameter.
 
     Parameters

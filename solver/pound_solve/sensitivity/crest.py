@@ -12,14 +12,17 @@ from pound_solve.sensitivity.law_tangent import BranchSlopes
 from pound_solve.sensitivity.samples import Reading, read
 from pound_solve.sensitivity.trajectory import Piece
 
-SPREAD = 1e-3  #: distance of the values of a difference, in intervals or in radians of the fastest mode
+SPREAD = 4e-3  #: distance of the values of a difference, in intervals or in radians of the fastest mode
 FAR = 0.5  #: largest correction of an instant, likewise
 CORRECTIONS = 3  #: number of them
+#: first and second differences of fourth order over five equidistant values
+SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+BEND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 AT_END = 1e-9  #: fraction of an interval up to which an instant is at its end
 
 
 def refined(
-    course: Course, equations: TangentEquations, none: InputSlopes, reading: Reading
+    course: Course, equations: TangentEquations, no_slopes: InputSlopes, reading: Reading
 ) -> Reading | None:
     """Return the reading of a peak at the zero of its rate next to the instant that the run has.
 
@@ -32,10 +35,12 @@ def refined(
     ----------
     course : Course
     equations : TangentEquations
-    none : InputSlopes
+    no_slopes : InputSlopes
         Of no parameters.
     reading : Reading
     """
+    if reading.is_total or not reading.is_peak:
+        return reading
     at = course.place(reading.t)
     piece = course.parts[at.part]
     if not isinstance(piece, Piece):
@@ -46,11 +51,11 @@ def refined(
     h, tau = SPREAD * unit, at.tau
     branches = present_branches(piece)
     for _ in range(CORRECTIONS):  # the motion of the interval continues smoothly beyond its ends
-        x = instants(piece, np.array([at.interval]), np.array([tau - h, tau, tau + h]), none)
-        low, middle, high = read(equations, reading.kind, reading.index, x, branches).tolist()
-        bend = high - 2.0 * middle + low
-        tau += -0.5 * h * (high - low) / bend if bend else np.inf
-        if abs(tau - at.tau) > FAR * unit or not -h <= tau <= length + h:
+        x = instants(piece, np.array([at.interval]), tau + h * np.arange(-2.0, 3.0), no_slopes)
+        values = read(equations, reading.kind, reading.item, x, branches)
+        slope, bend = SLOPE @ values, BEND @ values
+        tau += -h * float(slope / bend) if bend else np.inf
+        if abs(tau - at.tau) > FAR * unit or not -2.0 * h <= tau <= length + 2.0 * h:
             at_end = min(at.tau, length - at.tau) <= AT_END * length
             return reading if at_end else None
     return reading._replace(t=reading.t + tau - at.tau)

@@ -2,7 +2,8 @@ r"""The equations of motion and of their derivatives.
 
 With the motion u(t, p) of a history,
 
-.. math:: M\ddot u + C\dot u + K u + \sum_i b_i f_i = F s + p_0, \qquad f_i = k_i d_i + c_i \dot d_i + f_{0i},
+.. math:: M\ddot u + C\dot u + K u + \sum_i b_i f_i = F s + p_0, \qquad
+          f_i = k_i d_i + c_i \dot d_i + f_{0i},
 
 the derivative :math:`S = \partial u/\partial p` at a fixed time obeys, between events, equations with the
 same matrices,
@@ -81,7 +82,7 @@ class TangentEquations:
             d, rate = self.deformations(x, order), self.deformations(x, order + 1)
             k, c, f0 = branches.values[:, :, None]
             r -= slopes.law_rows.swapaxes(1, 2) @ (k * d + c * rate + constant * f0)
-        return r
+        return np.asarray(r)
 
     def accelerations(self, x: Instants, branches: BranchSlopes, su: Array, sv: Array) -> Array:
         """Return the derivatives of the accelerations, zero of massless unknowns, shape (n_params, n), at

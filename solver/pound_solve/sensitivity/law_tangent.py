@@ -39,7 +39,8 @@ class LawTangent:
 
     def _enter(self) -> None:
         """Evaluate the present branch."""
-        k, c, f0, *flat = self.spring.law.rule.branch(self.p, self.at, self.m)
+        terms: Any = self.spring.law.rule.branch(self.p, self.at, self.m)
+        k, c, f0, *flat = terms
         if self.beta.value or self.secant.value:
             c = c + self.beta * max(k, 0.0)
             if self.secant.value:
@@ -68,7 +69,9 @@ class LawTangent:
             at, m = self.spring.law.rule.transition(self.p, self.at, self.m, event, d, v)  # type: ignore
         except (TypeError, ValueError, ZeroDivisionError, OverflowError) as err:
             rule, element = self.spring.rule, self.spring.element
-            raise NoDerivativeError(f"the rule {rule} of element {element} has no derivative: {err}") from None
+            raise NoDerivativeError(
+                f"the rule {rule} of element {element} has no derivative: {err}"
+            ) from None
         if at != after:
             raise NoDerivativeError(
                 f"element {self.spring.element} ({self.spring.rule}) changes its branch in a way that "

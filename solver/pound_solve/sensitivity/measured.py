@@ -66,15 +66,15 @@ def measured(items: RecordedItems) -> tuple[MeasuredRows, Places]:
     first = sum(len(g.constant) for g in groups)
     system = items.system
     ends = list(_ends(items))
-    rows = system.structure.dofs.rows(
-        [([(node, 0), (node, 1)], list(along)) for _, _, node, along in ends]
-    )
+    rows = system.structure.dofs.rows([([(node, 0), (node, 1)], list(along)) for _, _, node, along in ends])
     groups.append(_on_displacements(items, *system.reduce_rows(rows)))
     whole = MeasuredRows(*(np.concatenate(x) for x in zip(*groups)))
     return whole, Places(0, sums, {(law, end): first + i for i, (law, end, *_) in enumerate(ends)})
 
 
-def _on_displacements(items: RecordedItems, rows: Matrix, on_inputs: Array, constant: Array) -> MeasuredRows:
+def _on_displacements(
+    items: RecordedItems, rows: Matrix, on_inputs: Array, constant: Array
+) -> MeasuredRows:
     """Return rows that depend on displacements and inputs alone."""
     system, count = items.system, len(constant)
     none = np.zeros((count, system.size))

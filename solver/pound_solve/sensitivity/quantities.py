@@ -85,7 +85,10 @@ class Formulas:
         peaks, structure = self.history.returned.peaks, self.history.system.structure
         for law in self.history.items.contacts:
             name = contact_name(self.model, structure.laws[law].element)
-            gap, nothing = self._constant("parameters", law, GAP), 0.0 * self._constant("parameters", law, GAP)
+            gap, nothing = (
+                self._constant("parameters", law, GAP),
+                0.0 * self._constant("parameters", law, GAP),
+            )
             collisions = [c for c in peaks.collisions if c.law == law]
             count = nothing + float(len(collisions))
             yield Formula("closures", name, (), lambda n=count: n)
@@ -122,7 +125,9 @@ class Formulas:
             at = 3 * items.nodes.index(node) + (1 if along % 180.0 else 0)
             high, t_high, low, t_low = envelope.rows()[at]
             reading = _largest(ReadingKind.ROW, row, Extreme(high, t_high, low, t_low))
-            yield Formula(("peak_i", "peak_j")[end], contact_name(self.model, spring.element), (reading,), abs)
+            yield Formula(
+                ("peak_i", "peak_j")[end], contact_name(self.model, spring.element), (reading,), abs
+            )
 
     def _bases(self) -> Iterator[Formula]:
         largest = self.history.recorder.envelopes.sums["base"].largest()
@@ -143,7 +148,7 @@ class Formulas:
             peaks.append(("floor_acceleration", first["acceleration"] + n, motion[n]))
             if i not in b.bearings:
                 peaks.append(("storey_drift", first["drift"] + n, drift[n]))
-                left = Reading(ReadingKind.ROW, first["drift"] + n, end, float("nan"))
+                left = Reading(ReadingKind.ROW, first["drift"] + n, end, math.nan, is_peak=False)
                 yield Formula("residual_drift", label, (left,), lambda y: y)
             for quantity, row, (value, t) in peaks:
                 yield Formula(quantity, label, (Reading(ReadingKind.ROW, row, t, value),), abs)
@@ -159,11 +164,14 @@ class Formulas:
                 (0, r.deformation.high, r.deformation.t_high, r.force.high, r.force.t_high),
                 (1, r.deformation.low, r.deformation.t_low, r.force.low, r.force.t_low),
             ):
-                whole, at_yield = r.spring.whole(d, f), (r.spring.yields or (0.0, 0.0))[side]
-                if abs(at_yield) > 0.0:
-                    sides.append((whole / at_yield, side, (d, t), (f, tf)))
+                limit = (r.spring.yields or (0.0, 0.0))[side]
+                if abs(limit) > 0.0:
+                    sides.append((r.spring.whole(d, f) / limit, side, (d, t), (f, tf)))
             _, side, (d, t), (f, tf) = max(sides)
-            readings = Reading(ReadingKind.DEFORMATION, law, t, d), Reading(ReadingKind.STATIC_FORCE, law, tf, f)
+            readings = (
+                Reading(ReadingKind.DEFORMATION, law, t, d),
+                Reading(ReadingKind.STATIC_FORCE, law, tf, f),
+            )
             at_yield, beside = self._constant("yields", law, side), self._constant("beside", law)
             yield Formula(
                 "ductility",

@@ -10,12 +10,13 @@ from functools import partial
 import numpy as np
 
 from pound_deck.model import Model
-from pound_solve.driver.prepare import DeckError
+from pound_solve.analyses.recorder import HistoryRecorder
+from pound_solve.driver.prepare import DeckError, Prepared
 from pound_solve.driver.request import Request
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.protocol import Outcome, Problem
-from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.numerics.types import Array
+from pound_solve.results.record import RunRecord
 from pound_solve.sensitivity import case
 from pound_solve.sensitivity.coefficients import Coefficients, coefficients, derivative
 from pound_solve.sensitivity.course import Course
@@ -26,12 +27,13 @@ from pound_solve.sensitivity.instants import InputSlopes
 from pound_solve.sensitivity.law_tangent import LawTangent
 from pound_solve.sensitivity.quantities import Formula, Formulas
 from pound_solve.sensitivity.refusal import NoDerivativeError
-from pound_solve.sensitivity.samples import Reading, ReadingKind, TangentSample, differentiated
+from pound_solve.sensitivity.samples import Reading, TangentSample, differentiated
 from pound_solve.sensitivity.tangent_run import Crossing, TangentRun
 from pound_solve.sensitivity.trajectory import Trajectory
-from pound_solve.sweep.study.quantities import Values, taken
+from pound_solve.sweep.study.quantities import Fields, Values, taken
 
 GRAZING = 1e-3  #: fraction of the largest speed of a law below which it meets an event in grazing
+AT_REST = 1e-9  #: fraction of the largest deformation and rate of a law below which it is at rest
 SAME_VALUE = 1e-8  #: largest relative difference of a quantity from that of the run
 
 
@@ -84,6 +86,41 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     ready = case.ready_for(request)
     given = {name.casefold(): value for name, value in ready.model.params.items()}
     values = [_number(name, given) for name in names]
+    record, rows, middle, trajectory = _run(ready, request)
+    course, known = Course(trajectory.course), taken(rows)
+    if not names:
+        return Derivatives((), known, {}, (), course.sequence)
+    base, places = coefficients(middle)
+    each = [derivative(partial(_case_at, request, name), x, name, middle) for name, x in zip(names, values)]
+    slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
+    equations, excitation = TangentEquations(base, slopes), trajectory.system.excitation
+    no_slopes = InputSlopes(excitation, slopes.excitation[:0])
+    flags, formulas = list[str](), list[Formula]()
+    for f in Formulas(record.history, base, slopes, places).all():
+        readings = [refined(course, equations, no_slopes, r) for r in f.readings]
+        peaks = tuple(r for r in readings if r is not None)
+        if len(peaks) == len(readings):
+            formulas.append(f._replace(readings=peaks))
+        else:
+            flags.append(f"{f.quantity} {f.label} has no derivative: its peak is the limit at a jump")
+    inputs = InputSlopes(excitation, slopes.excitation)
+    run = TangentRun(equations, inputs, _laws(middle, base, slopes), trajectory.largest)
+    samples = run.follow(course, [r.t for f in formulas for r in f.readings if not r.is_total])
+    results: dict[str, dict[str, Array]] = {}
+    for f in formulas:
+        y, expected = _evaluated(f, samples, run), known.get(f.quantity, {}).get(f.label, math.nan)
+        if abs(y.value - expected) <= SAME_VALUE * abs(
+            expected
+        ):  # otherwise a row with this label is larger
+            results.setdefault(f.quantity, {})[f.label] = np.zeros(len(names)) + y.slopes
+    flags += _grazing(run.crossings, trajectory, ready.model)
+    return Derivatives(tuple(names), known, results, tuple(flags), course.sequence)
+
+
+def _run(
+    ready: Prepared, request: Request
+) -> tuple[RunRecord, dict[str, list[Fields]], case.Case, Trajectory]:
+    """Return the record of the run, the rows of its tables, its start and its course."""
     runs: list[tuple[Problem[HistoryRecorder], Trajectory]] = []
 
     def follow(problem: Problem[HistoryRecorder]) -> Outcome:
@@ -94,45 +131,11 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
 
     record, rows, message = case.run(ready, request, follow)
     if message:
-        raise NoDerivativeError(f"the run has no end: {message}")
-    (problem, trajectory), = runs
+        raise NoDerivativeError(f"the run does not reach its end: {message}")
+    ((problem, trajectory),) = runs
     if trajectory.released:
         raise NoDerivativeError("massless joints jump where a law loses its force: give the joints mass")
-    course, known = Course(trajectory.course), taken(rows)
-    if not names:
-        return Derivatives((), known, {}, (), course.sequence)
-    middle = case.Case(problem, problem.recorder.items, case.periods_of(record))
-    base, places = coefficients(middle)
-    each = [derivative(partial(_case_at, request, name), x, name, middle) for name, x in zip(names, values)]
-    slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
-    formulas = list(Formulas(record.history, base, slopes, places).all())
-    equations = TangentEquations(base, slopes)
-    inputs = InputSlopes(trajectory.system.excitation, slopes.excitation)
-    none = InputSlopes(trajectory.system.excitation, slopes.excitation[:0])
-    flags = []
-    at_rest = []
-    for f in formulas:
-        readings = [
-            refined(course, equations, none, r) if math.isfinite(r.t + r.value) else r for r in f.readings
-        ]
-        if None in readings:
-            flags.append(f"{f.quantity} {f.label}: its peak is the limit at a jump, and has no derivative")
-        else:
-            at_rest.append(f._replace(readings=tuple(filter(None, readings))))
-    run = TangentRun(equations, inputs, _laws(problem, base, slopes), trajectory.largest)
-    samples = run.follow(course, [r.t for f in at_rest for r in f.readings if r.t == r.t])
-    flags += _grazing(run.crossings, trajectory, ready.model)
-    results: dict[str, dict[str, Array]] = {}
-    for f in at_rest:
-        y = _evaluated(f, samples, run)
-        expected = known.get(f.quantity, {}).get(f.label)
-        if expected is None or y.value < expected - SAME_VALUE * abs(expected):
-            continue  # another row with this label is larger
-        if abs(y.value - expected) > SAME_VALUE * abs(expected):
-            flags.append(f"{f.quantity} {f.label}: its peak lies where it jumps, and has no derivative here")
-            continue
-        results.setdefault(f.quantity, {})[f.label] = np.zeros(len(names)) + y.slopes
-    return Derivatives(tuple(names), known, results, tuple(flags), course.sequence)
+    return record, rows, case.Case(problem, problem.recorder.items, case.periods_of(record)), trajectory
 
 
 def _number(name: str, given: Mapping[str, float | str]) -> float:
@@ -151,14 +154,14 @@ def _case_at(request: Request, name: str, value: float) -> case.Case:
     try:
         return case.case_of(replace(request, params={**params, name: repr(value)}))
     except DeckError as err:
-        raise NoDerivativeError(f"{name} = {value!r}, next to the value of the deck, is refused:\n{err}") from None
+        raise NoDerivativeError(
+            f"{name} = {value!r}, next to the value of the deck, is refused:\n{err}"
+        ) from None
 
 
-def _laws(
-    problem: Problem[HistoryRecorder], base: Coefficients, slopes: Coefficients
-) -> list[LawTangent]:
+def _laws(middle: case.Case, base: Coefficients, slopes: Coefficients) -> list[LawTangent]:
     """Return the laws at the start with their derivatives."""
-    laws = []
+    laws, problem = [], middle.problem
     for i, (spring, state) in enumerate(zip(problem.system.structure.laws, problem.start.states)):
         p = duals(spring.law.p, slopes.parameters[:, i])
         m = duals(state[3], slopes.variables[:, i])
@@ -167,35 +170,33 @@ def _laws(
     return laws
 
 
-def _evaluated(
-    f: Formula, samples: Mapping[float, Sequence[TangentSample]], run: TangentRun
-) -> Dual:
+def _evaluated(f: Formula, samples: Mapping[float, Sequence[TangentSample]], run: TangentRun) -> Dual:
     """Return a quantity with its derivatives."""
 
-    def nearest(reading: Reading) -> Dual:
-        if reading.kind is ReadingKind.IMPULSE:
-            return Dual(reading.value, run.impulse[:, reading.index])
-        each = [differentiated(run.equations, reading.kind, reading.index, x) for x in samples[reading.t]]
+    def value(reading: Reading) -> Dual:
+        if reading.is_total:
+            return Dual(reading.value, run.impulse[:, reading.item])
+        each = [differentiated(run.equations, reading.kind, reading.item, x) for x in samples[reading.t]]
         return min(each, key=lambda y: abs(abs(y.value) - abs(reading.value)))
 
-    return f.value(*map(nearest, f.readings))
+    return f.value(*map(value, f.readings))
 
 
-def _grazing(
-    crossings: Sequence[Crossing], trajectory: Trajectory, model: Model
-) -> Iterator[str]:
+def _grazing(crossings: Sequence[Crossing], trajectory: Trajectory, model: Model) -> Iterator[str]:
     """Yield a text for every event that is only just met."""
-    laws, fastest = trajectory.laws, trajectory.largest[1]
+    laws, (largest, fastest) = trajectory.laws, trajectory.largest
     sharpest = np.zeros(len(laws))
     for x in crossings:
         sharpest[x.law] = max(sharpest[x.law], abs(x.second))
     for x in crossings:
+        if abs(x.d) <= AT_REST * largest[x.law] and abs(x.rate) <= AT_REST * fastest[x.law]:
+            continue  # nothing moves yet
         scale = abs(x.on_d) * fastest[x.law] + abs(x.on_v) * sharpest[x.law]
         share = abs(x.speed) / scale if scale else 0.0
         if share < GRAZING:
             spring = laws[x.law]
             yield (
                 f"{spring.component} of element {spring.element} has a grazing event at t = {x.t:.9g} "
-                f"{model.units.time}: it is met at {share:.1e} of the largest speed, so the derivatives hold "
-                "in a small neighbourhood only"
+                f"{model.units.time}: it is met at {share:.1e} of the largest speed, so the derivatives "
+                "hold in a small neighbourhood only"
             )

@@ -30,18 +30,26 @@ class Reading(NamedTuple):
     Attributes
     ----------
     kind : ReadingKind
-    index : int
-        Of the row or the law.
+    item : int
+        Row or law.
     t : float
         Time at which the run has it [T].
     value : float
         That the run has; it tells both sides of a jump apart.
+    is_peak : bool
+        Whether it is the largest or smallest value of the run.
     """
 
     kind: ReadingKind
-    index: int
+    item: int
     t: float
     value: float
+    is_peak: bool = True
+
+    @property
+    def is_total(self) -> bool:
+        """Return whether it belongs to the whole run, not to an instant."""
+        return self.kind is ReadingKind.IMPULSE
 
 
 class TangentSample(NamedTuple):

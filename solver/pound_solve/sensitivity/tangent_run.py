@@ -1,8 +1,8 @@
 r"""The derivatives of a motion along a run, through its events.
 
 At an event, whose function is :math:`g(d, \dot d; p)`, the run changes from one equation of motion to
-another, and the instant of the event moves with the parameters.  With the derivatives S of the state x before
-it at a fixed time, and the rates of the state before and after,
+another, and the instant of the event moves with the parameters.  With the derivatives S of the state x
+before it at a fixed time, and the rates of the state before and after,
 
 .. math:: \frac{dt_e}{dp} = -\frac{\partial_p g + \partial_x g\, S^-}{\dot g^-}, \qquad
           S^+ = S^- + (\dot x^- - \dot x^+)\frac{dt_e}{dp} .
@@ -30,7 +30,7 @@ from pound_solve.sensitivity.course import Course, Instant
 from pound_solve.sensitivity.dual import Dual, slopes_of, value_of
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes, Instants, instants
-from pound_solve.sensitivity.law_tangent import BranchSlopes, LawTangent, branch_slopes
+from pound_solve.sensitivity.law_tangent import LawTangent, branch_slopes
 from pound_solve.sensitivity.propagation import Carried, carried
 from pound_solve.sensitivity.samples import TangentSample, sampled
 from pound_solve.sensitivity.trajectory import Change, Piece
@@ -48,14 +48,15 @@ class Crossing(NamedTuple):
     law : int
     on_d, on_v : float
         Factors of the function on the deformation and on its rate.
-    rate, second : float
-        First and second rates of the deformation there.
+    d, rate, second : float
+        Deformation there, and its first two rates.
     """
 
     t: float
     law: int
     on_d: float
     on_v: float
+    d: float
     rate: float
     second: float
 
@@ -185,12 +186,12 @@ class TangentRun:
             return self._moved  # it follows from the change before it, at the same instant
         dd, drate = self._law_slopes(change.law, x)
         slope = a * dd + b * drate + d * slopes_of(on_d) + rate * slopes_of(on_v) + slopes_of(constant)
-        crossing = Crossing(change.t, change.law, a, b, rate, second)
+        crossing = Crossing(change.t, change.law, a, b, d, rate, second)
         self.crossings.append(crossing)
         return np.asarray(-slope / crossing.speed) if crossing.speed else np.zeros(len(dd))
 
     def _law_slopes(self, law: int, x: Instants) -> tuple[Array, Array]:
-        """Return the derivatives of a law's deformation and rate at a fixed time, shape (n_params,) each."""
+        """Return the derivatives of a law's deformation and rate at a fixed time, (n_params,) each."""
         row = self.equations.base.law_rows[law]
         dd, drate = (
             s @ row + self.equations.deformations_at_fixed_motion(x, order)[:, law, 0]
@@ -207,8 +208,6 @@ class TangentRun:
         """Return the motion at one instant of a piece."""
         return instants(piece, np.array([interval]), np.array([tau]), self.input_slopes)
 
-    def _sampled(
-        self, x: Instants, su: Array, sv: Array, moved: Array | None = None
-    ) -> TangentSample:
+    def _sampled(self, x: Instants, su: Array, sv: Array, moved: Array | None = None) -> TangentSample:
         """Return the sample at one instant of the present branches."""
         return sampled(self.equations, x, self.branches, su, sv, moved)

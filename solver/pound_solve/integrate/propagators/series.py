@@ -71,10 +71,10 @@ class SeriesPropagator(Propagator):
         return q
 
     def free_motion(self, q: Array, times: Array) -> Array:  # noqa: D102
-        return np.einsum("tij,...tj->...ti", self._exponentials(times)[0], q)
+        return np.asarray(np.einsum("tij,...tj->...ti", self._exponentials(times)[0], q))
 
     def free_integral(self, q: Array, times: Array) -> Array:  # noqa: D102
-        return np.einsum("tij,...tj->...ti", self._exponentials(times)[1], q)
+        return np.asarray(np.einsum("tij,...tj->...ti", self._exponentials(times)[1], q))
 
     def _exponentials(self, times: Array) -> tuple[Array, Array]:
         """Return the exponentials of the state matrix times each time, and their integrals from zero."""
