@@ -41,6 +41,7 @@ LAYERS = (
     "assess",
     "opensees",
     "sweep",
+    "sensitivity",
     "editor",
     "cli",
     "__main__",
