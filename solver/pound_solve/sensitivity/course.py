@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_solve.sensitivity.trajectory import Change, Piece
+from pound_solve.sensitivity.trajectory import BranchChange, SmoothPiece
 
 SAME_TIME = 1e-12  #: fraction of the time up to which two instants are one
 
@@ -22,25 +22,25 @@ class Instant(NamedTuple):
     tau: float = 0.0
 
 
-class Course:
+class RunCourse:
     """The course of a run.
 
     Parameters
     ----------
-    parts : sequence of Piece or Change
+    parts : sequence of SmoothPiece or BranchChange
     """
 
-    def __init__(self, parts: Sequence[Piece | Change]) -> None:
+    def __init__(self, parts: Sequence[SmoothPiece | BranchChange]) -> None:
         self.parts = parts
-        self._pieces = [i for i, part in enumerate(parts) if isinstance(part, Piece)]
-        self._changes = [i for i, part in enumerate(parts) if isinstance(part, Change)]
+        self._pieces = [i for i, part in enumerate(parts) if isinstance(part, SmoothPiece)]
+        self._changes = [i for i, part in enumerate(parts) if isinstance(part, BranchChange)]
         self._begins = np.array([parts[i].begin for i in self._pieces])  # type: ignore[union-attr]
         self._events = np.array([parts[i].t for i in self._changes])  # type: ignore[union-attr]
 
     @property
     def sequence(self) -> tuple[tuple[int, int], ...]:
         """Return the law and the event function of all changes in order."""
-        return tuple((part.law, part.event) for part in self.parts if isinstance(part, Change))
+        return tuple((part.law, part.event) for part in self.parts if isinstance(part, BranchChange))
 
     def place(self, t: float) -> Instant:
         """Return the place of an instant."""
@@ -50,7 +50,7 @@ class Course:
             return Instant(self._changes[first])
         part = self._pieces[max(int(np.searchsorted(self._begins, t, side="right")) - 1, 0)]
         piece = self.parts[part]
-        assert isinstance(piece, Piece)
+        assert isinstance(piece, SmoothPiece)
         local = t - piece.begin
         edges = piece.dense.edges[: len(piece.lengths)]
         interval = max(int(np.searchsorted(edges, local - rounding, side="right")) - 1, 0)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.numerics.types import Array
-from pound_solve.sensitivity.course import Course
+from pound_solve.sensitivity.course import RunCourse
+from pound_solve.sensitivity.dual_law import BranchSlopes
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes, instants
-from pound_solve.sensitivity.law_tangent import BranchSlopes
-from pound_solve.sensitivity.samples import Reading, read
-from pound_solve.sensitivity.trajectory import Piece
+from pound_solve.sensitivity.samples import ObservedValue, read
+from pound_solve.sensitivity.trajectory import SmoothPiece
 
 SPREAD = 4e-3  #: distance of the values of a difference, in intervals or in radians of the fastest mode
 FAR = 0.5  #: largest correction of an instant, likewise
@@ -22,8 +22,8 @@ AT_END = 1e-9  #: fraction of an interval up to which an instant is at its end
 
 
 def refined(
-    course: Course, equations: TangentEquations, no_slopes: InputSlopes, reading: Reading
-) -> Reading | None:
+    course: RunCourse, equations: TangentEquations, no_slopes: InputSlopes, reading: ObservedValue
+) -> ObservedValue | None:
     """Return the reading of a peak at the zero of its rate next to the instant that the run has.
 
     The envelopes of a run find the value of a peak, which depends little on its instant, to all digits, but
@@ -33,17 +33,17 @@ def refined(
 
     Parameters
     ----------
-    course : Course
+    course : RunCourse
     equations : TangentEquations
     no_slopes : InputSlopes
         Of no parameters.
-    reading : Reading
+    reading : ObservedValue
     """
     if reading.is_total or not reading.is_peak:
         return reading
     at = course.place(reading.t)
     piece = course.parts[at.part]
-    if not isinstance(piece, Piece):
+    if not isinstance(piece, SmoothPiece):
         return reading
     length, subsystems = float(piece.lengths[at.interval]), piece.dense.subsystems.present
     radius = max((x.decomposition.propagator.spectral_radius for x in subsystems), default=0.0)
@@ -61,7 +61,7 @@ def refined(
     return reading._replace(t=reading.t + tau - at.tau)
 
 
-def present_branches(piece: Piece) -> BranchSlopes:
+def present_branches(piece: SmoothPiece) -> BranchSlopes:
     """Return the branches of a piece, without derivatives."""
     branches = [(b.stiffness, b.damping, b.force0) for b in piece.dense.branches]
     values: Array = np.array(branches).reshape(-1, 3).T

@@ -21,8 +21,8 @@ import numpy as np
 
 from pound_solve.numerics.types import Array, Index
 from pound_solve.sensitivity.coefficients import Coefficients
+from pound_solve.sensitivity.dual_law import BranchSlopes
 from pound_solve.sensitivity.instants import Instants
-from pound_solve.sensitivity.law_tangent import BranchSlopes
 
 
 class TangentEquations:

@@ -9,7 +9,7 @@ import numpy as np
 from pound_solve.loading.excitation import Excitation
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
-from pound_solve.sensitivity.trajectory import Piece
+from pound_solve.sensitivity.trajectory import SmoothPiece
 
 ORDERS = 4  #: inputs, and their derivatives that are needed
 
@@ -72,7 +72,7 @@ class InputSlopes:
         return np.stack([polynomial.on(coefs, t, order) for order in range(ORDERS)]).reshape(shape)
 
 
-def instants(piece: Piece, chosen: Index, times: Array, input_slopes: InputSlopes) -> Instants:
+def instants(piece: SmoothPiece, chosen: Index, times: Array, input_slopes: InputSlopes) -> Instants:
     """Return the motion at the same `times` within each of some intervals of a piece, interval by
     interval.
     """

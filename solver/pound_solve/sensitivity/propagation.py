@@ -26,10 +26,10 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate.propagators.base import Propagator, gauss
 from pound_solve.numerics.types import Array, Index
+from pound_solve.sensitivity.dual_law import BranchSlopes
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes, instants
-from pound_solve.sensitivity.law_tangent import BranchSlopes
-from pound_solve.sensitivity.trajectory import Piece
+from pound_solve.sensitivity.trajectory import SmoothPiece
 
 AT_ONCE = 2**21  #: numbers of the load R that are evaluated at once
 
@@ -53,7 +53,7 @@ class Carried(NamedTuple):
 def carried(
     equations: TangentEquations,
     input_slopes: InputSlopes,
-    piece: Piece,
+    piece: SmoothPiece,
     branches: BranchSlopes,
     chosen: Index,
     tau: float,
@@ -65,7 +65,7 @@ def carried(
     ----------
     equations : TangentEquations
     input_slopes : InputSlopes
-    piece : Piece
+    piece : SmoothPiece
     branches : BranchSlopes
         Of the piece.
     chosen : ndarray of int

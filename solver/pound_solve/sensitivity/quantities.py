@@ -13,7 +13,7 @@ from pound_solve.results.words import contact_name
 from pound_solve.sensitivity.coefficients import Coefficients
 from pound_solve.sensitivity.dual import Dual
 from pound_solve.sensitivity.measured import Places
-from pound_solve.sensitivity.samples import Reading, ReadingKind
+from pound_solve.sensitivity.samples import ObservedKind, ObservedValue
 from pound_solve.structure.storeys import storeys
 
 
@@ -24,14 +24,14 @@ class Formula(NamedTuple):
     ----------
     quantity, label : str
         As in `sweep.study.quantities`.
-    readings : tuple of Reading
+    readings : tuple of ObservedValue
     value : callable
         Returns it from the readings as dual numbers.
     """
 
     quantity: str
     label: str
-    readings: tuple[Reading, ...]
+    readings: tuple[ObservedValue, ...]
     value: Callable[..., Dual]
 
 
@@ -75,7 +75,7 @@ class Formulas:
     def _drifts(self) -> Iterator[Formula]:
         peaks = self.history.returned.peaks.monitored
         for i, ((name, ratio), peak) in enumerate(zip(self.history.drift_ratios(), peaks)):
-            reading = _largest(ReadingKind.ROW, self.places.drifts + i, peak)
+            reading = _largest(ObservedKind.ROW, self.places.drifts + i, peak)
             yield Formula("peak_drift", name, (reading,), abs)
             if ratio == ratio:
                 height = self._constant("heights", i)
@@ -95,15 +95,15 @@ class Formulas:
             yield Formula("given_gap", name, (), lambda g=gap: g)
             if collisions:
                 best = max(collisions, key=lambda c: c.peak)
-                force = Reading(ReadingKind.FORCE, law, best.t_peak, best.peak)
+                force = ObservedValue(ObservedKind.FORCE, law, best.t_peak, best.peak)
                 yield Formula("contact_force", name, (force,), lambda f: f)
             else:
                 yield Formula("contact_force", name, (), lambda n=nothing: n)
             total = sum(c.impulse for c in collisions)
-            impulse = Reading(ReadingKind.IMPULSE, law, math.nan, total)
+            impulse = ObservedValue(ObservedKind.IMPULSE, law, math.nan, total)
             yield Formula("impulse", name, (impulse,), lambda p: p)
             peak = peaks.deformation[law]
-            closest = Reading(ReadingKind.DEFORMATION, law, peak.t_high, peak.high)
+            closest = ObservedValue(ObservedKind.DEFORMATION, law, peak.t_high, peak.high)
             yield Formula("min_gap", name, (closest,), lambda d, g=gap: g - d)
             yield Formula(
                 "penetration", name, (closest,), lambda d, g=gap, n=nothing: d - g if d > g else n
@@ -124,7 +124,7 @@ class Formulas:
             assert node is not None
             at = 3 * items.nodes.index(node) + (1 if along % 180.0 else 0)
             high, t_high, low, t_low = envelope.rows()[at]
-            reading = _largest(ReadingKind.ROW, row, Extreme(high, t_high, low, t_low))
+            reading = _largest(ObservedKind.ROW, row, Extreme(high, t_high, low, t_low))
             yield Formula(
                 ("peak_i", "peak_j")[end], contact_name(self.model, spring.element), (reading,), abs
             )
@@ -136,7 +136,7 @@ class Formulas:
                 value, t = largest[3 * n + component]
                 if value:
                     row = self.places.sums["base"] + 3 * n + component
-                    yield Formula(quantity, b.name, (Reading(ReadingKind.ROW, row, t, value),), abs)
+                    yield Formula(quantity, b.name, (ObservedValue(ObservedKind.ROW, row, t, value),), abs)
 
     def _storeys(self) -> Iterator[Formula]:
         sums, history = self.history.recorder.envelopes.sums, self.history
@@ -148,10 +148,10 @@ class Formulas:
             peaks.append(("floor_acceleration", first["acceleration"] + n, motion[n]))
             if i not in b.bearings:
                 peaks.append(("storey_drift", first["drift"] + n, drift[n]))
-                left = Reading(ReadingKind.ROW, first["drift"] + n, end, math.nan, is_peak=False)
+                left = ObservedValue(ObservedKind.ROW, first["drift"] + n, end, math.nan, is_peak=False)
                 yield Formula("residual_drift", label, (left,), lambda y: y)
             for quantity, row, (value, t) in peaks:
-                yield Formula(quantity, label, (Reading(ReadingKind.ROW, row, t, value),), abs)
+                yield Formula(quantity, label, (ObservedValue(ObservedKind.ROW, row, t, value),), abs)
 
     def _springs(self) -> Iterator[Formula]:
         laws = {id(s): i for i, s in enumerate(self.history.system.structure.laws)}
@@ -169,8 +169,8 @@ class Formulas:
                     sides.append((r.spring.whole(d, f) / limit, side, (d, t), (f, tf)))
             _, side, (d, t), (f, tf) = max(sides)
             readings = (
-                Reading(ReadingKind.DEFORMATION, law, t, d),
-                Reading(ReadingKind.STATIC_FORCE, law, tf, f),
+                ObservedValue(ObservedKind.DEFORMATION, law, t, d),
+                ObservedValue(ObservedKind.STATIC_FORCE, law, tf, f),
             )
             at_yield, beside = self._constant("yields", law, side), self._constant("beside", law)
             yield Formula(
@@ -181,8 +181,8 @@ class Formulas:
             )
 
 
-def _largest(kind: ReadingKind, index: int, peak: Extreme) -> Reading:
+def _largest(kind: ObservedKind, index: int, peak: Extreme) -> ObservedValue:
     """Return the reading of the larger side of an extreme."""
     if peak.high >= -peak.low:
-        return Reading(kind, index, peak.t_high, peak.high)
-    return Reading(kind, index, peak.t_low, peak.low)
+        return ObservedValue(kind, index, peak.t_high, peak.high)
+    return ObservedValue(kind, index, peak.t_low, peak.low)

@@ -19,15 +19,15 @@ from pound_solve.numerics.types import Array
 from pound_solve.results.record import RunRecord
 from pound_solve.sensitivity import case
 from pound_solve.sensitivity.coefficients import Coefficients, coefficients, derivative
-from pound_solve.sensitivity.course import Course
+from pound_solve.sensitivity.course import RunCourse
 from pound_solve.sensitivity.crest import refined
 from pound_solve.sensitivity.dual import Dual, duals
+from pound_solve.sensitivity.dual_law import DualLaw
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes
-from pound_solve.sensitivity.law_tangent import LawTangent
 from pound_solve.sensitivity.quantities import Formula, Formulas
 from pound_solve.sensitivity.refusal import NoDerivativeError
-from pound_solve.sensitivity.samples import Reading, TangentSample, differentiated
+from pound_solve.sensitivity.samples import ObservedValue, TangentSample, differentiated
 from pound_solve.sensitivity.tangent_run import Crossing, TangentRun
 from pound_solve.sensitivity.trajectory import Trajectory
 from pound_solve.sweep.study.quantities import Fields, Values, taken
@@ -87,7 +87,7 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     given = {name.casefold(): value for name, value in ready.model.params.items()}
     values = [_number(name, given) for name in names]
     record, rows, middle, trajectory = _run(ready, request)
-    course, known = Course(trajectory.course), taken(rows)
+    course, known = RunCourse(trajectory.course), taken(rows)
     if not names:
         return Derivatives((), known, {}, (), course.sequence)
     base, places = coefficients(middle)
@@ -159,21 +159,21 @@ def _case_at(request: Request, name: str, value: float) -> case.Case:
         ) from None
 
 
-def _laws(middle: case.Case, base: Coefficients, slopes: Coefficients) -> list[LawTangent]:
+def _laws(middle: case.Case, base: Coefficients, slopes: Coefficients) -> list[DualLaw]:
     """Return the laws at the start with their derivatives."""
     laws, problem = [], middle.problem
     for i, (spring, state) in enumerate(zip(problem.system.structure.laws, problem.start.states)):
         p = duals(spring.law.p, slopes.parameters[:, i])
         m = duals(state[3], slopes.variables[:, i])
         beta, secant = (Dual(getattr(base, x)[i], getattr(slopes, x)[:, i]) for x in ("beta", "secant"))
-        laws.append(LawTangent(spring, p, beta, secant, state[0], m))
+        laws.append(DualLaw(spring, p, beta, secant, state[0], m))
     return laws
 
 
 def _evaluated(f: Formula, samples: Mapping[float, Sequence[TangentSample]], run: TangentRun) -> Dual:
     """Return a quantity with its derivatives."""
 
-    def value(reading: Reading) -> Dual:
+    def value(reading: ObservedValue) -> Dual:
         if reading.is_total:
             return Dual(reading.value, run.impulse[:, reading.item])
         each = [differentiated(run.equations, reading.kind, reading.item, x) for x in samples[reading.t]]

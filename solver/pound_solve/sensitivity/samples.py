@@ -9,12 +9,12 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 from pound_solve.sensitivity.dual import Dual
+from pound_solve.sensitivity.dual_law import BranchSlopes
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import Instants
-from pound_solve.sensitivity.law_tangent import BranchSlopes
 
 
-class ReadingKind(Enum):
+class ObservedKind(Enum):
     """Kind of a reading."""
 
     ROW = auto()  #: a row of the measured quantities
@@ -24,12 +24,12 @@ class ReadingKind(Enum):
     IMPULSE = auto()  #: integral of the force of a law up to the end
 
 
-class Reading(NamedTuple):
+class ObservedValue(NamedTuple):
     """A quantity at an instant.
 
     Attributes
     ----------
-    kind : ReadingKind
+    kind : ObservedKind
     item : int
         Row or law.
     t : float
@@ -40,7 +40,7 @@ class Reading(NamedTuple):
         Whether it is the largest or smallest value of the run.
     """
 
-    kind: ReadingKind
+    kind: ObservedKind
     item: int
     t: float
     value: float
@@ -49,7 +49,7 @@ class Reading(NamedTuple):
     @property
     def is_total(self) -> bool:
         """Return whether it belongs to the whole run, not to an instant."""
-        return self.kind is ReadingKind.IMPULSE
+        return self.kind is ObservedKind.IMPULSE
 
 
 class TangentSample(NamedTuple):
@@ -97,16 +97,18 @@ def sampled(
     return TangentSample(x, su, sv, equations.accelerations(x, branches, su, sv), branches)
 
 
-def read(equations: TangentEquations, kind: ReadingKind, index: int, x: Instants, b: BranchSlopes) -> Array:
+def read(
+    equations: TangentEquations, kind: ObservedKind, index: int, x: Instants, b: BranchSlopes
+) -> Array:
     """Return the values of a reading at some instants on the same branches, shape (n_times,)."""
-    if kind is ReadingKind.ROW:
+    if kind is ObservedKind.ROW:
         return _row(equations, index, x, b)
     d = equations.deformations(x)[index]
-    if kind is ReadingKind.DEFORMATION:
+    if kind is ObservedKind.DEFORMATION:
         return np.asarray(d)
     k, c, f0 = b.values[:, index]
     rate = equations.deformations(x, 1)[index]
-    return np.asarray(k * d + f0 + (c * rate if kind is ReadingKind.FORCE else 0.0))
+    return np.asarray(k * d + f0 + (c * rate if kind is ObservedKind.FORCE else 0.0))
 
 
 def _row(equations: TangentEquations, index: int, x: Instants, b: BranchSlopes) -> Array:
@@ -122,7 +124,7 @@ def _row(equations: TangentEquations, index: int, x: Instants, b: BranchSlopes) 
     return np.asarray(total + rows.on_f[index] @ forces)
 
 
-def differentiated(equations: TangentEquations, kind: ReadingKind, index: int, at: TangentSample) -> Dual:
+def differentiated(equations: TangentEquations, kind: ObservedKind, index: int, at: TangentSample) -> Dual:
     """Return a reading at a sample, with its derivatives."""
     value = float(read(equations, kind, index, at.x, at.branches)[0])
     base, slopes = equations.base, equations.slopes
@@ -130,15 +132,15 @@ def differentiated(equations: TangentEquations, kind: ReadingKind, index: int, a
         equations.deformations_at_fixed_motion(at.x, order)[..., 0] + s @ base.law_rows.T
         for order, s in enumerate((at.su, at.sv))
     )
-    if kind is ReadingKind.DEFORMATION:
+    if kind is ObservedKind.DEFORMATION:
         return Dual(value, dd[:, index])
     d, rate = equations.deformations(at.x)[:, 0], equations.deformations(at.x, 1)[:, 0]
     (k, c, _), (dk, dc, df0) = at.branches.values, at.branches.slopes
     df = dk * d + k * dd + df0
-    if kind is ReadingKind.STATIC_FORCE:
+    if kind is ObservedKind.STATIC_FORCE:
         return Dual(value, df[:, index])
     df = df + dc * rate + c * drate
-    if kind is ReadingKind.FORCE:
+    if kind is ObservedKind.FORCE:
         return Dual(value, df[:, index])
     rows, drows = base.rows, slopes.rows
     f = np.array(at.branches.values[0] * d + c * rate + at.branches.values[2])

@@ -26,14 +26,14 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_solve.numerics.types import Array, Index
-from pound_solve.sensitivity.course import Course, Instant
+from pound_solve.sensitivity.course import Instant, RunCourse
 from pound_solve.sensitivity.dual import Dual, slopes_of, value_of
+from pound_solve.sensitivity.dual_law import DualLaw, branch_slopes
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes, Instants, instants
-from pound_solve.sensitivity.law_tangent import LawTangent, branch_slopes
 from pound_solve.sensitivity.propagation import Carried, carried
 from pound_solve.sensitivity.samples import TangentSample, sampled
-from pound_solve.sensitivity.trajectory import Change, Piece
+from pound_solve.sensitivity.trajectory import BranchChange, SmoothPiece
 
 OVERDUE = 1e-9  #: fraction of the terms of an event function above which the event follows from another
 
@@ -73,7 +73,7 @@ class TangentRun:
     ----------
     equations : TangentEquations
     input_slopes : InputSlopes
-    laws : sequence of LawTangent
+    laws : sequence of DualLaw
         At the start.
     largest : ndarray, shape (2, n_laws)
         Largest magnitudes of the deformations and of their rates in the run.
@@ -92,7 +92,7 @@ class TangentRun:
         self,
         equations: TangentEquations,
         input_slopes: InputSlopes,
-        laws: Sequence[LawTangent],
+        laws: Sequence[DualLaw],
         largest: Array,
     ) -> None:
         self.equations, self.input_slopes = equations, input_slopes
@@ -107,7 +107,7 @@ class TangentRun:
         self._changed = False  # whether an event has occurred since the last piece
         self._here = list[float]()  # times of samples at this event
 
-    def follow(self, course: Course, times: Iterable[float]) -> dict[float, list[TangentSample]]:
+    def follow(self, course: RunCourse, times: Iterable[float]) -> dict[float, list[TangentSample]]:
         """Follow a course, and return the samples at some times: one, or those before and after the event
         that occurs then.
         """
@@ -117,14 +117,14 @@ class TangentRun:
             wanted.setdefault((at := course.place(t)).part, []).append((at, t))
         for i, part in enumerate(course.parts):
             here = sorted(wanted.get(i, ()))
-            if isinstance(part, Piece):
+            if isinstance(part, SmoothPiece):
                 self._begin(part, samples)
                 self._advance(part, here, samples)
             else:
                 self._pass(part, [t for _, t in here], samples)
         return samples
 
-    def _begin(self, piece: Piece, samples: dict[float, list[TangentSample]]) -> None:
+    def _begin(self, piece: SmoothPiece, samples: dict[float, list[TangentSample]]) -> None:
         """Continue after the events at the start of a piece, if any."""
         if not self._changed:
             return
@@ -137,7 +137,10 @@ class TangentRun:
         self._changed, self._here = False, []
 
     def _advance(
-        self, piece: Piece, here: list[tuple[Instant, float]], samples: dict[float, list[TangentSample]]
+        self,
+        piece: SmoothPiece,
+        here: list[tuple[Instant, float]],
+        samples: dict[float, list[TangentSample]],
     ) -> None:
         """Follow a piece, and take the samples within it."""
         lengths, stops = piece.lengths, {at.interval for at, _ in here}
@@ -157,7 +160,9 @@ class TangentRun:
         self._before = self._instants(piece, len(lengths) - 1, float(lengths[-1]))
         self._at_once = not lengths.any()
 
-    def _pass(self, change: Change, here: list[float], samples: dict[float, list[TangentSample]]) -> None:
+    def _pass(
+        self, change: BranchChange, here: list[float], samples: dict[float, list[TangentSample]]
+    ) -> None:
         """Let a law change its branch."""
         d, v = Dual(change.d), Dual(change.v)
         if (x := self._before) is not None:  # otherwise the run starts here, at a fixed time
@@ -176,7 +181,7 @@ class TangentRun:
         self._changed = True
         self._here += here
 
-    def _instant(self, change: Change, x: Instants) -> Array:
+    def _instant(self, change: BranchChange, x: Instants) -> Array:
         """Return the derivative of the instant of a change, shape (n_params,)."""
         on_d, on_v, constant = self.laws[change.law].event(change.event)
         a, b, c = map(value_of, (on_d, on_v, constant))
@@ -199,12 +204,12 @@ class TangentRun:
         )
         return dd, drate
 
-    def _carried(self, piece: Piece, chosen: Index, tau: float) -> Carried:
+    def _carried(self, piece: SmoothPiece, chosen: Index, tau: float) -> Carried:
         """Return the derivatives after intervals of a piece, at whose start the run is."""
         start = self.su, self.sv
         return carried(self.equations, self.input_slopes, piece, self.branches, chosen, tau, start)
 
-    def _instants(self, piece: Piece, interval: int, tau: float) -> Instants:
+    def _instants(self, piece: SmoothPiece, interval: int, tau: float) -> Instants:
         """Return the motion at one instant of a piece."""
         return instants(piece, np.array([interval]), np.array([tau]), self.input_slopes)
 

@@ -15,7 +15,7 @@ from pound_solve.laws.automaton import State
 from pound_solve.numerics.types import Array
 
 
-class Piece(NamedTuple):
+class SmoothPiece(NamedTuple):
     """A smooth part of the motion.
 
     Attributes
@@ -38,7 +38,7 @@ class Piece(NamedTuple):
         return self.begin + float(self.dense.edges[len(self.lengths) - 1] + self.lengths[-1])
 
 
-class Change(NamedTuple):
+class BranchChange(NamedTuple):
     """A change of branch.
 
     Attributes
@@ -67,21 +67,21 @@ class Trajectory(Exact):
 
     Attributes
     ----------
-    course : list of Piece or Change
+    course : list of SmoothPiece or BranchChange
     released : bool
         Whether massless joints have jumped where a law lost its force.
     """
 
     def __init__(self, problem: Any) -> None:
         super().__init__(problem, {})
-        self.course: list[Piece | Change] = []
+        self.course: list[SmoothPiece | BranchChange] = []
         self.released = False
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Move a law to its next branch, and remember it."""
         before = self.states[law]
         super().transition(law, event_index, d, v)
-        self.course.append(Change(self.t, law, event_index, d, v, before, self.states[law]))
+        self.course.append(BranchChange(self.t, law, event_index, d, v, before, self.states[law]))
 
     def add_release_work(self, law: int, lost: float, put_in: float) -> None:
         """Add the works of a release, and remember that there was one."""
@@ -89,7 +89,7 @@ class Trajectory(Exact):
         super().add_release_work(law, lost, put_in)
 
     def _accept_window(self, window: Window, dense: DenseOutput, cursor: int) -> int:
-        self.course.append(Piece(self.t, dense.kept(), dense.lengths))
+        self.course.append(SmoothPiece(self.t, dense.kept(), dense.lengths))
         return super()._accept_window(window, dense, cursor)
 
     def _accept_event(
@@ -97,5 +97,5 @@ class Trajectory(Exact):
     ) -> int:
         interval, local = dense.locate(grid_event.event.time)
         lengths = np.append(dense.lengths[:interval], local)
-        self.course.append(Piece(self.t, dense.kept(), lengths))
+        self.course.append(SmoothPiece(self.t, dense.kept(), lengths))
         return super()._accept_event(window, dense, grid_event, end, cursor)

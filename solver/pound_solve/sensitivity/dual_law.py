@@ -14,7 +14,7 @@ from pound_solve.sensitivity.refusal import NoDerivativeError
 from pound_solve.structure.elements.base import LawSpring
 
 
-class LawTangent:
+class DualLaw:
     """A law, its parameters and its internal variables as dual numbers, along a run.
 
     Parameters
@@ -94,7 +94,7 @@ class BranchSlopes(NamedTuple):
     slopes: Array
 
 
-def branch_slopes(laws: Iterable[LawTangent], n_params: int) -> BranchSlopes:
+def branch_slopes(laws: Iterable[DualLaw], n_params: int) -> BranchSlopes:
     """Return the present branches of all laws with their derivatives."""
     terms = [(x.stiffness, x.damping, x.force0) for x in laws]
     values = np.array([[value_of(x) for x in term] for term in terms]).reshape(-1, 3).T
