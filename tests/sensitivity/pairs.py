@@ -5,8 +5,9 @@ from __future__ import annotations
 import random
 import re
 
-from verification.generated import laws
+from verification.generated import decks, laws
 
+MOST_DRAWS = 20
 HEAD = "UNITS kN m s\n"
 #: items that a PARAM multiplies
 SCALED = r"\b(KX|FX|R|E|I|MI|GAP|K|AMPLITUDE|ALPHA|BETA|LP|PGA)=(-?[\d.]+(?:[eE][+-]?\d+)?)(?=\s|$)"
@@ -15,8 +16,12 @@ SCALED = r"\b(KX|FX|R|E|I|MI|GAP|K|AMPLITUDE|ALPHA|BETA|LP|PGA)=(-?[\d.]+(?:[eE]
 def deck(seed: int, count: int) -> tuple[str, list[str]]:
     """Text of a deck, and the names of its PARAMs, `count` of them at most."""
     rng = random.Random(seed)
-    text = _shear_buildings(rng) if rng.random() < 0.6 else _frames(rng)
-    return _with_params(text, rng, count)
+    for _ in range(MOST_DRAWS):
+        text = _shear_buildings(rng) if rng.random() < 0.6 else _frames(rng)
+        with_params, names = _with_params(text, rng, count)
+        if not decks.refused(with_params, None):
+            return with_params, names
+    raise RuntimeError(f"seed {seed}: {MOST_DRAWS} draws were all refused")
 
 
 def _with_params(text: str, rng: random.Random, count: int) -> tuple[str, list[str]]:
