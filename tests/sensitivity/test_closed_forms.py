@@ -63,7 +63,12 @@ OUTPUT
 
 
 def compared(
-    folder: Path, deck: str, values: dict[str, float], quantity: str, label: str, closed: Callable[..., complex]
+    folder: Path,
+    deck: str,
+    values: dict[str, float],
+    quantity: str,
+    label: str,
+    closed: Callable[..., complex],
 ) -> None:
     """Compare a quantity and its derivatives by all PARAMs with its closed form."""
     path = folder / "deck.inp"
@@ -90,9 +95,7 @@ def test_peak_force_of_a_linear_wall(tmp_path: Path) -> None:
     values = {"ks": 900.0, "gap": 0.02, "k": 4e4, "m": 40.0, "v": 0.3}
     deck = WALL.format(params=params(values), rule="", law="LINEAR K=k", length=0.5)
     compared(tmp_path, deck, values, "contact_force", "2", force_of_linear_wall)
-    compared(
-        tmp_path, deck, values, "penetration", "2", lambda k, **x: force_of_linear_wall(k=k, **x) / k
-    )
+    compared(tmp_path, deck, values, "penetration", "2", lambda k, **x: force_of_linear_wall(k=k, **x) / k)
 
 
 def test_a_dashpot_that_closes_has_its_peak_force_at_the_moving_instant(tmp_path: Path) -> None:
@@ -108,7 +111,9 @@ def test_a_dashpot_that_closes_has_its_peak_force_at_the_moving_instant(tmp_path
 def test_impulse_of_a_linear_wall(tmp_path: Path) -> None:
     """It turns the velocity of the mass round; the spring, which acts meanwhile, is a tiny one."""
     values = {"gap": 0.02, "k": 4e4, "m": 40.0, "v": 0.3}
-    deck = WALL.format(params=params(values), rule="", law="LINEAR K=k", length=0.5).replace("KX=ks", "KX=1e-9")
+    deck = WALL.format(params=params(values), rule="", law="LINEAR K=k", length=0.5).replace(
+        "KX=ks", "KX=1e-9"
+    )
     compared(tmp_path, deck, values, "impulse", "2", lambda gap, k, m, v: 2.0 * m * v)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,8 @@ from pound_solve.sensitivity import Derivatives, derivatives
 from sensitivity import pairs
 from tiers import at_night
 
-STEP = 1e-4  #: of the differences
+WITHOUT = {"contact_loss", "energy_residual", "correlation"}  #: quantities without derivatives
+STEP = 1e-5  #: of the differences
 #: largest deviation from extrapolated differences, and as a fraction of that between both steps
 DEVIATION, OF_STEPS = 1e-6, 0.1
 
@@ -35,19 +37,36 @@ def differences(deck: Path, name: str, answer: Derivatives) -> dict[tuple[str, s
     return both
 
 
+def unexplained(answer: Derivatives) -> list[tuple[str, str]]:
+    """Quantities that have neither derivatives nor a flag, but for those that never have any."""
+    return [
+        (quantity, label)
+        for quantity, labels in answer.values.items()
+        for label, value in labels.items()
+        if math.isfinite(value) and quantity not in WITHOUT
+        if label not in answer.slopes.get(quantity, {})
+        if not any(flag.startswith(f"{quantity} {label} ") for flag in answer.flags)
+    ]
+
+
 @pytest.mark.full
-@pytest.mark.parametrize("seed", [2, 3, 4, 8, 43, *at_night(*SLOW)])
+@pytest.mark.parametrize("seed", [2, 3, 4, 8, 43, *at_night(*range(10, 60))])
 def test_derivatives_are_those_of_differences(tmp_path: Path, seed: int) -> None:
     text, names = pairs.deck(seed, 3)
     deck = tmp_path / "deck.inp"
     deck.write_text(text, encoding="utf-8")
     answer = derivatives(Request(str(deck)), names)
     assert len(answer.sequence) > 2
+    assert not unexplained(answer)
     compared = 0
     for j, name in enumerate(names):
         for (quantity, label), (expected, steps) in differences(deck, name, answer).items():
             value, slope = answer.values[quantity][label], answer.slopes[quantity][label][j]
-            size = max(abs(slope), abs(expected), 1e-3 * abs(value))
-            assert abs(slope - expected) <= max(DEVIATION * size, OF_STEPS * abs(steps)), (name, quantity, label)
+            size = max(abs(slope), abs(expected), 1e-2 * abs(value))
+            assert abs(slope - expected) <= max(DEVIATION * size, OF_STEPS * abs(steps)), (
+                name,
+                quantity,
+                label,
+            )
             compared += 1
     assert compared > 10

@@ -94,7 +94,7 @@ def carried(
         for subsystem in present:
             unknowns, propagator = subsystem.decomposition.unknowns, subsystem.decomposition.propagator
             q = propagator.state_of(su[:, unknowns].T, sv[:, unknowns].T).T
-            q, total = _marched(propagator, q, load[..., unknowns], weights, tau - points, tau)
+            q, total = marched(propagator, q, load[..., unknowns], weights, tau - points, tau)
             su[:, unknowns], sv[:, unknowns] = (q @ propagator.u_q.T).real, (q @ propagator.v_q.T).real
             area[:, unknowns] = (total @ propagator.u_q.T).real
             if propagator.u_p is not None and propagator.v_p is not None:  # massless unknowns
@@ -108,7 +108,7 @@ def carried(
     return Carried(su, sv, impulse)
 
 
-def _marched(
+def marched(
     propagator: Propagator, q: NDArray[Any], load: Array, weights: Array, left: Array, tau: float
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the state of the derivatives after intervals of length `tau`, and its integral over them,

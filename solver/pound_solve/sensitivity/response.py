@@ -113,6 +113,11 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
             expected
         ):  # otherwise a row with this label is larger
             results.setdefault(f.quantity, {})[f.label] = np.zeros(len(names)) + y.slopes
+    flags += [
+        f"{f.quantity} {f.label} has no derivative: several events meet at its peak"
+        for f in formulas
+        if f.label not in results.get(f.quantity, {})
+    ]
     flags += _grazing(run.crossings, trajectory, ready.model)
     return Derivatives(tuple(names), known, results, tuple(flags), course.sequence)
 

@@ -134,7 +134,9 @@ class TangentRun:
             self.sv += np.outer(self._moved, (self._before.a - after.a)[:, 0])
             for t in self._here:
                 samples[t].append(self._sampled(after, self.su, self.sv, self._moved))
-        self._changed, self._here = False, []
+        self._changed = False
+        if piece.lengths.any():  # otherwise another event follows at this instant
+            self._here = []
 
     def _advance(
         self,
