@@ -85,8 +85,6 @@ def carried(
     for first in range(0, len(chosen), at_once):
         some = chosen[first : first + at_once]
         inner = instants(piece, some, points, input_slopes)
-        end = instants(piece, some[-1:], np.array([tau]), input_slopes)
-        final = [equations.residual(end, branches, order)[:, :, 0] for order in (0, 1)]
         load = equations.residual(inner, branches).reshape(*su.shape, len(some), len(points))
         load = load.transpose(0, 2, 3, 1)
         before, area = su, np.zeros_like(su)
@@ -98,7 +96,8 @@ def carried(
             su[:, unknowns], sv[:, unknowns] = (q @ propagator.u_q.T).real, (q @ propagator.v_q.T).real
             area[:, unknowns] = (total @ propagator.u_q.T).real
             if propagator.u_p is not None and propagator.v_p is not None:  # massless unknowns
-                force, rate = (x[:, unknowns] for x in final)
+                end = instants(piece, some[-1:], np.array([tau]), input_slopes)
+                force, rate = (equations.residual(end, branches, order)[:, unknowns, 0] for order in (0, 1))
                 su[:, unknowns] += force @ propagator.u_p.T
                 sv[:, unknowns] += force @ propagator.v_p.T + rate @ propagator.u_p.T
                 over_time = np.einsum("k,pmkn->pn", weights, load[..., unknowns])
