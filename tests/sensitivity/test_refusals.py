@@ -65,3 +65,22 @@ def test_without_names_only_the_run_is_returned(tmp_path: Path) -> None:
     assert bare.values == whole.values
     assert bare.sequence == whole.sequence != ()
     assert not bare.slopes
+
+
+REACH = 0.3 * (400.0 / 9.81 / 4000.0) ** 0.5  #: amplitude of the mass that leaves the origin at 0.3 m/s [m]
+
+
+@pytest.mark.parametrize(
+    ("gap", "flagged"),
+    [(REACH * (1.0 + 1e-5), "near miss"), (REACH * (1.0 - 1e-7), "grazing"), (0.05 * REACH, "")],
+)
+def test_a_contact_that_is_only_just_met_or_missed_is_flagged(
+    tmp_path: Path, gap: float, flagged: str
+) -> None:
+    path = tmp_path / "free.inp"
+    text = DECK.format(**PLAIN).replace("GAP=0.003", f"GAP={gap!r}")
+    text = text.replace("EQUAKE\n SINE AMPLITUDE=2 PERIOD=1 DURATION=1", "INITIAL\n 2 VX=0.3")
+    path.write_text(text, encoding="utf-8")
+    flags = derivatives(Request(str(path)), ["k"]).flags
+    assert bool(flags) == bool(flagged)
+    assert all(flagged in flag for flag in flags)

@@ -14,6 +14,7 @@ from pound_solve.sensitivity.trajectory import SmoothPiece
 
 SPREAD = 4e-3  #: distance of the values of a difference, in intervals or in radians of the fastest mode
 FAR = 0.5  #: largest correction of an instant, likewise
+FLAT = 1e-12  #: fraction of a value up to which a difference of it is rounding
 CORRECTIONS = 3  #: number of them
 #: first and second differences of fourth order over five equidistant values
 SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
@@ -53,8 +54,10 @@ def refined(
     for _ in range(CORRECTIONS):  # the motion of the interval continues smoothly beyond its ends
         x = instants(piece, np.array([at.interval]), tau + h * np.arange(-2.0, 3.0), no_slopes)
         values = read(equations, reading.kind, reading.item, x, branches)
-        slope, bend = SLOPE @ values, BEND @ values
-        tau += -h * float(slope / bend) if bend else np.inf
+        slope, bend = float(SLOPE @ values), float(BEND @ values)
+        if abs(slope) <= FLAT * np.abs(values).max():  # at rest, or on a plateau of a plastic force
+            break
+        tau += -h * slope / bend if bend else np.inf
         if abs(tau - at.tau) > FAR * unit or not -2.0 * h <= tau <= length + 2.0 * h:
             at_end = min(at.tau, length - at.tau) <= AT_END * length
             return reading if at_end else None

@@ -15,6 +15,7 @@ from pound_solve.driver.prepare import DeckError, Prepared
 from pound_solve.driver.request import Request
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.protocol import Outcome, Problem
+from pound_solve.integrate.tracker import Peaks
 from pound_solve.numerics.types import Array
 from pound_solve.results.record import RunRecord
 from pound_solve.sensitivity import case
@@ -119,6 +120,7 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
         if f.label not in results.get(f.quantity, {})
     ]
     flags += _grazing(run.crossings, trajectory, ready.model)
+    flags += _missed(record.history.returned.peaks, trajectory, ready.model)
     return Derivatives(tuple(names), known, results, tuple(flags), course.sequence)
 
 
@@ -185,6 +187,20 @@ def _evaluated(f: Formula, samples: Mapping[float, Sequence[TangentSample]], run
         return min(each, key=lambda y: abs(abs(y.value) - abs(reading.value)))
 
     return f.value(*map(value, f.readings))
+
+
+def _missed(outcome: Peaks, trajectory: Trajectory, model: Model) -> Iterator[str]:
+    """Yield a text for every contact that has only just stayed open."""
+    closed = {collision.law for collision in outcome.collisions}
+    for law in trajectory.contacts:
+        spring, d = trajectory.laws[law], outcome.deformation[law]
+        left = spring.gap - d.high
+        if law not in closed and left <= GRAZING * (d.high - d.low):
+            yield (
+                f"contact of element {spring.element} has a near miss at t = {d.t_high:.9g} "
+                f"{model.units.time}: {left:.1e} {model.units.length} of its gap are left, so the "
+                "derivatives hold in a small neighbourhood only"
+            )
 
 
 def _grazing(crossings: Sequence[Crossing], trajectory: Trajectory, model: Model) -> Iterator[str]:
