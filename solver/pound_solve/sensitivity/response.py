@@ -95,33 +95,45 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     each = [derivative(partial(_case_at, request, name), x, name, middle) for name, x in zip(names, values)]
     slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
     equations, excitation = TangentEquations(base, slopes), trajectory.system.excitation
+    formulas, flags = list[Formula](), list[str]()
     no_slopes = InputSlopes(excitation, slopes.excitation[:0])
-    flags, formulas = list[str](), list[Formula]()
     for f in Formulas(record.history, base, slopes, places).all():
-        readings = [refined(course, equations, no_slopes, r) for r in f.readings]
-        peaks = tuple(r for r in readings if r is not None)
-        if len(peaks) == len(readings):
+        peaks = tuple(filter(None, (refined(course, equations, no_slopes, r) for r in f.readings)))
+        if len(peaks) == len(f.readings):
             formulas.append(f._replace(readings=peaks))
         else:
             flags.append(f"{f.quantity} {f.label} has no derivative: its peak is the limit at a jump")
     inputs = InputSlopes(excitation, slopes.excitation)
     run = TangentRun(equations, inputs, _laws(middle, base, slopes), trajectory.largest)
     samples = run.follow(course, [r.t for f in formulas for r in f.readings if not r.is_total])
-    results: dict[str, dict[str, Array]] = {}
-    for f in formulas:
-        y, expected = _evaluated(f, samples, run), known.get(f.quantity, {}).get(f.label, math.nan)
-        if abs(y.value - expected) <= SAME_VALUE * abs(
-            expected
-        ):  # otherwise a row with this label is larger
-            results.setdefault(f.quantity, {})[f.label] = np.zeros(len(names)) + y.slopes
+    results = _results(formulas, samples, run, known)
     flags += [
-        f"{f.quantity} {f.label} has no derivative: several events meet at its peak"
+        f"{f.quantity} {f.label} has no derivative: its value there is not that of the run"
         for f in formulas
         if f.label not in results.get(f.quantity, {})
     ]
     flags += _grazing(run.crossings, trajectory, ready.model)
     flags += _missed(record.history.returned.peaks, trajectory, ready.model)
     return Derivatives(tuple(names), known, results, tuple(flags), course.sequence)
+
+
+def _results(
+    formulas: Sequence[Formula],
+    samples: Mapping[float, Sequence[TangentSample]],
+    run: TangentRun,
+    known: Values,
+) -> dict[str, dict[str, Array]]:
+    """Return the derivatives of all quantities whose values are those `known` of the run.
+
+    Another one is a row with the label of a larger row, or its peak lies where several events meet.
+    """
+    results: dict[str, dict[str, Array]] = {}
+    for f in formulas:
+        y, expected = _evaluated(f, samples, run), known.get(f.quantity, {}).get(f.label, math.nan)
+        is_end = any(not r.is_peak for r in f.readings)  # which may be zero but for rounding
+        if is_end or abs(y.value - expected) <= SAME_VALUE * abs(expected):
+            results.setdefault(f.quantity, {})[f.label] = np.zeros(run.equations.n_params) + y.slopes
+    return results
 
 
 def _run(
