@@ -153,7 +153,6 @@ WITHIN = {
         "session",
         "points",
         "ida",
-        "sensitivity",
         "calibrate",
         "uncertainty",
     ),

@@ -7,8 +7,8 @@ import pytest
 
 from pound_solve.cli.main import main
 from pound_solve.results.sweep_file import Sweep
+from pound_solve.sensitivity import study as sensitivity
 from pound_solve.statistics.over_records import MEAN, OverRecords
-from pound_solve.sweep import sensitivity
 from pound_solve.sweep.execution.executors import Engine
 from pound_solve.sweep.points import Interrupted, Points
 from pound_solve.sweep.session import Session
@@ -65,7 +65,7 @@ def analysed(path, executor=None, stop=None):
 
 def by_name(analysis, record=None):
     """Sensitivities by quantity and variable."""
-    return {(s.asked.quantity, s.variable): s for s in analysis.lines if record in (None, s.record)}
+    return {(s.asked.quantity, s.variable): s for s in analysis.result.lines if record in (None, s.record)}
 
 
 @pytest.mark.parametrize("record", ["first.txt", "second.txt"])
@@ -89,12 +89,54 @@ def test_elasticities_of_a_homogeneous_response_add_up(tmp_path, record):
             assert min(abs(e["gap"]), abs(e["fy"]), abs(e["kc"])) > 1e-3
 
 
+def test_exact_derivatives_lie_within_the_bounds_of_differences(tmp_path):
+    """All kinds of variables, the factor on the records among them; two kinds of derivatives."""
+    quantities = '["contact_force", "peak_drift", "impulse", "contact_loss"]'
+    exact, session = analysed(study(tmp_path, ALL, quantities, 'method = "exact"'))
+    other = tmp_path / "differences"
+    other.mkdir()
+    differences, _ = analysed(study(other, ALL, quantities))
+    for one, two in zip(exact.result.lines, differences.result.lines, strict=True):
+        assert one.derivative.exact == (one.asked.quantity != "contact_loss")
+        assert not two.derivative.exact and one[:4] == two[:4]
+        error = abs(one.derivative.slope - two.derivative.slope)
+        assert error <= two.derivative.error + 1e-12 * abs(two.derivative.value / two.at)
+        assert one.derivative.error <= 1e-4 * abs(one.derivative.value / one.at)
+    assert not exact.result.remarks
+    plain = 1 + 4 + 4 * 7  # the center, one direction, and the variables for the loss
+    assert len(session.study.runs) == 2 * plain
+
+
+def test_a_run_without_exact_derivatives_has_those_of_differences(tmp_path, capsys):
+    deck = YIELDS.replace("LAW=LINEAR K=kc", "LAW=HERTZ K=kc")
+    path = study(tmp_path, "kc = {}", '["contact_force"]', 'method = "exact"', deck)
+    assert main(["sensitivity", str(path), "--workers", "1"]) == 0
+    printed = capsys.readouterr().out
+    assert "no exact derivatives: EXACT needs straight branches, and HERTZ" in " ".join(printed.split())
+    analysis, _ = analysed(path)
+    assert not any(s.derivative.exact or s.derivative.reason for s in analysis.result.lines)
+
+
+def test_exact_derivatives_that_disagree_are_replaced(tmp_path, monkeypatch):
+    """As a fault of the program would make them."""
+    slopes_of = sensitivity.slopes_of
+
+    def wrong(values, quantity, label, names):
+        slopes = slopes_of(values, quantity, label, names)
+        return slopes and [1.001 * slopes[0], *slopes[1:]]
+
+    monkeypatch.setattr(sensitivity, "slopes_of", wrong)
+    analysis, _ = analysed(study(tmp_path, "gap = {}\nk = {}", '["contact_force"]', 'method = "exact"'))
+    assert not any(s.derivative.exact for s in analysis.result.lines)
+    assert {text for _, text in analysis.result.remarks} == {"contact_force disagrees with differences"}
+
+
 def test_an_elastic_response_is_proportional_to_its_motion(tmp_path):
     deck = YIELDS.replace("gap = 0.01", "gap = 9").replace("fy = 120", "fy = 3E9")
     analysis, _ = analysed(
         study(tmp_path, "motion = {}", '["peak_drift", "base_shear", "period"]', deck=deck)
     )
-    for line in analysis.lines:
+    for line in analysis.result.lines:
         expected = 0.0 if line.asked.quantity == "period" else 1.0
         assert line.elasticity == pytest.approx(expected, abs=1e-9)
         assert abs(line.elasticity - expected) <= line.elasticity_error
@@ -105,14 +147,14 @@ def test_a_collision_that_appears_leaves_no_derivative(tmp_path):
     free, _ = analysed(
         study(tmp_path, "k = {}", '["needed_gap"]', deck=YIELDS.replace("gap = 0.01", "gap = 9"))
     )
-    peak = free.lines[0].derivative.value
+    peak = free.result.lines[0].derivative.value
     sub = tmp_path / "grazing"
     sub.mkdir()
     deck = YIELDS.replace("gap = 0.01", f"gap = {peak!r}")
     analysis, _ = analysed(
         study(sub, "gap = {}\nmotion = {}", '["contact_force", "peak_drift"]', deck=deck)
     )
-    for line in analysis.lines:
+    for line in analysis.result.lines:
         if line.record == "first.txt":
             assert math.isnan(line.derivative.slope) and math.isnan(line.derivative.error)
             assert line.derivative.reason
@@ -123,26 +165,26 @@ def test_the_steps_shrink_until_the_events_stay_the_same(tmp_path):
     free, _ = analysed(
         study(tmp_path, "k = {}", '["needed_gap"]', deck=YIELDS.replace("gap = 0.01", "gap = 9"))
     )
-    peak = max(line.derivative.value for line in free.lines)
+    peak = max(line.derivative.value for line in free.result.lines)
     sub = tmp_path / "near"
     sub.mkdir()
     deck = YIELDS.replace("gap = 0.01", f"gap = {peak * (1 + 3e-4)!r}")
     analysis, _ = analysed(study(sub, "gap = {}", '["peak_drift"]', deck=deck))
-    steps = {line.record: line.derivative.step / line.at for line in analysis.lines}
+    steps = {line.record: line.derivative.step / line.at for line in analysis.result.lines}
     assert steps == {"first.txt": pytest.approx(1e-3), "second.txt": pytest.approx(1e-4)}
-    assert all(line.derivative.slope == 0.0 for line in analysis.lines)
+    assert all(line.derivative.slope == 0.0 for line in analysis.result.lines)
 
 
 def test_the_mean_and_a_fractile_of_records(tmp_path):
     each, _ = analysed(study(tmp_path, "gap = {}", '["contact_force"]'))
-    parts = [line.derivative for line in each.lines]
+    parts = [line.derivative for line in each.result.lines]
     mean, _ = analysed(study(tmp_path, "gap = {}", '["contact_force"]', 'records = "mean"'))
-    (line,) = mean.lines
+    (line,) = mean.result.lines
     assert line.record == OverRecords(MEAN).text
     assert line.derivative.slope == pytest.approx(sum(p.slope for p in parts) / 2, rel=1e-14)
     assert line.derivative.error == pytest.approx(sum(p.error for p in parts) / 2, rel=1e-14)
     upper, _ = analysed(study(tmp_path, "gap = {}", '["contact_force"]', "records = 0.84"))
-    assert upper.lines[0].derivative == max(parts, key=lambda p: p.value)
+    assert upper.result.lines[0].derivative == max(parts, key=lambda p: p.value)
 
 
 @pytest.mark.parametrize("stop", [1, 4, 11])
@@ -155,7 +197,7 @@ def test_an_interrupted_analysis_ends_with_the_same_lines(tmp_path, stop):
     other = tmp_path / "whole"
     other.mkdir()
     whole, _ = analysed(study(other, "gap = {}\nk = {}"), count := Here())
-    assert analysis.lines == whole.lines and total == count.runs
+    assert analysis.result.lines == whole.result.lines and total == count.runs
 
 
 def test_the_command_writes_report_and_tables(tmp_path, capsys):
@@ -181,6 +223,7 @@ MISTAKES = (
     ("gap = {}", "3", "", "S603", "takes a text"),
     ("gap = { value = 0.0 }", '["closures"]', "", "S605", "a fraction of it is no step"),
     ("gap = { low = 0.01 }", '["closures"]', "", "S605", "at one of its bounds"),
+    ("gap = {}", '["closures"]', 'method = "saltation"', "S603", "method is differences or exact"),
     ("gap = {}", '["closures"]', "step = 1.0", "S603", "step is a fraction"),
     ("gap = {}", '["closures"]', 'records = "all"', "S603", "records is each, mean, or a share"),
     ("gap = {}", '["closures"]', "steps = 3", "S602", "did you mean step"),
@@ -201,7 +244,7 @@ def test_steps_of_unknown_error_are_told(tmp_path, capsys):
     assert main(["sensitivity", str(path), "--workers", "1"]) == 0
     assert "steps whose error is not known" in capsys.readouterr().out
     analysis, _ = analysed(study(tmp_path, "gap = {}", '["peak_drift"]'))
-    assert not analysis.unknown_error
+    assert not analysis.result.unknown_error
 
 
 def test_a_label_that_is_not_there_is_named(tmp_path, capsys):

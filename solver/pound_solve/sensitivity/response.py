@@ -32,6 +32,7 @@ from pound_solve.sensitivity.samples import ObservedValue, TangentSample, differ
 from pound_solve.sensitivity.tangent_run import Crossing, TangentRun
 from pound_solve.sensitivity.trajectory import Trajectory
 from pound_solve.sweep.study.quantities import Fields, Values, taken
+from pound_solve.sweep.study.variables import MOTION
 
 GRAZING = 1e-3  #: fraction of the largest speed of a law below which it meets an event in grazing
 AT_REST = 1e-9  #: fraction of the largest deformation and rate of a law below which it is at rest
@@ -86,13 +87,14 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     """
     ready = case.ready_for(request)
     given = {name.casefold(): value for name, value in ready.model.params.items()}
-    values = [_number(name, given) for name in names]
+    values = [_number(name, given, request) for name in names]
     record, rows, middle, trajectory = _run(ready, request)
     course, known = RunCourse(trajectory.course), taken(rows)
     if not names:
         return Derivatives((), known, {}, (), course.sequence)
     base, places = coefficients(middle)
-    each = [derivative(partial(_case_at, request, name), x, name, middle) for name, x in zip(names, values)]
+    at = partial(_case_at, request, given)
+    each = [derivative(partial(at, name), x, name, middle) for name, x in zip(names, values)]
     slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
     equations, excitation = TangentEquations(base, slopes), trajectory.system.excitation
     formulas, flags = list[Formula](), list[str]()
@@ -157,9 +159,11 @@ def _run(
     return record, rows, case.Case(problem, problem.recorder.items, case.periods_of(record)), trajectory
 
 
-def _number(name: str, given: Mapping[str, float | str]) -> float:
-    """Return the value of a PARAM."""
+def _number(name: str, given: Mapping[str, float | str], request: Request) -> float:
+    """Return the value of a PARAM, or 1 of the factor on the motion of the request."""
     value = given.get(name.casefold())
+    if value is None and name == MOTION and request.motion is not None:
+        return 1.0
     if value is None:
         raise NoDerivativeError(f"the deck has no PARAM {name}")
     if isinstance(value, str):
@@ -167,11 +171,20 @@ def _number(name: str, given: Mapping[str, float | str]) -> float:
     return float(value)
 
 
-def _case_at(request: Request, name: str, value: float) -> case.Case:
-    """Return the history of a deck with another value of a PARAM."""
+def _moved(request: Request, name: str, value: float, given: Mapping[str, float | str]) -> Request:
+    """Return the request of another value of a PARAM, or of a factor on its motion."""
+    motion = request.motion
+    if name.casefold() not in given and motion is not None:
+        scaled = {**motion.values, "SCALE": motion.values["SCALE"] * value}
+        return replace(request, motion=replace(motion, values=scaled))
     params = {key: x for key, x in request.params.items() if key.casefold() != name.casefold()}
+    return replace(request, params={**params, name: repr(value)})
+
+
+def _case_at(request: Request, given: Mapping[str, float | str], name: str, value: float) -> case.Case:
+    """Return the history of a deck with another value of a PARAM."""
     try:
-        return case.case_of(replace(request, params={**params, name: repr(value)}))
+        return case.case_of(_moved(request, name, value, given))
     except DeckError as err:
         raise NoDerivativeError(
             f"{name} = {value!r}, next to the value of the deck, is refused:\n{err}"

@@ -23,6 +23,8 @@ class Derivative(NamedTuple):
         Why there is no derivative; empty if there is one.
     left, right : float
         Slopes on both sides.
+    exact : bool
+        Whether it is that of the equations of motion, no difference of runs.
     """
 
     value: float
@@ -32,6 +34,7 @@ class Derivative(NamedTuple):
     reason: str = ""
     left: float = math.nan
     right: float = math.nan
+    exact: bool = False
 
     def better_than(self, other: Derivative) -> bool:
         """Whether it is known better than one with a larger step."""
@@ -77,6 +80,27 @@ class Sensitivity(NamedTuple):
         return abs(self.derivative.error * self.at / value) if value else math.nan
 
 
+class Sensitivities(NamedTuple):
+    """Result of an analysis of sensitivities.
+
+    Attributes
+    ----------
+    lines : list of Sensitivity
+        By quantity, record and variable.
+    gentlest : dict of str to float
+        By record, the smallest approach speed of a collision over the largest.
+    remarks : list of (str, str)
+        Records, and what their exact derivatives lack or are close to.
+    unknown_error : bool
+        Whether a run took steps whose error it does not estimate.
+    """
+
+    lines: list[Sensitivity]
+    gentlest: dict[str, float]
+    remarks: list[tuple[str, str]]
+    unknown_error: bool
+
+
 def weighted(parts: Sequence[Derivative], weights: Array) -> Derivative:
     """Derivative of a weighted sum; it needs those of all parts.
 
@@ -92,5 +116,6 @@ def weighted(parts: Sequence[Derivative], weights: Array) -> Derivative:
     step = max(p.step for p in parts)
     lacking = [p.reason for p in parts if p.reason]
     if len(parts) == 1 or not lacking:
-        return Derivative(value, slope, error, step, lacking[0] if lacking else "")
+        reason, exact = (lacking or [""])[0], all(p.exact for p in parts)
+        return Derivative(value, slope, error, step, reason, exact=exact)
     return Derivative(value, step=step, reason=f"{len(lacking)} of {len(parts)} records have none")

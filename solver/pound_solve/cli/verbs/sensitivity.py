@@ -30,7 +30,7 @@ def _analysed(args: argparse.Namespace) -> int:
     from pound_solve.report.sweep import sensitivity as report
     from pound_solve.report.sweep import summary
     from pound_solve.results.sweep_file import Sweep, write_table
-    from pound_solve.sweep import sensitivity
+    from pound_solve.sensitivity import study as sensitivity
     from pound_solve.sweep.study.document import Document
     from pound_solve.sweep.study.study import read
     from pound_solve.sweep.study.variables import TABLE
@@ -45,11 +45,11 @@ def _analysed(args: argparse.Namespace) -> int:
             return studies.ended(args, session, path)
         sweep = Sweep.open(path)
         path = path.with_name("sensitivity.h5")
-        lines = list(report.report(sweep, analysis.lines, analysis.gentlest, analysis.unknown_error))
-        write_table(path, report.variables(sweep, analysis.lines), sweep.about)
+        lines = list(report.report(sweep, analysis.result))
+        write_table(path, report.variables(sweep, analysis.result.lines), sweep.about)
         summary.write(path, sweep, "sensitivities", lines)
         if args.picture:
-            suites.bars(report.drawn(sweep, analysis.lines), args.picture)
+            suites.bars(report.drawn(sweep, analysis.result.lines), args.picture)
         if not args.quiet:
             print("\n".join(lines))
         return studies.ended(args, session, path)

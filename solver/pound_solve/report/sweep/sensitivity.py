@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -12,37 +12,27 @@ from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.statistics.curves import Asked, units_of
-from pound_solve.statistics.sensitivity import Sensitivity
+from pound_solve.statistics.sensitivity import Sensitivities, Sensitivity
 
 GRAZING: Final = 1e-2  #: approach speed over the largest of a run below which a collision grazes
 
 
-def report(
-    sweep: Sweep, lines: Sequence[Sensitivity], gentlest: Mapping[str, float], unknown_error: bool
-) -> Iterator[str]:
-    """Lines of the report: a table for each quantity.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    lines : sequence of Sensitivity
-    gentlest : mapping of str to float
-        By record, the smallest approach speed of a collision over the largest.
-    unknown_error : bool
-        Whether runs took steps whose error they do not estimate.
-    """
+def report(sweep: Sweep, result: Sensitivities) -> Iterator[str]:
+    """Lines of the report: a table for each quantity."""
     units = units_of(sweep)
-    if unknown_error:
+    if result.unknown_error:
         yield "The runs take steps whose error is not known: errors are those of the differences alone."
         yield "METHOD=AUTO estimates its error, or has none."
         yield ""
     yield "Elasticity: relative change of the quantity over the relative change of the variable."
-    for asked, some in by_quantity(lines).items():
+    for asked, some in by_quantity(result.lines).items():
         yield from ("", heading(sweep, asked), "")
         yield from printed(units, TABLE, [_row(line) for line in some])
         if lacking := [line for line in some if line.derivative.reason]:
             yield from ("", *printed(units, REASONS, [_reason(line) for line in lacking]))
-    for record, share in gentlest.items():
+    if result.remarks:
+        yield from ("", *printed(units, REMARKS, result.remarks))
+    for record, share in result.gentlest.items():
         if share < GRAZING:
             yield ""
             run = record or "the run"
@@ -74,6 +64,7 @@ def _row(line: Sensitivity) -> Row:
         line.record,
         d.value,
         d.slope,
+        "events" if d.exact else "",
         line.elasticity,
         line.elasticity_error,
     )
@@ -105,6 +96,7 @@ def variables(sweep: Sweep, lines: Sequence[Sensitivity]) -> dict[str, Variable]
         "error": Variable(np.array([d.error for d in ds]), doc="bound of its error"),
         "elasticity": Variable(np.array([line.elasticity for line in lines]), doc="relative derivative"),
         "step": Variable(np.array([d.step for d in ds]), doc="outer step of the differences"),
+        "exact": texts(["yes" if d.exact else "no" for d in ds]),
         "reason": texts([d.reason for d in ds]),
     }
 
@@ -128,8 +120,15 @@ TABLE: Final = Sheet(
         Column("record", doc="record, or how the values of all records became one"),
         Column("value", "quantity", "", "num", doc="value of the quantity"),
         Column("slope", "derivative", "", "num", doc="derivative by the variable"),
+        Column("by", doc="events: an exact derivative through the events of one run"),
         Column("elasticity", "elasticity", "-", "num", doc="relative derivative"),
         Column("error", "its error\nat most", "-", "short", doc="bound of the error of the elasticity"),
+    )
+)
+REMARKS: Final = Sheet(
+    columns=(
+        Column("record", doc="record"),
+        Column("remark", "exact derivatives", doc="what they lack or are close to"),
     )
 )
 REASONS: Final = Sheet(

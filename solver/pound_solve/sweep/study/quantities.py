@@ -168,6 +168,12 @@ def value_of(values: Values, asked: Asked) -> float:
     return max((x for x in by_label.values() if not math.isnan(x)), key=abs, default=math.nan)
 
 
+def label_of(values: Values, asked: Asked) -> str:
+    """Label of `value_of`; empty where there is no value."""
+    by_label = {label: x for label, x in values.get(asked.quantity, {}).items() if not math.isnan(x)}
+    return asked.label or max(by_label, key=lambda label: abs(by_label[label]), default="")
+
+
 def require(values: Values, asked: Asked) -> None:
     """Check that a run which has a quantity has the label asked for.
 
