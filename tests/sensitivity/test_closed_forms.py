@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from decks import results_of
 from pound_solve.driver.request import Request
 from pound_solve.sensitivity import derivatives
 
@@ -139,3 +140,18 @@ def test_equal_balls_exchange_their_velocities(tmp_path: Path, first: bool) -> N
         return 0.5 * (v + w) + (0.5 if first else -0.5) * apart
 
     compared(tmp_path, deck, values, "peak_drift", "first" if first else "second", closed)
+
+
+def test_values_are_those_of_the_run(tmp_path: Path) -> None:
+    values = {"ks": 900.0, "gap": 0.02, "k": 1e4, "m": 40.0, "v": 0.3}
+    path = tmp_path / "deck.inp"
+    path.write_text(
+        WALL.format(params=params(values), rule="", law="LINEAR K=k", length=0.5), encoding="utf-8"
+    )
+    answer, results = derivatives(Request(str(path)), ["k"]), results_of(path)
+    contact, drift = results.table("contact_summary"), results.table("drift_envelope")
+    assert answer.values["contact_force"]["2"] == pytest.approx(contact["peak_force"][0], rel=1e-13)
+    assert answer.values["min_gap"]["2"] == pytest.approx(contact["min_gap"][0], rel=1e-13)
+    assert answer.values["peak_drift"]["d"] == pytest.approx(
+        max(drift["max"][0], -drift["min"][0]), rel=1e-13
+    )
