@@ -84,3 +84,18 @@ def test_a_contact_that_is_only_just_met_or_missed_is_flagged(
     flags = derivatives(Request(str(path)), ["k"]).flags
     assert bool(flags) == bool(flagged)
     assert all(flagged in flag for flag in flags)
+
+
+def test_at_its_lower_limit_a_parameter_has_a_derivative_of_one_side(tmp_path: Path) -> None:
+    """A dashpot of zero: its derivative is the limit of those of small dashpots."""
+    path = tmp_path / "deck.inp"
+    path.write_text(DECK.format(**PLAIN | {"law": "KELVIN_VOIGT K=1E5 C=c"}), encoding="utf-8")
+    text = path.read_text(encoding="utf-8")
+
+    def slope(c: float) -> float:
+        path.write_text(text.replace("count=1", f"count=1 c={c!r}"), encoding="utf-8")
+        return float(derivatives(Request(str(path)), ["c"]).slopes["residual_drift"]["building 1 1"][0])
+
+    near, nearer, limit = map(slope, (2e-3, 1e-3, 0.0))
+    assert limit == pytest.approx(2.0 * nearer - near, rel=1e-6)
+    assert limit != 0.0

@@ -1,7 +1,8 @@
 r"""The numbers from which a history is integrated, and their derivatives by parameters.
 
 They are smooth functions of the parameters of a deck (most of them polynomials), and cost little beside a
-history.  Their derivatives are therefore central differences of the assembled system, extrapolated,
+history.  Their derivatives are therefore central differences of the assembled system, extrapolated
+(one-sided ones of third order if the deck refuses smaller values of the parameter),
 
 .. math:: \frac{dc}{dp} = \frac{4 D(h/2) - D(h)}{3} + O(h^4), \qquad D(h) = \frac{c(p + h) - c(p - h)}{2h} .
 
@@ -31,6 +32,9 @@ from pound_solve.sensitivity.refusal import NoDerivativeError
 from pound_solve.structure.condensation import condense
 
 STEP = 1e-3  #: of the differences, as a fraction of the parameter; of 1 for a parameter that is zero
+#: places of a difference in steps, and their weights: extrapolated, and one-sided at a limit
+CENTRAL = (-1.0, 1.0 / 6.0), (-0.5, -4.0 / 3.0), (0.5, 4.0 / 3.0), (1.0, -1.0 / 6.0)
+FORWARD = (1.0, 3.0), (2.0, -1.5), (3.0, 1.0 / 3.0)  # besides that of the place itself
 
 
 class Coefficients(NamedTuple):
@@ -159,7 +163,9 @@ def shape_of(case: Case) -> tuple[object, ...]:
     )
 
 
-def derivative(at: Callable[[float], Case], value: float, name: str, middle: Case) -> Coefficients:
+def derivative(
+    at: Callable[[float], Case], value: float, name: str, middle: Case, base: Coefficients
+) -> Coefficients:
     """Return the derivatives of the numbers by one parameter.
 
     Parameters
@@ -172,6 +178,8 @@ def derivative(at: Callable[[float], Case], value: float, name: str, middle: Cas
         Of the parameter.
     middle : Case
         At this value.
+    base : Coefficients
+        Its numbers.
 
     Raises
     ------
@@ -179,14 +187,21 @@ def derivative(at: Callable[[float], Case], value: float, name: str, middle: Cas
         The structure or the times of the excitation change with the parameter.
     """
     h = STEP * (abs(value) or 1.0)
-    sides = []
-    for step in (h, 0.5 * h):
-        each = [at(value + step), at(value - step)]
-        if any(shape_of(case) != shape_of(middle) for case in each):
-            raise NoDerivativeError(
-                f"{name} changes more than numbers: the unknowns, the laws, their branches at the start or "
-                "the times of the excitation"
-            )
-        plus, minus = (coefficients(case)[0] for case in each)
-        sides.append([(x - y) / (2.0 * step) for x, y in zip(plus, minus)])
-    return Coefficients(*((4.0 * fine - coarse) / 3.0 for coarse, fine in zip(*sides)))
+    try:
+        terms = [(at(value + share * h), weight) for share, weight in CENTRAL]
+    except NoDerivativeError:  # the parameter may be at its lower limit
+        terms = [(at(value + share * h), weight) for share, weight in FORWARD]
+    if any(shape_of(case) != shape_of(middle) for case, _ in terms):
+        raise NoDerivativeError(
+            f"{name} changes more than numbers: the unknowns, the laws, their branches at the start or "
+            "the times of the excitation"
+        )
+    each = [
+        [weight / h * _change(x, y) for x, y in zip(coefficients(case)[0], base)] for case, weight in terms
+    ]
+    return Coefficients(*(np.sum(x, axis=0) for x in zip(*each)))
+
+
+def _change(x: Array, y: Array) -> Array:
+    """Return ``x - y``, exactly zero where both are equal, even if infinite."""
+    return np.subtract(x, y, out=np.zeros_like(x), where=x != y)

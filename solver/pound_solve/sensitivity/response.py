@@ -94,7 +94,7 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
         return Derivatives((), known, {}, (), course.sequence)
     base, places = coefficients(middle)
     at = partial(_case_at, request, given)
-    each = [derivative(partial(at, name), x, name, middle) for name, x in zip(names, values)]
+    each = [derivative(partial(at, name), x, name, middle, base) for name, x in zip(names, values)]
     slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
     equations, excitation = TangentEquations(base, slopes), trajectory.system.excitation
     formulas, flags = list[Formula](), list[str]()
