@@ -17,7 +17,7 @@ QUICK = 2, 3, 4, 24, 31
 NIGHT = [
     n
     for n in range(1, 61)
-    if n not in QUICK and n not in (11, 12, 20, 21, 26, 29, 30, 33, 35, 37, 38, 41, 42)
+    if n not in QUICK and n not in (11, 12, 20, 21, 26, 29, 30, 33, 35, 37, 38, 41, 42, 55, 56, 57)
 ]
 WITHOUT = {"contact_loss", "energy_residual", "correlation"}  #: quantities without derivatives
 #: of the differences: the larger one is short of a change of events more rarely, the smaller one of digits
