@@ -13,12 +13,9 @@ from sensitivity import pairs
 from tiers import at_night
 
 QUICK = 2, 3, 4, 24, 31
-#: the others take longer than half a minute, or have a joint that jumps
-NIGHT = [
-    n
-    for n in range(1, 61)
-    if n not in QUICK and n not in (11, 12, 20, 21, 26, 29, 30, 33, 35, 37, 38, 41, 42, 55, 56, 57)
-]
+#: the others up to 60 take longer than half a minute, or have a joint that jumps
+LONG = {11, 12, 18, 19, 20, 21, 26, 29, 30, 33, 35, 37, 38, 41, 42, 55, 56, 57, 59}
+NIGHT = sorted({*range(1, 61)} - {*QUICK} - LONG)
 WITHOUT = {"contact_loss", "energy_residual", "correlation"}  #: quantities without derivatives
 #: of the differences: the larger one is short of a change of events more rarely, the smaller one of digits
 STEPS = 1e-4, 1e-5
