@@ -11,7 +11,7 @@ from pound_deck.model import Card
 from pound_solve.analyses.recorder import HistoryRecorder, RecordedItems
 from pound_solve.driver.prepare import Prepared, prepare
 from pound_solve.driver.request import Request
-from pound_solve.driver.sequence import AnalysisSequence
+from pound_solve.driver.sequence import AnalysisSequence, Progress
 from pound_solve.integrate.protocol import Outcome, Problem, Stop
 from pound_solve.results.record import RunRecord
 from pound_solve.sensitivity.refusal import NoDerivativeError
@@ -87,7 +87,7 @@ def refuse(card: Card, structure: Structure) -> None:
 
 
 def run(
-    ready: Prepared, request: Request, method: Method
+    ready: Prepared, request: Request, method: Method, progress: Progress | None = None
 ) -> tuple[RunRecord, dict[str, list[Fields]], str]:
     """Run the analyses of a prepared deck, its history by `method`; return the record, the rows of tables
     from which quantities are taken, and the reason of a stop, if any.
@@ -101,7 +101,7 @@ def run(
 
     model = replace(ready.model, analyses=tuple(map(with_method, ready.model.analyses)))
     kept = Kept()
-    sequence = AnalysisSequence(replace(ready, model=model), request, kept, None, time.perf_counter())
+    sequence = AnalysisSequence(replace(ready, model=model), request, kept, progress, time.perf_counter())
     message = sequence.run()
     return sequence.record, kept.rows, message
 

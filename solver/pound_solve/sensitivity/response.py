@@ -13,6 +13,7 @@ from pound_deck.model import Model
 from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.driver.prepare import DeckError, Prepared
 from pound_solve.driver.request import Request
+from pound_solve.driver.sequence import Progress
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.protocol import Outcome, Problem
 from pound_solve.integrate.tracker import Peaks
@@ -66,7 +67,7 @@ class Derivatives:
     sequence: tuple[tuple[int, int], ...]
 
 
-def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
+def derivatives(request: Request, names: Sequence[str], progress: Progress | None = None) -> Derivatives:
     """Return the exact derivatives of the response of a run by PARAMs.
 
     The run is integrated by EXACT; a deck with METHOD=AUTO too.
@@ -76,7 +77,9 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     request : Request
         The deck, its PARAMs and its motion.
     names : sequence of str
-        PARAMs that are numbers; without any, only the run and its events are returned.
+        PARAMs that are numbers, or `MOTION`; without any, only the run and its events are returned.
+    progress : callable or None
+        Of the run, see `sequence.Progress`; it may raise an exception to end the run.
 
     Raises
     ------
@@ -88,7 +91,7 @@ def derivatives(request: Request, names: Sequence[str]) -> Derivatives:
     ready = case.ready_for(request)
     given = {name.casefold(): value for name, value in ready.model.params.items()}
     values = [_number(name, given, request) for name in names]
-    record, rows, middle, trajectory = _run(ready, request)
+    record, rows, middle, trajectory = _run(ready, request, progress)
     course, known = RunCourse(trajectory.course), taken(rows)
     if not names:
         return Derivatives((), known, {}, (), course.sequence)
@@ -139,7 +142,7 @@ def _results(
 
 
 def _run(
-    ready: Prepared, request: Request
+    ready: Prepared, request: Request, progress: Progress | None
 ) -> tuple[RunRecord, dict[str, list[Fields]], case.Case, Trajectory]:
     """Return the record of the run, the rows of its tables, its start and its course."""
     runs: list[tuple[Problem[HistoryRecorder], Trajectory]] = []
@@ -150,7 +153,7 @@ def _run(
         with np.errstate(over="ignore", invalid="ignore"):
             return trajectory.run()
 
-    record, rows, message = case.run(ready, request, follow)
+    record, rows, message = case.run(ready, request, follow, progress)
     if message:
         raise NoDerivativeError(f"the run does not reach its end: {message}")
     ((problem, trajectory),) = runs

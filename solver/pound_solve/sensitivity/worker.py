@@ -24,7 +24,7 @@ def differentiated(run: StudyRun, settings: Settings, clock: Clock) -> JournalEn
         The run has no exact derivatives; the journal keeps the reason.
     """
     motion = scaled(run.shaking) if run.shaking else None
-    response = derivatives(request_of(run.case, motion), run.variables)
+    response = derivatives(request_of(run.case, motion), run.variables, clock)
     values = dict(response.values)
     for quantity, by_label in response.slopes.items():
         for k, name in enumerate(run.variables):
