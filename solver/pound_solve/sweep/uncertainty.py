@@ -15,8 +15,7 @@ import numpy as np
 
 from pound_deck.diagnostics import suggest
 from pound_solve.numerics.types import Array
-from pound_solve.results.sweep_file import DONE
-from pound_solve.statistics.curves import Asked, CurveError, demand
+from pound_solve.statistics.curves import Asked
 from pound_solve.statistics.distributions import (
     FAMILIES,
     Distribution,
@@ -27,6 +26,7 @@ from pound_solve.statistics.distributions import (
 from pound_solve.statistics.propagation import CONTACT, SPREAD, Propagated, UncertaintyAim
 from pound_solve.statistics.replicates import REPLICATES, SAMPLINGS, uniform
 from pound_solve.statistics.sobol_indices import mixed
+from pound_solve.sweep.demands import demands, quantities_of
 from pound_solve.sweep.execution.conduct import State
 from pound_solve.sweep.points import PointResult, Points
 from pound_solve.sweep.study.asked import all_asked, asked
@@ -212,16 +212,16 @@ class UncertaintyAnalysis:
             at = np.concatenate([x.reshape(-1, variables) for x in (*parts, self._crosses())])
             values = np.column_stack([d.quantile(x) for d, x in zip(self.distributions, at.T)])
             results = self.points.results(values)
-        nominals, demands = ({q: _demands(r, q) for q in quantities} for r in ([nominal], results))
+        nominals, at_points = ({q: demands(r, q) for q in quantities} for r in ([nominal], results))
         shape = (len(parts), *first.shape[:2], -1)
         sizes = len(parts) * aim.runs
-        blocks = {q: x[:sizes].reshape(shape) for q, x in demands.items()}
+        blocks = {q: x[:sizes].reshape(shape) for q, x in at_points.items()}
         samples = min(len(parts), 2)
         return Propagated(
             {q: x[0] for q, x in nominals.items()},
             {q: np.concatenate(x[:samples], axis=1) for q, x in blocks.items()},
             {q: x[samples:] for q, x in blocks.items()},
-            {q: x[sizes:] for q, x in demands.items()},
+            {q: x[sizes:] for q, x in at_points.items()},
         )
 
     def _crosses(self) -> Array:
@@ -234,27 +234,8 @@ class UncertaintyAnalysis:
 
     def _quantities(self, nominal: PointResult) -> list[Asked]:
         """Quantities of the analysis, those of limits and contact included."""
-        there = {name for values in nominal.values for name in values}
         wanted = [*self.aim.quantities, *(q for q, _ in self.aim.limits)]
-        if any(entry.status == DONE for entry in nominal.entries):
-            missing = next((q for q in wanted if q.quantity not in there), None)
-            if missing is not None:
-                raise CurveError(
-                    f"its runs have no {missing.quantity}: they have {', '.join(sorted(there))}"
-                )
+        there = quantities_of(nominal, wanted)
         if not self.aim.quantities:
             wanted += [q for q in DEFAULTS if q.quantity in there]
         return list(dict.fromkeys([*wanted, *([CONTACT] if CONTACT.quantity in there else ())]))
-
-
-def _demands(results: Sequence[PointResult], asked: Asked) -> Array:
-    """Demands, shape (n_points, n_records): infinite for a run that stopped, NaN for one that failed."""
-    return np.array(
-        [
-            [
-                demand(entry.status, entry.reached, values.get(asked.quantity, {}), asked)
-                for entry, values in zip(result.entries, result.values)
-            ]
-            for result in results
-        ]
-    )

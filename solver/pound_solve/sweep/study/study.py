@@ -52,6 +52,9 @@ OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType(
         "measured": "pound-solve calibrate",
         "uncertainty": "pound-solve uncertainty",
         "correlation": "pound-solve uncertainty",
+        "optimize": "pound-solve optimize",
+        "objective": "pound-solve optimize",
+        "constraint": "pound-solve optimize",
     }
 )
 #: items of a sweep that give PARAMs several values, which a study with variables does not take

@@ -1,0 +1,70 @@
+"""``pound-solve optimize``: values of PARAMs that minimise a quantity or a cost under limits."""
+
+from __future__ import annotations
+
+import argparse
+
+from pound_solve.cli import common, studies
+
+SUMMARY = "find PARAMs of a study that minimise a quantity or a cost, with limits of others"
+EXAMPLES = (("study.toml -o results", "minimise the objective under the limits of the study"),)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("study", help="study (.toml) with [variables], [objective] and [constraint]")
+    studies.add_conduct(parser)
+    parser.add_argument("--picture", type=common.picture, metavar="FILE", help="draw the search")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Read the study, search, write the tables and the deck of the optimum, print the report."""
+    if not common.drawable(args.picture):
+        return common.MISTAKES
+    return studies.carried_out(args.study, lambda: _analysed(args))
+
+
+def _analysed(args: argparse.Namespace) -> int:
+    """Search, write the tables and print the report."""
+    from pound_solve.report.plot import optimum
+    from pound_solve.report.sweep import summary
+    from pound_solve.report.sweep.optimum import OptimumReport
+    from pound_solve.results.sweep_file import Sweep, write_table
+    from pound_solve.results.whole_file import write_text
+    from pound_solve.sweep import optimize
+    from pound_solve.sweep.execution.executors import engine
+    from pound_solve.sweep.execution.lock import locked
+    from pound_solve.sweep.points import Interrupted, Points
+    from pound_solve.sweep.session import Session
+    from pound_solve.sweep.study.document import Document
+    from pound_solve.sweep.study.study import read
+
+    document = Document.read(args.study)
+    studies.give_conduct(args, document)
+    aim = optimize.aim(document)
+    study = read(document, optimize.TABLES, optimize.VARIABLE_ITEMS)
+    with locked(study.out):
+        session = Session(study, engine(args.executor, study.workers), retry=args.retry)
+        progress = studies.StudyProgress(args)
+        analysis = optimize.OptimumAnalysis(Points(session), aim)
+        deck, _ = analysis.deck(analysis.points.nominal)  # a file in its way is told before any run
+        try:
+            search = analysis.carry_out(progress)
+        except Interrupted:
+            progress.end()
+            return studies.ended(args, session, session.write())
+        progress.end()
+        sweep = Sweep.open(session.write())
+        report = OptimumReport(sweep, analysis.problem, search, analysis.before)
+        lines = list(report.report())
+        path = study.out / "optimize.h5"
+        write_table(path, report.table(), sweep.about)
+        if report.is_solved:
+            write_text(deck, analysis.deck(report.values)[1])
+            lines += ["", f"  Deck of the best point: {deck.name}"]
+        summary.write(path, sweep, "optimum", lines)
+        if args.picture:
+            optimum.optimum(report.drawn(), args.picture)
+        if not args.quiet:
+            print("\n".join(lines))
+        return studies.ended(args, session, path)

@@ -1,0 +1,321 @@
+"""Optimum of a study: values of its variables that minimise an objective under limits.
+
+Every point of the search is run under all records, whose values become one by the mean, a fractile or the
+largest.
+"""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from pound_deck.diagnostics import suggest
+from pound_deck.files import contents
+from pound_deck.formula import Formula, FormulaError
+from pound_deck.revise import with_params
+from pound_solve.numerics.types import Array
+from pound_solve.statistics.curves import Asked, CurveError
+from pound_solve.statistics.optimum import (
+    METHODS,
+    DesignVariable,
+    Limit,
+    OptimumProblem,
+    Outcome,
+    Search,
+    SearchRules,
+)
+from pound_solve.statistics.over_records import EACH, MEAN, OverRecords
+from pound_solve.sweep.demands import demands, quantities_of
+from pound_solve.sweep.execution.conduct import State
+from pound_solve.sweep.points import PointResult, Points
+from pound_solve.sweep.study.asked import asked, over_records
+from pound_solve.sweep.study.document import Document, Path_
+from pound_solve.sweep.study.run import ParameterCase
+from pound_solve.sweep.study.variables import TABLE as VARIABLES
+from pound_solve.sweep.study.variables import StudyVariable, given_values
+
+TABLE: Final = "optimize"  #: of a study
+OBJECTIVE: Final = "objective"
+CONSTRAINT: Final = "constraint"
+TABLES: Final = (VARIABLES, TABLE, OBJECTIVE, CONSTRAINT)
+VARIABLE_ITEMS: Final = ("scale",)  #: items of a variable
+OBJECTIVE_ITEMS: Final = ("quantity", "expression", "records", "goal")
+ITEMS: Final = ("method", "starts", "runs", "tolerance", "seed")
+SCALES: Final = ("linear", "log")
+GOALS: Final = ("minimize", "maximize")
+LARGEST: Final = "max"  #: of the values of all records
+MAX_POINTS: Final = 100_000
+MARK: Final = "! Optimum of"  #: beginning of a deck that this verb has written
+
+
+@dataclass(frozen=True)
+class OptimumAim:
+    """What a search for an optimum asks for.
+
+    Attributes
+    ----------
+    quantity : Asked or None
+        Objective, unless it is the formula.
+    formula : Formula or None
+    is_maximised : bool
+    over : OverRecords
+    limited : tuple of Asked
+        Quantities of the limits.
+    limits : tuple of Limit
+    scales : mapping of str to str
+        One of `SCALES` for each variable.
+    rules : SearchRules
+    """
+
+    quantity: Asked | None
+    formula: Formula | None
+    is_maximised: bool
+    over: OverRecords
+    limited: tuple[Asked, ...]
+    limits: tuple[Limit, ...]
+    scales: Mapping[str, str]
+    rules: SearchRules
+
+    def problem(self, variables: Sequence[StudyVariable]) -> OptimumProblem:
+        """The problem of the variables of a study."""
+        over = "largest of the records" if self.over.how == 1.0 else self.over.text
+        return OptimumProblem(
+            tuple(
+                DesignVariable(v.name, v.value, v.low, v.high, self.scales[v.name] == SCALES[1])
+                for v in variables
+            ),
+            self.formula.text if self.formula else " ".join(filter(None, self.quantity or ())),
+            self.is_maximised,
+            over,
+            self.limits,
+            self.rules,
+        )
+
+
+def aim(document: Document) -> OptimumAim:
+    """Read the tables ``[objective]``, ``[constraint]`` and ``[optimize]`` and the bounds of the variables
+    of a study; mistakes are added to the document.
+    """
+    names = list(given_values(document))
+    scales = {name: _scale(document, name) for name in names}
+    document.take((OBJECTIVE,), dict, {})
+    document.known((OBJECTIVE,), OBJECTIVE_ITEMS)
+    quantity, formula = _objective(document, names)
+    goal = _choice(document, (OBJECTIVE, "goal"), GOALS)
+    limits = list(_limits(document))
+    document.take((TABLE,), dict, {})
+    document.known((TABLE,), ITEMS)
+    return OptimumAim(
+        quantity,
+        formula,
+        goal == GOALS[1],
+        _over(document),
+        tuple(q for q, _ in limits),
+        tuple(limit for _, limit in limits),
+        scales,
+        _rules(document),
+    )
+
+
+def _scale(document: Document, name: str) -> str:
+    """Scale of a variable, whose bounds are checked."""
+    path: Path_ = (VARIABLES, name)
+    low, high = (document.take((*path, item), float, math.nan) for item in ("low", "high"))
+    if math.isnan(low) or math.isnan(high):
+        hint = f"{name} = {{ low = ..., high = ... }}: the search stays between them"
+        document.mistake("S604", f"{name} needs low and high", path, hint)
+    scale = _choice(document, (*path, "scale"), SCALES)
+    if scale == SCALES[1] and low <= 0.0:
+        document.mistake("S605", f"a logarithmic scale needs low above zero, not {low:g}", path)
+    return scale
+
+
+def _choice(document: Document, path: Path_, words: Sequence[str]) -> str:
+    """Word of an item; the first one where it is left out."""
+    word = document.take(path, str, words[0])
+    if word not in words:
+        hint = suggest(word, list(words)) or f"there are {' and '.join(words)}"
+        document.mistake("S603", f"{path[-1]} is no {word}", path, hint)
+    return word
+
+
+def _objective(document: Document, names: Sequence[str]) -> tuple[Asked | None, Formula | None]:
+    """Quantity or formula of the objective."""
+    quantity = document.take((OBJECTIVE, "quantity"), str, "")
+    text = document.take((OBJECTIVE, "expression"), str, "")
+    if bool(quantity) == bool(text):
+        message = "quantity stands beside expression" if text else "the study has no objective"
+        hint = '[objective] with quantity = "storey_drift", or expression = "2*k" of the variables'
+        document.mistake("S604", message, (OBJECTIVE,), hint)
+    if quantity:
+        return asked(document, (OBJECTIVE, "quantity"), quantity), None
+    if text:
+        try:
+            return None, Formula(text, names)
+        except FormulaError as err:
+            hint = f"a formula of {', '.join(names)}"
+            document.mistake("S605", str(err), (OBJECTIVE, "expression"), hint)
+    return None, None
+
+
+def _over(document: Document) -> OverRecords:
+    """How the values of all records become one."""
+    path = (OBJECTIVE, "records")
+    if document.at(path) == LARGEST:
+        return OverRecords(1.0)
+    over = over_records(document, path, OverRecords(MEAN))
+    if over.how == EACH:
+        message = "an optimum takes one value of all records"
+        document.mistake("S603", message, path, f'write "{MEAN}", "{LARGEST}", or a share such as 0.84')
+        return OverRecords(MEAN)
+    return over
+
+
+def _limits(document: Document) -> Iterator[tuple[Asked, Limit]]:
+    """Yield quantities and their limits: a largest value, or a table with min or max or both."""
+    for text in document.take((CONSTRAINT,), dict, {}):
+        path: Path_ = (CONSTRAINT, text)
+        quantity = asked(document, path, text)
+        if not isinstance(document.at(path), dict):
+            yield quantity, Limit(text, document.take(path, float, math.nan), False)
+            continue
+        document.known(path, ("min", "max"))
+        ends = {item: document.take((*path, item), float, math.nan) for item in ("min", "max")}
+        if all(math.isnan(x) for x in ends.values()):
+            document.mistake("S604", f"{text} has no limit", path, "give it max or min")
+        for item, value in ends.items():
+            if not math.isnan(value):
+                yield quantity, Limit(text, value, item == "min")
+
+
+def _rules(document: Document) -> SearchRules:
+    """Rules of the search."""
+    method = _choice(document, (TABLE, "method"), METHODS)
+    starts = document.take((TABLE, "starts"), int, 5)
+    runs = document.take((TABLE, "runs"), int, 500)
+    seed = document.take((TABLE, "seed"), int, 0)
+    tolerance = document.take((TABLE, "tolerance"), float, 1e-3)
+    for name, value, least, most in (("starts", starts, 1, 1000), ("runs", runs, 1, MAX_POINTS)):
+        if not least <= value <= most:
+            document.mistake("S603", f"{name} is {least} to {most}, not {value}", (TABLE, name))
+    if seed < 0:
+        document.mistake("S603", "seed is zero or above", (TABLE, "seed"))
+    if not 1e-8 <= tolerance <= 0.1:
+        document.mistake("S603", f"tolerance is 1e-8 to 0.1, not {tolerance:g}", (TABLE, "tolerance"))
+    return SearchRules(method, starts, runs, tolerance, seed)
+
+
+class OptimumAnalysis:
+    """Runs of a search for an optimum.
+
+    Parameters
+    ----------
+    points : Points
+    aim : OptimumAim
+
+    Attributes
+    ----------
+    problem : OptimumProblem
+    before : Outcome
+        At the values of the study; defined by `carry_out`.
+    """
+
+    before: Outcome
+
+    def __init__(self, points: Points, aim: OptimumAim) -> None:
+        self.points, self.aim = points, aim
+        self.problem = aim.problem(points.variables)
+
+    def carry_out(self, report: Callable[[State], None]) -> Search:
+        """Execute the runs; return the search that asked for them.
+
+        Raises
+        ------
+        Interrupted
+            Ctrl-C has ended the execution.
+        CurveError
+            The runs do not have a quantity, or the objective has no value at those of the study.
+        """
+        problem, aim = self.problem, self.aim
+        first = [v.share(v.value) for v in problem.variables]
+        search = Search(self._outcomes, first, problem.limits, problem.rules)
+        with self.points.conducted(report):
+            (nominal,) = self.points.results([self.points.nominal])
+            quantities_of(nominal, [*([aim.quantity] if aim.quantity else ()), *aim.limited])
+            if aim.formula:
+                try:
+                    aim.formula.value(dict(zip([v.name for v in problem.variables], self.points.nominal)))
+                except FormulaError as err:
+                    raise CurveError(
+                        f"{aim.formula.text} has no value at those of the study: {err}"
+                    ) from err
+            self.before = self._outcome(self.points.nominal, nominal)
+            search.carry_out()
+        return search
+
+    def _outcomes(self, points: list[tuple[float, ...]]) -> list[Outcome]:
+        """Outcomes of points of the search."""
+        values = [self.problem.values(x) for x in points]
+        return [self._outcome(x, r) for x, r in zip(values, self.points.results(values))]
+
+    def _outcome(self, values: Sequence[float], result: PointResult) -> Outcome:
+        """Outcome of the runs at values of the variables."""
+        aim = self.aim
+
+        def one(quantity: Asked) -> float:
+            (of_records,) = demands([result], quantity)
+            return float(aim.over.of(_known(of_records))[0])
+
+        objective = one(aim.quantity) if aim.quantity else self._by_formula(values)
+        worst = objective if math.isfinite(objective) else math.inf
+        return Outcome(
+            self.problem.sign * worst if math.isfinite(worst) else worst, tuple(map(one, aim.limited))
+        )
+
+    def _by_formula(self, values: Sequence[float]) -> float:
+        assert self.aim.formula is not None
+        try:
+            return self.aim.formula.value(dict(zip([v.name for v in self.problem.variables], values)))
+        except FormulaError:
+            return math.inf
+
+    def deck(self, values: Sequence[float]) -> tuple[Path, str]:
+        """Path and text of the deck with values of the variables, beside the deck of the study.
+
+        Raises
+        ------
+        CurveError
+            A file that this verb has not written has its name.
+        """
+        study = self.points.session.study
+        case = study.runs[0].case
+        path = Path(case.deck).with_name(f"{Path(study.name).stem}.optimum.inp")
+        if path.exists() and not contents(path).startswith(MARK.encode()):
+            raise CurveError(
+                f"{path} is in the way of the deck of the optimum: move it, or rename the study"
+            )
+        texts = {v.name: repr(x) for v, x in zip(self.problem.variables, values)}
+        options = "".join(f" {word}" for word in _options(case))
+        head = f"{MARK} {Path(study.name).name}: pound-solve {path.name}{options}\n"
+        return path, head + with_params(case.deck, texts)
+
+
+def _known(values: Array) -> Array:
+    """Demands with a failed run as a stopped one: neither is an optimum."""
+    return np.where(np.isnan(values), np.inf, values)
+
+
+def _options(case: ParameterCase) -> Iterator[str]:
+    """Options of the command line by which a deck has the results of a case."""
+    for name in ("method", "dt", "tol"):
+        value = getattr(case, name)
+        if value is not None:
+            yield f"--{name} {value}"
+    for folder in case.records:
+        yield f"--records {shlex.quote(str(folder))}"
