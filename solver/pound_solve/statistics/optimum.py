@@ -28,17 +28,17 @@ from pound_solve.numerics.types import Array
 METHODS: Final = ("smooth", "rough")
 STEP: Final = 1e-3  #: of a difference, as a share of the range of a variable
 PENALTY: Final = 10.0  #: scaled value of an objective or an excess that is infinite
-PLACES: Final = 7  #: decimal places of the coordinates of a point
+PLACES: Final = 6  #: decimal places of the coordinates of a point
 ROUNDS: Final = 30  #: of sequential quadratic programming from one start
 INDIVIDUALS: Final = 8  #: of a generation of differential evolution, for each variable
-DIGITS: Final = 7  #: of the value of a variable
+DIGITS: Final = 8  #: of the value of a variable
 EQUAL: Final = 10.0  #: tolerances within which the ends of two starts are one optimum
 NEAR: Final = 0.05  #: share of the ranges within which their points are
 
 CONVERGED, HALTED, SPENT = "converged", "no further descent", "out of runs"
 
 
-class Limit(NamedTuple):
+class DesignLimit(NamedTuple):
     """A limit of a quantity: a largest value, or a least one."""
 
     name: str
@@ -53,7 +53,7 @@ class Limit(NamedTuple):
         return beyond / (abs(self.value) or 1.0)
 
 
-class Outcome(NamedTuple):
+class PointOutcome(NamedTuple):
     """Objective, to be minimised, and limited quantities at one point; not finite where a run stopped."""
 
     objective: float
@@ -70,14 +70,14 @@ class Tried:
         Number of the start that has asked for it, from 1; of ``rough`` its generation.
     x : tuple of float
         The point, each coordinate 0 to 1.
-    outcome : Outcome
+    outcome : PointOutcome
     excess : float
         The largest of the limits' excesses; 0 or less where all are satisfied.
     """
 
     start: int
     x: tuple[float, ...]
-    outcome: Outcome
+    outcome: PointOutcome
     excess: float
 
     @property
@@ -134,7 +134,9 @@ class DesignVariable(NamedTuple):
     is_log: bool = False
 
     def at(self, share: float) -> float:
-        """Value at a share of the range, with `DIGITS` digits."""
+        """Value at a share of the range, with `DIGITS` digits; at its own share that of the study."""
+        if round(self.share(self.value), PLACES) == share:
+            return self.value
         if self.is_log:
             value = self.low * (self.high / self.low) ** share
         else:
@@ -160,7 +162,7 @@ class OptimumProblem:
     is_maximised : bool
     over : str
         How the values of the records become one.
-    limits : tuple of Limit
+    limits : tuple of DesignLimit
     rules : SearchRules
     """
 
@@ -168,7 +170,7 @@ class OptimumProblem:
     objective: str
     is_maximised: bool
     over: str
-    limits: tuple[Limit, ...]
+    limits: tuple[DesignLimit, ...]
     rules: SearchRules
 
     @property
@@ -185,7 +187,7 @@ class _SpentError(Exception):
     """Raised if a search asks for more points than it may."""
 
 
-class Search:
+class OptimumSearch:
     """A search.
 
     Parameters
@@ -194,16 +196,16 @@ class Search:
         Outcomes of several points, which it gets as tuples of coordinates from 0 to 1.
     first : sequence of float
         The first start.
-    limits : sequence of Limit
+    limits : sequence of DesignLimit
         Of the limited quantities of an outcome.
     rules : SearchRules
     """
 
     def __init__(
         self,
-        evaluate: Callable[[list[tuple[float, ...]]], list[Outcome]],
+        evaluate: Callable[[list[tuple[float, ...]]], list[PointOutcome]],
         first: Sequence[float],
-        limits: Sequence[Limit],
+        limits: Sequence[DesignLimit],
         rules: SearchRules,
     ) -> None:
         self._evaluate, self._first = evaluate, np.asarray(first, np.float64)

@@ -23,11 +23,11 @@ from pound_solve.numerics.types import Array
 from pound_solve.statistics.curves import Asked, CurveError
 from pound_solve.statistics.optimum import (
     METHODS,
+    DesignLimit,
     DesignVariable,
-    Limit,
     OptimumProblem,
-    Outcome,
-    Search,
+    OptimumSearch,
+    PointOutcome,
     SearchRules,
 )
 from pound_solve.statistics.over_records import EACH, MEAN, OverRecords
@@ -67,7 +67,7 @@ class OptimumAim:
     over : OverRecords
     limited : tuple of Asked
         Quantities of the limits.
-    limits : tuple of Limit
+    limits : tuple of DesignLimit
     scales : mapping of str to str
         One of `SCALES` for each variable.
     rules : SearchRules
@@ -78,7 +78,7 @@ class OptimumAim:
     is_maximised: bool
     over: OverRecords
     limited: tuple[Asked, ...]
-    limits: tuple[Limit, ...]
+    limits: tuple[DesignLimit, ...]
     scales: Mapping[str, str]
     rules: SearchRules
 
@@ -177,13 +177,13 @@ def _over(document: Document) -> OverRecords:
     return over
 
 
-def _limits(document: Document) -> Iterator[tuple[Asked, Limit]]:
+def _limits(document: Document) -> Iterator[tuple[Asked, DesignLimit]]:
     """Yield quantities and their limits: a largest value, or a table with min or max or both."""
     for text in document.take((CONSTRAINT,), dict, {}):
         path: Path_ = (CONSTRAINT, text)
         quantity = asked(document, path, text)
         if not isinstance(document.at(path), dict):
-            yield quantity, Limit(text, document.take(path, float, math.nan), False)
+            yield quantity, DesignLimit(text, document.take(path, float, math.nan), False)
             continue
         document.known(path, ("min", "max"))
         ends = {item: document.take((*path, item), float, math.nan) for item in ("min", "max")}
@@ -191,7 +191,7 @@ def _limits(document: Document) -> Iterator[tuple[Asked, Limit]]:
             document.mistake("S604", f"{text} has no limit", path, "give it max or min")
         for item, value in ends.items():
             if not math.isnan(value):
-                yield quantity, Limit(text, value, item == "min")
+                yield quantity, DesignLimit(text, value, item == "min")
 
 
 def _rules(document: Document) -> SearchRules:
@@ -222,17 +222,17 @@ class OptimumAnalysis:
     Attributes
     ----------
     problem : OptimumProblem
-    before : Outcome
+    before : PointOutcome
         At the values of the study; defined by `carry_out`.
     """
 
-    before: Outcome
+    before: PointOutcome
 
     def __init__(self, points: Points, aim: OptimumAim) -> None:
         self.points, self.aim = points, aim
         self.problem = aim.problem(points.variables)
 
-    def carry_out(self, report: Callable[[State], None]) -> Search:
+    def carry_out(self, report: Callable[[State], None]) -> OptimumSearch:
         """Execute the runs; return the search that asked for them.
 
         Raises
@@ -244,7 +244,7 @@ class OptimumAnalysis:
         """
         problem, aim = self.problem, self.aim
         first = [v.share(v.value) for v in problem.variables]
-        search = Search(self._outcomes, first, problem.limits, problem.rules)
+        search = OptimumSearch(self._outcomes, first, problem.limits, problem.rules)
         with self.points.conducted(report):
             (nominal,) = self.points.results([self.points.nominal])
             quantities_of(nominal, [*([aim.quantity] if aim.quantity else ()), *aim.limited])
@@ -259,13 +259,13 @@ class OptimumAnalysis:
             search.carry_out()
         return search
 
-    def _outcomes(self, points: list[tuple[float, ...]]) -> list[Outcome]:
+    def _outcomes(self, points: list[tuple[float, ...]]) -> list[PointOutcome]:
         """Outcomes of points of the search."""
         values = [self.problem.values(x) for x in points]
         return [self._outcome(x, r) for x, r in zip(values, self.points.results(values))]
 
-    def _outcome(self, values: Sequence[float], result: PointResult) -> Outcome:
-        """Outcome of the runs at values of the variables."""
+    def _outcome(self, values: Sequence[float], result: PointResult) -> PointOutcome:
+        """PointOutcome of the runs at values of the variables."""
         aim = self.aim
 
         def one(quantity: Asked) -> float:
@@ -274,7 +274,7 @@ class OptimumAnalysis:
 
         objective = one(aim.quantity) if aim.quantity else self._by_formula(values)
         worst = objective if math.isfinite(objective) else math.inf
-        return Outcome(
+        return PointOutcome(
             self.problem.sign * worst if math.isfinite(worst) else worst, tuple(map(one, aim.limited))
         )
 

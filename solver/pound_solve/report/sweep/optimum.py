@@ -15,7 +15,14 @@ from pound_solve.report.text import WIDTH, printed
 from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.statistics.curves import units_of
-from pound_solve.statistics.optimum import METHODS, SPENT, OptimumProblem, Outcome, Search, agreement
+from pound_solve.statistics.optimum import (
+    METHODS,
+    SPENT,
+    OptimumProblem,
+    OptimumSearch,
+    PointOutcome,
+    agreement,
+)
 
 ACTIVE: Final = 2.0  #: tolerances below a limit within which it is active
 AT_BOUND: Final = 2e-3  #: share of a range within which a variable is at its bound
@@ -29,12 +36,14 @@ class OptimumReport:
     sweep : Sweep
         All runs.
     problem : OptimumProblem
-    search : Search
-    before : Outcome
+    search : OptimumSearch
+    before : PointOutcome
         At the values of the study.
     """
 
-    def __init__(self, sweep: Sweep, problem: OptimumProblem, search: Search, before: Outcome) -> None:
+    def __init__(
+        self, sweep: Sweep, problem: OptimumProblem, search: OptimumSearch, before: PointOutcome
+    ) -> None:
         self.sweep, self.problem, self.search, self.before = sweep, problem, search, before
         self.best = search.best
         self.values = problem.values(self.best.x)
