@@ -180,7 +180,7 @@ def test_an_interrupted_search_goes_on_and_ends_the_same(tmp_path, stop):
 def test_a_search_without_runs_left_tells_it(tmp_path):
     report, _ = searched(folder(tmp_path, WALL.replace("runs = 40", "runs = 3")))
     told = "\n".join(report.report())
-    assert "used up their share of the runs" in told and "No point satisfies all limits" in told
+    assert "used up its share of the runs" in told and "No point satisfies all limits" in told
     assert not report.is_solved and len(report.tried) <= 3
     assert all(math.isnan(x) for x in report.table()["best"].values)
 

@@ -67,7 +67,7 @@ class Tried:
     Attributes
     ----------
     start : int
-        Number of the start that has asked for it, from 1; of ``rough`` its generation.
+        Number of the start that was the first to ask for it, from 1.
     x : tuple of float
         The point, each coordinate 0 to 1.
     outcome : PointOutcome
@@ -212,6 +212,9 @@ class OptimumSearch:
         self.limits, self.rules = limits, rules
         self.tried = dict[tuple[float, ...], Tried]()  #: points in the order in which they were asked for
         self.ends = list[StartEnd]()
+        self._asked = dict[
+            tuple[float, ...], None
+        ]()  # points of the current start, earlier ones among them
         self._start, self._scale, self._allowed = 1, 1.0, rules.runs
 
     @property
@@ -299,12 +302,11 @@ class OptimumSearch:
             self._end(SPENT)
 
     def _end(self, how: str) -> None:
-        """Keep the end of the current start."""
-        of_start = [
-            t for t in self.tried.values() if t.start == self._start or self.rules.method != METHODS[0]
-        ]
-        if of_start:
-            self.ends.append(StartEnd(self._start, min(of_start, key=lambda t: t.rank), how))
+        """Keep the end of the current start, the best of the points that it asked for."""
+        asked_for = [self.tried[x] for x in self._asked if x in self.tried]
+        if asked_for:
+            self.ends.append(StartEnd(self._start, min(asked_for, key=lambda t: t.rank), how))
+        self._asked.clear()
 
     def _at(self, points: Sequence[Array]) -> list[Tried]:
         """Points with their outcomes; those that are new are evaluated at once.
@@ -315,6 +317,7 @@ class OptimumSearch:
             There would be too many; as many as are allowed have been evaluated.
         """
         keys = [tuple(np.clip(p, 0.0, 1.0).round(PLACES).tolist()) for p in points]
+        self._asked |= dict.fromkeys(keys)
         fresh = list(dict.fromkeys(k for k in keys if k not in self.tried))
         allowed = fresh[: self._allowed - len(self.tried)]
         for x, outcome in zip(allowed, self._evaluate(allowed) if allowed else ()):
