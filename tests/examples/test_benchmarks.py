@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import runpy
+import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from importlib.util import find_spec
@@ -238,6 +239,18 @@ def run_spectra(script: Any, folder: Path, patch: pytest.MonkeyPatch) -> None:
     assert (folder / "held" / "record.json").is_file()
 
 
+def run_optimize(script: Any, folder: Path, patch: pytest.MonkeyPatch) -> None:
+    """The study of the bumpers under a short record."""
+    copy = folder / "studies"
+    shutil.copytree(script.FOLDER, copy)
+    (copy / "suite").mkdir()
+    record(copy / "suite", COLUMNS[:2000]).rename(copy / "suite" / "short.at2")
+    study = copy / "bumpers.toml"
+    study.write_text(study.read_text("utf-8").replace("runs = 150", "runs = 9"), "utf-8")
+    patch.setattr(script, "FOLDER", copy)
+    called(script, patch, "bumpers")
+
+
 def run_agencies(script: Any, folder: Path, patch: pytest.MonkeyPatch) -> None:
     for name, text in FILES.items():
         (folder / name).write_text(text)
@@ -248,6 +261,7 @@ RUNS: dict[str, Callable[[Any, Path, pytest.MonkeyPatch], None]] = {
     "agency_records": run_agencies,
     "cold_start": run_cold_start,
     "large": run_large,
+    "optimize_grid": run_optimize,
     "pair_building": run_building,
     "pair_cole": run_cole,
     "pair_frames": run_frames,

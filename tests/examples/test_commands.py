@@ -165,7 +165,12 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of a reader, with what the commands of all pages work on."""
     desk = tmp_path_factory.mktemp("desk")
     shutil.copytree(EXAMPLES, desk / "examples")
-    for name, folder in (("01_two_oscillators", "build"), ("01_two_oscillators", ""), ("08_gap_suite", "")):
+    for name, folder in (
+        ("01_two_oscillators", "build"),
+        ("01_two_oscillators", ""),
+        ("08_gap_suite", ""),
+        ("optimize", ""),
+    ):
         shutil.copytree(EXAMPLES / name, desk / folder, dirs_exist_ok=True)
     shutil.copy(ROOT / "benchmarks" / "rc_pair.inp", desk)
     files = {

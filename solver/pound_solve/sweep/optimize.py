@@ -244,7 +244,7 @@ class OptimumAnalysis:
         """
         problem, aim = self.problem, self.aim
         first = [v.share(v.value) for v in problem.variables]
-        search = OptimumSearch(self._outcomes, first, problem.limits, problem.rules)
+        search = OptimumSearch(self.outcomes, first, problem.limits, problem.rules)
         with self.points.conducted(report):
             (nominal,) = self.points.results([self.points.nominal])
             quantities_of(nominal, [*([aim.quantity] if aim.quantity else ()), *aim.limited])
@@ -259,7 +259,7 @@ class OptimumAnalysis:
             search.carry_out()
         return search
 
-    def _outcomes(self, points: list[tuple[float, ...]]) -> list[PointOutcome]:
+    def outcomes(self, points: list[tuple[float, ...]]) -> list[PointOutcome]:
         """Outcomes of points of the search."""
         values = [self.problem.values(x) for x in points]
         return [self._outcome(x, r) for x, r in zip(values, self.points.results(values))]

@@ -103,7 +103,7 @@ class OptimumReport:
         )
         if search.spent:
             of = f"{search.spent} of {len(search.ends)} starts" if len(search.ends) > 1 else "The search"
-            yield f"{of} used up its share of the runs before the end: the best point may not be an optimum."
+            yield f"{of} used up its share of the runs: the best point may not be an optimum."
         if not self.is_solved:
             known = math.isfinite(self.best.excess) and math.isfinite(self.best.outcome.objective)
             least = f"; the least excess is {100.0 * self.best.excess:.3g} % of a limit" if known else ""
