@@ -4,6 +4,10 @@ import re
 import tomllib
 from pathlib import Path
 
+from pound_solve.statistics.distributions import FAMILIES
+from pound_solve.statistics.optimum import METHODS
+from pound_solve.statistics.replicates import SAMPLINGS
+from pound_solve.sweep import optimize, uncertainty
 from pound_solve.sweep.study import study
 from pound_solve.sweep.study.records import FILES, LEVELS, OSCILLATOR
 
@@ -22,3 +26,14 @@ def test_the_largest_values_are_on_the_page():
     for name, largest in study.LARGEST.items():
         (row,) = re.findall(rf"^\| .*`{name}`.* \|$", PAGE, re.M)
         assert f"up to {largest:,.0f}".replace(",", " ") in row
+
+
+def test_items_of_the_verbs_with_variables_are_on_their_pages():
+    """Each as code; the studies of the pages have no others."""
+    names = {
+        "uncertainty": (*uncertainty.ITEMS, *uncertainty.VARIABLE_ITEMS, *FAMILIES, *SAMPLINGS),
+        "optimize": (*optimize.ITEMS, *optimize.OBJECTIVE_ITEMS, *METHODS, *optimize.GOALS, "max", "log"),
+    }
+    for page, words in names.items():
+        text = (Path(__file__).parents[2] / f"manual/{page}.md").read_text("utf-8")
+        assert not [word for word in words if f"`{word}`" not in text and f'"{word}"' not in text], page

@@ -251,3 +251,22 @@ def test_a_search_that_is_killed_goes_on_where_it_was(tmp_path):
     sweep = Sweep.open(tmp_path / "walls.sweep/sweep.h5")
     assert sorted(identities) == sorted(sweep["identity"].tolist())
     assert (tmp_path / "walls.sweep/optimize.rpt").is_file()
+
+
+def test_a_factor_on_the_records_is_no_part_of_the_deck(tmp_path):
+    """It is told in the deck's first line; alone it leads to no deck."""
+    both = WALL.replace("gap = {", "motion = {").replace("200*gap", "200*motion").replace("0.005", "0.5")
+    both = both.replace("high = 0.1", "high = 2")
+    alone = both.replace('k = { low = 1000, high = 20000, scale = "log" }\n', "").replace("k/1000 + ", "")
+    for study, written in ((both, True), (alone, False)):
+        path = folder(tmp_path, study)
+        document = Document.read(str(path))
+        aim = optimize.aim(document)
+        points = Points(Session(read(document, optimize.TABLES, optimize.VARIABLE_ITEMS), None))
+        deck = optimize.OptimumAnalysis(points, aim).deck(points.nominal)
+        assert (deck is not None) == written
+        if deck:
+            assert deck[0] == tmp_path / "walls.optimum.inp"
+            assert deck[1].startswith(
+                "! Optimum of walls.toml: pound-solve walls.optimum.inp; motion = 1.0\n"
+            )

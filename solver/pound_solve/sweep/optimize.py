@@ -285,8 +285,9 @@ class OptimumAnalysis:
         except FormulaError:
             return math.inf
 
-    def deck(self, values: Sequence[float]) -> tuple[Path, str]:
-        """Path and text of the deck with values of the variables, beside the deck of the study.
+    def deck(self, values: Sequence[float]) -> tuple[Path, str] | None:
+        """Path and text of the deck with values of the variables, beside the deck of the study; None if no
+        variable is a PARAM.
 
         Raises
         ------
@@ -295,14 +296,17 @@ class OptimumAnalysis:
         """
         study = self.points.session.study
         case = study.runs[0].case
+        if not case.params:
+            return None
         path = Path(case.deck).with_name(f"{Path(study.name).stem}.optimum.inp")
         if path.exists() and not contents(path).startswith(MARK.encode()):
             raise CurveError(
                 f"{path} is in the way of the deck of the optimum: move it, or rename the study"
             )
         texts = {v.name: repr(x) for v, x in zip(self.problem.variables, values)}
+        others = [f"; {name} = {x}" for name, x in texts.items() if name not in dict(case.params)]
         options = "".join(f" {word}" for word in _options(case))
-        head = f"{MARK} {Path(study.name).name}: pound-solve {path.name}{options}\n"
+        head = f"{MARK} {Path(study.name).name}: pound-solve {path.name}{options}{''.join(others)}\n"
         return path, head + with_params(case.deck, texts)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from pound_deck.diagnostics import suggest
 from pound_solve.numerics.types import Array
-from pound_solve.statistics.curves import Asked
+from pound_solve.statistics.curves import Asked, CurveError
 from pound_solve.statistics.distributions import (
     FAMILIES,
     Distribution,
@@ -238,4 +238,7 @@ class UncertaintyAnalysis:
         there = quantities_of(nominal, wanted)
         if not self.aim.quantities:
             wanted += [q for q in DEFAULTS if q.quantity in there]
+        if not wanted:
+            names = ", ".join(q.quantity for q in DEFAULTS)
+            raise CurveError(f"its runs have none of {names}: name others under quantities of [{TABLE}]")
         return list(dict.fromkeys([*wanted, *([CONTACT] if CONTACT.quantity in there else ())]))

@@ -47,7 +47,7 @@ def _analysed(args: argparse.Namespace) -> int:
         session = Session(study, engine(args.executor, study.workers), retry=args.retry)
         progress = studies.StudyProgress(args)
         analysis = optimize.OptimumAnalysis(Points(session), aim)
-        deck, _ = analysis.deck(analysis.points.nominal)  # a file in its way is told before any run
+        analysis.deck(analysis.points.nominal)  # a file in its way is told before any run
         try:
             search = analysis.carry_out(progress)
         except Interrupted:
@@ -59,9 +59,9 @@ def _analysed(args: argparse.Namespace) -> int:
         lines = list(report.report())
         path = study.out / "optimize.h5"
         write_table(path, report.table(), sweep.about)
-        if report.is_solved:
-            write_text(deck, analysis.deck(report.values)[1])
-            lines += ["", f"  Deck of the best point: {deck.name}"]
+        if report.is_solved and (deck := analysis.deck(report.values)):
+            write_text(*deck)
+            lines += ["", f"  Deck of the best point: {deck[0].name}"]
         summary.write(path, sweep, "optimum", lines)
         if args.picture:
             optimum.optimum(report.drawn(), args.picture)
