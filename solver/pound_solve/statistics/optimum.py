@@ -353,28 +353,22 @@ class OptimumSearch:
         return np.ascontiguousarray(((values[0] - values[1]) / width[:, None]).T)  # SLSQP ignores strides
 
 
-def agreement(
-    ends: Sequence[StartEnd], best: Tried, tolerance: float, scale: float
-) -> tuple[int, int, int]:
-    """Compare the ends of several starts.
+class Agreement(NamedTuple):
+    """Ends of starts at the best point, at as good an objective elsewhere, and at a worse one."""
 
-    Parameters
-    ----------
-    ends : sequence of StartEnd
-    best : Tried
-    tolerance, scale : float
-        Of the objective, and the value it is relative to.
+    same: list[StartEnd]
+    elsewhere: list[StartEnd]
+    worse: list[StartEnd]
 
-    Returns
-    -------
-    same, flat, other : int
-        Starts that end at the best point; at as good an objective elsewhere; at a worse one.
-    """
-    same = flat = 0
+
+def agreement(ends: Sequence[StartEnd], best: Tried, tolerance: float) -> Agreement:
+    """Compare the ends of several starts; `tolerance` is relative to the best objective."""
+    out = Agreement([], [], [])
+    room = EQUAL * tolerance * max(abs(best.outcome.objective), math.ulp(0.0))
     for end in ends:
-        alike = end.best.is_feasible == best.is_feasible
         distance = max(abs(a - b) for a, b in zip(end.best.x, best.x))
-        if alike and abs(end.best.outcome.objective - best.outcome.objective) <= EQUAL * tolerance * scale:
-            same += distance <= NEAR
-            flat += distance > NEAR
-    return same, flat, len(ends) - same - flat
+        if not end.best.is_feasible or end.best.outcome.objective > best.outcome.objective + room:
+            out.worse.append(end)
+        else:
+            (out.same if distance <= NEAR else out.elsewhere).append(end)
+    return out

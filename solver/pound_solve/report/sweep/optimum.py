@@ -16,6 +16,7 @@ from pound_solve.results.schema import Column, Row, Sheet
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.statistics.curves import units_of
 from pound_solve.statistics.optimum import (
+    CONVERGED,
     METHODS,
     SPENT,
     OptimumProblem,
@@ -59,13 +60,13 @@ class OptimumReport:
         p, after = self.problem, self.best.outcome
         goal = "largest" if p.is_maximised else "smallest"
         values = p.sign * self.before.objective, p.sign * after.objective
-        yield "objective", p.objective, *map(_finite, values), goal, math.nan, ""
+        yield "objective", self._name(p.objective), *map(_finite, values), goal, math.nan, ""
         margin = ACTIVE * p.rules.tolerance
         for limit, x, y in zip(p.limits, self.before.limited, after.limited):
             excess = limit.excess(y)
             remark = "exceeded" if excess > 0.0 else "active" if excess >= -margin else ""
             kind = "at least" if limit.is_least else "at most"
-            yield "limit", limit.name, _finite(x), _finite(y), kind, limit.value, remark
+            yield "limit", self._name(limit.name), _finite(x), _finite(y), kind, limit.value, remark
 
     def of_variables(self) -> Iterator[Row]:
         """One row for each variable: before and after."""
@@ -119,18 +120,26 @@ class OptimumReport:
     def _agreement(self) -> Iterator[str]:
         """Sentences on whether the starts agree."""
         ends = [end for end in self.search.ends if end.how != SPENT]
-        scale = max(abs(self.best.outcome.objective), 1e-300)
-        same, flat, other = agreement(ends, self.best, self.problem.rules.tolerance, scale)
+        ended = agreement(ends, self.best, self.problem.rules.tolerance)
         if len(ends) < 2:
-            yield "One start only: whether there are other optima is not known."
-        elif not flat and not other:
-            yield f"All {same} starts that ended agree."
+            yield "Less than two starts have ended: whether there are other optima is not known."
+        elif len(ended.same) == len(ends):
+            yield f"All {len(ends)} starts that ended agree."
         else:
             yield (
-                f"Of {len(ends)} starts that ended, {same} end at the best point, {flat} at as good an "
-                f"objective elsewhere, {other} at a worse one"
-                + (": there are several local optima, or the search halted." if other else ".")
+                f"Of {len(ends)} starts that ended, {len(ended.same)} found the best point, "
+                f"{len(ended.elsewhere)} as good an objective elsewhere, {len(ended.worse)} a worse one "
+                "or none within the limits."
             )
+            if any(end.how == CONVERGED and end.best.is_feasible for end in ended.worse):
+                yield "There are several local optima: more starts may find a better one."
+
+    def _name(self, name: str) -> str:
+        """Name of a quantity with its unit; a formula as it is."""
+        quantity = name.partition(" ")[0]
+        if quantity not in self.sweep.variables:
+            return name
+        return f"{name} [{self.sweep.variables[quantity].unit or '-'}]"
 
     def table(self) -> dict[str, Variable]:
         """Columns of the table of all points."""
@@ -163,7 +172,7 @@ class OptimumReport:
         """Data of the picture."""
         p = self.problem
         return OptimumPath(
-            p.objective.replace("_", " "),
+            self._name(p.objective).replace("_", " "),
             np.array([_finite(p.sign * t.outcome.objective) for t in self.tried]),
             np.array([t.is_feasible for t in self.tried]),
             self._best_so_far(),
