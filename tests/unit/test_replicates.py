@@ -90,6 +90,13 @@ def test_moments_that_the_values_do_not_give():
     assert np.isnan(moments(values * np.nan, LEVEL)).all()
 
 
+def test_values_that_differ_in_one_replicate_only_have_no_interval_that_is_narrow():
+    values = np.zeros((REPLICATES, 32, 1))
+    values[2] = np.linspace(1.0, 2.0, 32)[:, None]
+    mean, sd = moments(values, LEVEL)
+    assert mean.low < 0.0 < mean.high and np.isnan([sd.low, sd.high]).all()
+
+
 def test_the_interval_of_a_mean_is_students():
     """With 2 / (2/7 + 3/8) degrees of freedom, see the module."""
     values = np.random.default_rng(1).normal(size=REPLICATES)

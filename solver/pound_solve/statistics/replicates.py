@@ -112,7 +112,8 @@ def moments(values: Array, level: float) -> tuple[Estimate, Estimate]:
         each = _moments(values)
         return Estimate(each[0], none, none), Estimate(each[1], none, none)
     mean = jackknifed(lambda some: _moments(values[some])[0], level, len(values))
-    log_sd = jackknifed(lambda some: np.log(_moments(values[some])[1]), level, len(values))
+    with np.errstate(divide="ignore", invalid="ignore"):  # all values that differ are in one replicate
+        log_sd = jackknifed(lambda some: np.log(_moments(values[some])[1]), level, len(values))
     half = np.maximum(log_sd.high - log_sd.value, _half_of_log_sd(values, level))
     return mean, Estimate(*(np.exp(log_sd.value + x) for x in (0.0, -half, half)))
 

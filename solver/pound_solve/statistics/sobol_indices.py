@@ -78,5 +78,6 @@ def indices(first: Array, second: Array, mixtures: Array, level: float) -> Sobol
         rows = np.append(of_first, record_first), np.append(of_total, record_total)
         return np.asarray(np.array(rows) / variance)
 
-    estimate = jackknifed(both, level, len(first))
+    with np.errstate(divide="ignore", invalid="ignore"):  # all values that differ are in one replicate
+        estimate = jackknifed(both, level, len(first))
     return SobolIndices(*(Estimate(*(x[k] for x in estimate)) for k in range(2)))
