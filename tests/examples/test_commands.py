@@ -323,7 +323,7 @@ def test_the_suite_of_records_can_be_followed(
         text = re.sub(r".*SEED=[4-8]\n", "", path.read_text("utf-8"))
         text = re.sub(r"MATCHED .*(?=SEED)", "SYNTHETIC PGA=2 DURATION=3 ", text)
         text = re.sub(r"HISTORY .*", "HISTORY 4", text)
-        text = re.sub(r"^gap = .*?, .*?,.*", "gap = [0.0, 0.01, 0.02]", text, flags=re.M)
+        text = re.sub(r"^gap = \[.*?, .*?,.*", "gap = [0.0, 0.01, 0.02]", text, flags=re.M)
         items = 'workers = 1\nhistories = ["contact/force"]\n' if path.suffix == ".toml" else ""
         path.write_text(items + text, "utf-8")
     for text in others:

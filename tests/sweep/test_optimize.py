@@ -195,7 +195,12 @@ MISTAKES = (
     ('expression = "a + b"', 'expression = "a +"', "S605", "a formula of a, b"),
     ('expression = "a + b"', 'quantity = "drift"', "S602", "no quantity drift"),
     ('expression = "a + b"', 'expression = "a"\nquantity = "closures"', "S604", "beside"),
-    ('expression = "a + b"', 'expression = "a"\nrecords = "each"', "S603", "one value of all records"),
+    (
+        'expression = "a + b"',
+        'expression = "a"\nrecords = "each"',
+        "S603",
+        "records is mean, max, or a share",
+    ),
     ('expression = "a + b"', 'expression = "a"\nrecords = 84', "S603", "a share between 0 and 1"),
     ('expression = "a + b"', 'expression = "a"\ngoal = "minimise"', "S603", "goal is no minimise"),
     ("{ min = 2 }", "{ mn = 2, max = 3 }", "S602", "no item mn"),

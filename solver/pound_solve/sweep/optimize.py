@@ -30,11 +30,11 @@ from pound_solve.statistics.optimum import (
     PointOutcome,
     SearchRules,
 )
-from pound_solve.statistics.over_records import EACH, MEAN, OverRecords
+from pound_solve.statistics.over_records import MEAN, OverRecords
 from pound_solve.sweep.demands import demands, quantities_of
 from pound_solve.sweep.execution.conduct import State
 from pound_solve.sweep.points import PointResult, Points
-from pound_solve.sweep.study.asked import asked, over_records
+from pound_solve.sweep.study.asked import asked
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.run import ParameterCase
 from pound_solve.sweep.study.variables import TABLE as VARIABLES
@@ -167,14 +167,15 @@ def _objective(document: Document, names: Sequence[str]) -> tuple[Asked | None, 
 def _over(document: Document) -> OverRecords:
     """How the values of all records become one."""
     path = (OBJECTIVE, "records")
-    if document.at(path) == LARGEST:
+    value = document.at(path)
+    if value == LARGEST:
         return OverRecords(1.0)
-    over = over_records(document, path, OverRecords(MEAN))
-    if over.how == EACH:
-        message = "an optimum takes one value of all records"
-        document.mistake("S603", message, path, f'write "{MEAN}", "{LARGEST}", or a share such as 0.84')
-        return OverRecords(MEAN)
-    return over
+    if isinstance(value, float) and 0.0 < value < 1.0:
+        return OverRecords(value)
+    if value not in (None, MEAN):
+        message = f"records is {MEAN}, {LARGEST}, or a share between 0 and 1"
+        document.mistake("S603", message, path, "0.84 is the value that 84 % of the records do not exceed")
+    return OverRecords(MEAN)
 
 
 def _limits(document: Document) -> Iterator[tuple[Asked, DesignLimit]]:
