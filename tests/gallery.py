@@ -31,6 +31,9 @@ FILES: Final = {name: FILM if name == "animation" else f"run_{name}.png" for nam
 TWO_RUNS: Final = "runs_storeys.png"
 TUTORIAL: Final = "tutorial_contact_force.png"
 TRENDS: Final = "sweep_trends.png"
+TORNADO: Final = "uncertainty.png"
+SEARCH: Final = "optimize.png"
+BEST: Final = EXAMPLES / "optimize"
 #: decks on the page of the gallery, each with the picture of its one page
 EXHIBITS: Final = {
     "01_two_oscillators/two_oscillators.inp": "page_two_oscillators.png",
@@ -41,7 +44,7 @@ EXHIBITS: Final = {
 }
 PAGE: Final = ROOT / "manual" / "gallery.md"
 AT_PEAK: Final = ("deformed", "diagrams")
-ALL_FILES: Final = {*FILES.values(), *EXHIBITS.values(), TWO_RUNS, TUTORIAL, TRENDS}
+ALL_FILES: Final = {*FILES.values(), *EXHIBITS.values(), TWO_RUNS, TUTORIAL, TRENDS, TORNADO, SEARCH}
 RESOLUTION: Final = 80  #: dots per inch
 COLOURS: Final = 48  #: of a file, which keeps it small
 FILM_WIDTH: Final = 440  #: dots
@@ -74,6 +77,12 @@ def draw() -> None:
         call("sweep", folder / "suite" / "gaps.toml", "--quiet", "-o", folder / "sweep")
         call("plot", folder / "sweep" / "sweep.h5", *look)
         reduce(folder / "drawn" / TRENDS, FOLDER / TRENDS)
+        call("uncertainty", folder / "suite" / "scatter.toml", "--quiet", "--picture", folder / TORNADO)
+        shutil.copytree(BEST, folder / "best")
+        call("motions", folder / "best" / "four_motions.inp", "-o", folder / "best" / "suite")
+        call("optimize", folder / "best" / "bumpers.toml", "--quiet", "--picture", folder / SEARCH)
+        for file in (TORNADO, SEARCH):
+            reduce(folder / file, FOLDER / file)
         stems = {"capacity": PUSHED.stem, "performance": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
         for picture, file in FILES.items():
             drawn = folder / "drawn" / f"{stems.get(picture, FRAMES.stem)}_{picture}{Path(file).suffix}"

@@ -59,7 +59,9 @@ def optimum(search: OptimumPath, path: Path) -> None:
     axes.step(at, search.best, where="post", color=style.RED, linewidth=1.2, label="best so far")
     if search.limits:
         axes = style.grid(all_axes[1], "point", "quantity over its limit [-]")
-        for k, (name, ratios) in enumerate(search.limits):
+        for k, (name, ratios) in enumerate(
+            search.limits, 2
+        ):  # the first colours are those of the objective
             axes.plot(
                 at, ratios, ".", markersize=4, color=style.stroke(k)["color"], label=style.short(name)
             )
