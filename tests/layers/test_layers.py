@@ -129,6 +129,7 @@ WITHIN = {
     ),
     "statistics": (
         "over_records",
+        "design_variable",
         "distributions",
         "replicates",
         "sobol_indices",

@@ -12,7 +12,7 @@ from pound_solve.sweep import calibrate
 from pound_solve.sweep.execution.executors import Engine
 from pound_solve.sweep.points import Interrupted, Points
 from pound_solve.sweep.session import Session
-from pound_solve.sweep.study import measured, scaling
+from pound_solve.sweep.study import measured
 from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.study import StudyError, read
 from pound_solve.sweep.study.variables import TABLE
@@ -71,12 +71,9 @@ def calibrated(path, executor=None, stop=None):
     document = Document.read(str(path))
     aim = calibrate.aim(document)
     tables = (TABLE, measured.TABLE, calibrate.TABLE)
-    read_study = read(document, tables, scaling.check_bounds)
-    points = Points(Session(read_study, Engine(lambda: executor, 1, 1, 1, True)))
-    analysis = calibrate.CalibrationAnalysis(aim, scaling.scaling(document, read_study.variables))
+    points = Points(Session(read(document, tables), Engine(lambda: executor, 1, 1, 1, True)))
     with points.conducted(report):
-        analysis.carry_out(points)
-    return analysis.result
+        return calibrate.CalibrationAnalysis(points, aim).carry_out()
 
 
 def test_a_history_without_errors_gives_the_true_values(tmp_path):
@@ -223,7 +220,7 @@ def test_a_damaged_line_of_the_file_is_named(tmp_path, line, text):
         calibrated(path)
 
 
-@pytest.mark.parametrize("low, text", [("", "needs bounds"), ("low = 0.0, ", "has no logarithm")])
+@pytest.mark.parametrize("low, text", [("", "needs low and high"), ("low = 0.0, ", "needs low above zero")])
 def test_bounds_are_needed_and_fit_the_scale(tmp_path, low, text):
     path = study(tmp_path)
     test_file(tmp_path, 1)

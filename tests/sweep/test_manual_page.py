@@ -4,11 +4,12 @@ import re
 import tomllib
 from pathlib import Path
 
+from pound_solve.sensitivity import study as sensitivity
 from pound_solve.statistics.distributions import FAMILIES
 from pound_solve.statistics.optimum import METHODS
 from pound_solve.statistics.replicates import SAMPLINGS
-from pound_solve.sweep import optimize, uncertainty
-from pound_solve.sweep.study import study
+from pound_solve.sweep import calibrate, optimize, uncertainty
+from pound_solve.sweep.study import measured, study
 from pound_solve.sweep.study.records import FILES, LEVELS, OSCILLATOR
 
 PAGE = (Path(__file__).parents[2] / "manual/sweep.md").read_text("utf-8")
@@ -31,7 +32,9 @@ def test_the_largest_values_are_on_the_page():
 def test_items_of_the_verbs_with_variables_are_on_their_pages():
     """Each as code; the studies of the pages have no others."""
     names = {
-        "uncertainty": (*uncertainty.ITEMS, *uncertainty.VARIABLE_ITEMS, *FAMILIES, *SAMPLINGS),
+        "uncertainty": (*uncertainty.ITEMS, "distribution", "mode", *FAMILIES, *SAMPLINGS),
+        "sensitivity": (*sensitivity.ITEMS, *sensitivity.METHODS, "value", "motion"),
+        "calibrate": (*calibrate.ITEMS, *measured.ITEMS, "scale", "log"),
         "optimize": (*optimize.ITEMS, *optimize.OBJECTIVE_ITEMS, *METHODS, *optimize.GOALS, "max", "log"),
     }
     for page, words in names.items():

@@ -65,7 +65,7 @@ def searched(path, executor=None, stop=None):
     """Report of a search, which may be interrupted after some runs; and the analysis."""
     document = Document.read(str(path))
     aim = optimize.aim(document)
-    study = read(document, optimize.TABLES, optimize.VARIABLE_ITEMS)
+    study = read(document, optimize.TABLES)
     lane = executor or Here()
     analysis = optimize.OptimumAnalysis(Points(Session(study, Engine(lambda: lane, 1, 1, 1, True))), aim)
 
@@ -73,7 +73,8 @@ def searched(path, executor=None, stop=None):
         if stop is not None and lane.runs >= stop and not state.ending:
             raise KeyboardInterrupt
 
-    search = analysis.carry_out(report)
+    with analysis.points.conducted(report):
+        search = analysis.carry_out()
     sweep = Sweep.open(analysis.points.session.write())
     return OptimumReport(sweep, analysis.problem, search, analysis.before), analysis
 
@@ -220,7 +221,7 @@ def test_a_mistake_is_reported_at_its_line(tmp_path, old, new, code, text):
     document = Document.read(str(path))
     optimize.aim(document)
     with pytest.raises(StudyError) as raised:
-        read(document, optimize.TABLES, optimize.VARIABLE_ITEMS)
+        read(document, optimize.TABLES)
     (told,) = raised.value.diagnostics
     assert told.code == code and text in str(raised.value)
     assert told.span.file == str(path) and told.span.line >= 3
@@ -267,7 +268,7 @@ def test_a_factor_on_the_records_is_no_part_of_the_deck(tmp_path):
         path = folder(tmp_path, study)
         document = Document.read(str(path))
         aim = optimize.aim(document)
-        points = Points(Session(read(document, optimize.TABLES, optimize.VARIABLE_ITEMS), None))
+        points = Points(Session(read(document, optimize.TABLES), None))
         deck = optimize.OptimumAnalysis(points, aim).deck(points.nominal)
         assert (deck is not None) == written
         if deck:

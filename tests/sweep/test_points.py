@@ -130,7 +130,7 @@ def test_a_study_with_variables_has_one_deck_and_no_grid(tmp_path):
 
 def test_a_sweep_refuses_variables(tmp_path):
     path = folder(tmp_path, 'deck = "wall.inp"\n[variables]\ngap = {}\n')
-    with pytest.raises(StudyError, match="is a table of pound-solve sensitivity"):
+    with pytest.raises(StudyError, match="is a table of pound-solve sensitivity, optimize"):
         read(Document.read(str(path)))
 
 

@@ -46,7 +46,7 @@ def study(
 
 
 def analysed(path, executor=None, stop=None):
-    """The analysis of a study and its session."""
+    """Sensitivities of a study, and its session."""
     executor = executor or Here()
 
     def report(state):
@@ -57,15 +57,14 @@ def analysed(path, executor=None, stop=None):
     aim = sensitivity.aim(document)
     read_study = read(document, (TABLE, sensitivity.TABLE), check=sensitivity.check_steps)
     session = Session(read_study, Engine(lambda: executor, 1, 1, 1, True))
-    points, analysis = Points(session), sensitivity.SensitivityAnalysis(aim)
+    points = Points(session)
     with points.conducted(report):
-        analysis.carry_out(points)
-    return analysis, session
+        return sensitivity.SensitivityAnalysis(aim).carry_out(points), session
 
 
 def by_name(analysis, record=None):
     """Sensitivities by quantity and variable."""
-    return {(s.asked.quantity, s.variable): s for s in analysis.result.lines if record in (None, s.record)}
+    return {(s.asked.quantity, s.variable): s for s in analysis.lines if record in (None, s.record)}
 
 
 @pytest.mark.parametrize("record", ["first.txt", "second.txt"])
@@ -96,13 +95,13 @@ def test_exact_derivatives_lie_within_the_bounds_of_differences(tmp_path):
     other = tmp_path / "differences"
     other.mkdir()
     differences, _ = analysed(study(other, ALL, quantities))
-    for one, two in zip(exact.result.lines, differences.result.lines, strict=True):
+    for one, two in zip(exact.lines, differences.lines, strict=True):
         assert one.derivative.exact == (one.asked.quantity != "contact_loss")
         assert not two.derivative.exact and one[:4] == two[:4]
         error = abs(one.derivative.slope - two.derivative.slope)
         assert error <= two.derivative.error + 1e-12 * abs(two.derivative.value / two.at)
         assert one.derivative.error <= 1e-4 * abs(one.derivative.value / one.at)
-    assert not exact.result.remarks
+    assert not exact.remarks
     assert all(run.variables == () for run in session.study.runs)
 
 
@@ -113,7 +112,7 @@ def test_a_run_without_exact_derivatives_has_those_of_differences(tmp_path, caps
     printed = capsys.readouterr().out
     assert "no exact derivatives: EXACT needs straight branches, and HERTZ" in " ".join(printed.split())
     analysis, _ = analysed(path)
-    assert not any(s.derivative.exact or s.derivative.reason for s in analysis.result.lines)
+    assert not any(s.derivative.exact or s.derivative.reason for s in analysis.lines)
 
 
 def test_exact_derivatives_that_disagree_are_replaced(tmp_path, monkeypatch):
@@ -126,8 +125,8 @@ def test_exact_derivatives_that_disagree_are_replaced(tmp_path, monkeypatch):
 
     monkeypatch.setattr(sensitivity, "slopes_of", wrong)
     analysis, _ = analysed(study(tmp_path, "gap = {}\nk = {}", '["contact_force"]', 'method = "exact"'))
-    assert not any(s.derivative.exact for s in analysis.result.lines)
-    assert {text for _, text in analysis.result.remarks} == {"contact_force disagrees with differences"}
+    assert not any(s.derivative.exact for s in analysis.lines)
+    assert {text for _, text in analysis.remarks} == {"contact_force disagrees with differences"}
 
 
 def test_an_elastic_response_is_proportional_to_its_motion(tmp_path):
@@ -135,7 +134,7 @@ def test_an_elastic_response_is_proportional_to_its_motion(tmp_path):
     analysis, _ = analysed(
         study(tmp_path, "motion = {}", '["peak_drift", "base_shear", "period"]', deck=deck)
     )
-    for line in analysis.result.lines:
+    for line in analysis.lines:
         expected = 0.0 if line.asked.quantity == "period" else 1.0
         assert line.elasticity == pytest.approx(expected, abs=1e-9)
         assert abs(line.elasticity - expected) <= line.elasticity_error
@@ -146,14 +145,14 @@ def test_a_collision_that_appears_leaves_no_derivative(tmp_path):
     free, _ = analysed(
         study(tmp_path, "k = {}", '["needed_gap"]', deck=YIELDS.replace("gap = 0.01", "gap = 9"))
     )
-    peak = free.result.lines[0].derivative.value
+    peak = free.lines[0].derivative.value
     sub = tmp_path / "grazing"
     sub.mkdir()
     deck = YIELDS.replace("gap = 0.01", f"gap = {peak!r}")
     analysis, _ = analysed(
         study(sub, "gap = {}\nmotion = {}", '["contact_force", "peak_drift"]', deck=deck)
     )
-    for line in analysis.result.lines:
+    for line in analysis.lines:
         if line.record == "first.txt":
             assert math.isnan(line.derivative.slope) and math.isnan(line.derivative.error)
             assert line.derivative.reason
@@ -164,26 +163,26 @@ def test_the_steps_shrink_until_the_events_stay_the_same(tmp_path):
     free, _ = analysed(
         study(tmp_path, "k = {}", '["needed_gap"]', deck=YIELDS.replace("gap = 0.01", "gap = 9"))
     )
-    peak = max(line.derivative.value for line in free.result.lines)
+    peak = max(line.derivative.value for line in free.lines)
     sub = tmp_path / "near"
     sub.mkdir()
     deck = YIELDS.replace("gap = 0.01", f"gap = {peak * (1 + 3e-4)!r}")
     analysis, _ = analysed(study(sub, "gap = {}", '["peak_drift"]', deck=deck))
-    steps = {line.record: line.derivative.step / line.at for line in analysis.result.lines}
+    steps = {line.record: line.derivative.step / line.at for line in analysis.lines}
     assert steps == {"first.txt": pytest.approx(1e-3), "second.txt": pytest.approx(1e-4)}
-    assert all(line.derivative.slope == 0.0 for line in analysis.result.lines)
+    assert all(line.derivative.slope == 0.0 for line in analysis.lines)
 
 
 def test_the_mean_and_a_fractile_of_records(tmp_path):
     each, _ = analysed(study(tmp_path, "gap = {}", '["contact_force"]'))
-    parts = [line.derivative for line in each.result.lines]
+    parts = [line.derivative for line in each.lines]
     mean, _ = analysed(study(tmp_path, "gap = {}", '["contact_force"]', 'records = "mean"'))
-    (line,) = mean.result.lines
+    (line,) = mean.lines
     assert line.record == OverRecords(MEAN).text
     assert line.derivative.slope == pytest.approx(sum(p.slope for p in parts) / 2, rel=1e-14)
     assert line.derivative.error == pytest.approx(sum(p.error for p in parts) / 2, rel=1e-14)
     upper, _ = analysed(study(tmp_path, "gap = {}", '["contact_force"]', "records = 0.84"))
-    assert upper.result.lines[0].derivative == max(parts, key=lambda p: p.value)
+    assert upper.lines[0].derivative == max(parts, key=lambda p: p.value)
 
 
 @pytest.mark.parametrize("stop", [1, 4, 11])
@@ -196,7 +195,7 @@ def test_an_interrupted_analysis_ends_with_the_same_lines(tmp_path, stop):
     other = tmp_path / "whole"
     other.mkdir()
     whole, _ = analysed(study(other, "gap = {}\nk = {}"), count := Here())
-    assert analysis.result.lines == whole.result.lines and total == count.runs
+    assert analysis.lines == whole.lines and total == count.runs
 
 
 def test_the_command_writes_report_and_tables(tmp_path, capsys):
@@ -243,7 +242,7 @@ def test_steps_of_unknown_error_are_told(tmp_path, capsys):
     assert main(["sensitivity", str(path), "--workers", "1"]) == 0
     assert "steps whose error is not known" in capsys.readouterr().out
     analysis, _ = analysed(study(tmp_path, "gap = {}", '["peak_drift"]'))
-    assert not analysis.result.unknown_error
+    assert not analysis.unknown_error
 
 
 def test_a_label_that_is_not_there_is_named(tmp_path, capsys):

@@ -68,7 +68,8 @@ def analysed(path, executor=None, stop=None):
         if stop is not None and lane.runs >= stop and not state.ending:
             raise KeyboardInterrupt
 
-    runs = uncertainty.UncertaintyAnalysis(points, aim).carry_out(report)
+    with points.conducted(report):
+        runs = uncertainty.UncertaintyAnalysis(points, aim).carry_out()
     sweep = Sweep.open(points.session.write())
     return Evaluation(sweep, {v.name: v.value for v in points.variables}, aim, runs)
 

@@ -4,11 +4,11 @@ import math
 
 import pytest
 
+from pound_solve.statistics.design_variable import DesignVariable
 from pound_solve.statistics.optimum import (
     METHODS,
     SPENT,
     DesignLimit,
-    DesignVariable,
     OptimumProblem,
     OptimumSearch,
     PointOutcome,

@@ -7,10 +7,12 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from pound_solve.cli import common
 from pound_solve.cli.progress import StatusLine
+
+_T = TypeVar("_T")
 
 if TYPE_CHECKING:
     from pound_solve.sweep.execution.conduct import State
@@ -68,11 +70,11 @@ class StudyProgress:
 
 @contextmanager
 def explored(
-    args: argparse.Namespace, study: Study, explore: Callable[[Points], None]
-) -> Iterator[tuple[Session, Path, bool]]:
+    args: argparse.Namespace, study: Study, explore: Callable[[Points], _T]
+) -> Iterator[tuple[Session, Path, _T | None]]:
     """Call `explore` with the points of a study under the lock of its folder; write the table of all runs.
 
-    Yields once, still locked: the session, the path of the table, and whether Ctrl-C has not ended it.
+    Yields once, still locked: the session, the path of the table, and the result; None after Ctrl-C.
     """
     from pound_solve.sweep.execution.executors import engine
     from pound_solve.sweep.execution.lock import locked
@@ -83,14 +85,15 @@ def explored(
         print(study.warnings, file=sys.stderr)
     with locked(study.out):
         session = Session(study, engine(args.executor, study.workers), retry=args.retry)
-        points, progress, complete = Points(session), StudyProgress(args), True
+        points, progress, result = Points(session), StudyProgress(args), None
         try:
             with points.conducted(progress):
-                explore(points)
+                result = explore(points)
         except Interrupted:
-            complete = False
-        progress.end()
-        yield session, session.write(), complete
+            pass  # the table has the runs so far
+        finally:
+            progress.end()
+        yield session, session.write(), result
 
 
 def ended(args: argparse.Namespace, session: Session, path: Path | None) -> int:

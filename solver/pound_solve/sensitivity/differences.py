@@ -53,8 +53,8 @@ class Differences:
         self.points, self.center, self.quantities, self.step = points, center, quantities, step
 
     def along(self, directions: Sequence[int]) -> dict[Key, Derivative]:
-        """Derivatives of all quantities with respect to some variables, or along `TOGETHER`, with respect to
-        the fraction.
+        """Derivatives of all quantities with respect to some variables; or along `TOGETHER`, with respect
+        to the fraction.
 
         Raises
         ------

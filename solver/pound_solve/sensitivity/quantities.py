@@ -17,7 +17,7 @@ from pound_solve.sensitivity.samples import ObservedKind, ObservedValue
 from pound_solve.structure.storeys import storeys
 
 
-class Formula(NamedTuple):
+class PeakFormula(NamedTuple):
     """A quantity.
 
     Attributes
@@ -35,7 +35,7 @@ class Formula(NamedTuple):
     value: Callable[..., Dual]
 
 
-class Formulas:
+class PeakFormulas:
     """The quantities of one history.
 
     Parameters
@@ -53,7 +53,7 @@ class Formulas:
         self.history, self.base, self.slopes, self.places = history, base, slopes, places
         self.model = history.system.structure.model
 
-    def all(self) -> Iterator[Formula]:
+    def all(self) -> Iterator[PeakFormula]:
         """Yield all quantities."""
         yield from self._periods()
         yield from self._drifts()
@@ -67,21 +67,21 @@ class Formulas:
         """Return one of the coefficients as a dual number."""
         return Dual(getattr(self.base, name)[index], getattr(self.slopes, name)[(slice(None), *index)])
 
-    def _periods(self) -> Iterator[Formula]:
+    def _periods(self) -> Iterator[PeakFormula]:
         if len(self.base.periods):
             period = self._constant("periods", 0)
-            yield Formula("period", "", (), lambda: period)
+            yield PeakFormula("period", "", (), lambda: period)
 
-    def _drifts(self) -> Iterator[Formula]:
+    def _drifts(self) -> Iterator[PeakFormula]:
         peaks = self.history.returned.peaks.monitored
         for i, ((name, ratio), peak) in enumerate(zip(self.history.drift_ratios(), peaks)):
             reading = _largest(ObservedKind.ROW, self.places.drifts + i, peak)
-            yield Formula("peak_drift", name, (reading,), abs)
+            yield PeakFormula("peak_drift", name, (reading,), abs)
             if ratio == ratio:
                 height = self._constant("heights", i)
-                yield Formula("drift_ratio", name, (reading,), lambda y, h=height: abs(y) / h)
+                yield PeakFormula("drift_ratio", name, (reading,), lambda y, h=height: abs(y) / h)
 
-    def _contacts(self) -> Iterator[Formula]:
+    def _contacts(self) -> Iterator[PeakFormula]:
         peaks, structure = self.history.returned.peaks, self.history.system.structure
         for law in self.history.items.contacts:
             name = contact_name(self.model, structure.laws[law].element)
@@ -91,27 +91,27 @@ class Formulas:
             )
             collisions = [c for c in peaks.collisions if c.law == law]
             count = nothing + float(len(collisions))
-            yield Formula("closures", name, (), lambda n=count: n)
-            yield Formula("given_gap", name, (), lambda g=gap: g)
+            yield PeakFormula("closures", name, (), lambda n=count: n)
+            yield PeakFormula("given_gap", name, (), lambda g=gap: g)
             if collisions:
                 best = max(collisions, key=lambda c: c.peak)
                 force = ObservedValue(ObservedKind.FORCE, law, best.t_peak, best.peak)
-                yield Formula("contact_force", name, (force,), lambda f: f)
+                yield PeakFormula("contact_force", name, (force,), lambda f: f)
             else:
-                yield Formula("contact_force", name, (), lambda n=nothing: n)
+                yield PeakFormula("contact_force", name, (), lambda n=nothing: n)
             total = sum(c.impulse for c in collisions)
             impulse = ObservedValue(ObservedKind.IMPULSE, law, math.nan, total)
-            yield Formula("impulse", name, (impulse,), lambda p: p)
+            yield PeakFormula("impulse", name, (impulse,), lambda p: p)
             peak = peaks.deformation[law]
             closest = ObservedValue(ObservedKind.DEFORMATION, law, peak.t_high, peak.high)
-            yield Formula("min_gap", name, (closest,), lambda d, g=gap: g - d)
-            yield Formula(
+            yield PeakFormula("min_gap", name, (closest,), lambda d, g=gap: g - d)
+            yield PeakFormula(
                 "penetration", name, (closest,), lambda d, g=gap, n=nothing: d - g if d > g else n
             )
             if not peaks.collisions:
-                yield Formula("needed_gap", name, (closest,), lambda d, n=nothing: d if d > 0.0 else n)
+                yield PeakFormula("needed_gap", name, (closest,), lambda d, n=nothing: d if d > 0.0 else n)
 
-    def _ends(self) -> Iterator[Formula]:
+    def _ends(self) -> Iterator[PeakFormula]:
         items, structure = self.history.items, self.history.system.structure
         envelope = self.history.recorder.envelopes.node["u"]
         for (law, end), row in self.places.ends.items():
@@ -125,20 +125,22 @@ class Formulas:
             at = 3 * items.nodes.index(node) + (1 if along % 180.0 else 0)
             high, t_high, low, t_low = envelope.rows()[at]
             reading = _largest(ObservedKind.ROW, row, Extreme(high, t_high, low, t_low))
-            yield Formula(
+            yield PeakFormula(
                 ("peak_i", "peak_j")[end], contact_name(self.model, spring.element), (reading,), abs
             )
 
-    def _bases(self) -> Iterator[Formula]:
+    def _bases(self) -> Iterator[PeakFormula]:
         largest = self.history.recorder.envelopes.sums["base"].largest()
         for n, b in enumerate(self.history.items.buildings):
             for quantity, component in (("base_shear", 0), ("overturning_moment", 2)):
                 value, t = largest[3 * n + component]
                 if value:
                     row = self.places.sums["base"] + 3 * n + component
-                    yield Formula(quantity, b.name, (ObservedValue(ObservedKind.ROW, row, t, value),), abs)
+                    yield PeakFormula(
+                        quantity, b.name, (ObservedValue(ObservedKind.ROW, row, t, value),), abs
+                    )
 
-    def _storeys(self) -> Iterator[Formula]:
+    def _storeys(self) -> Iterator[PeakFormula]:
         sums, history = self.history.recorder.envelopes.sums, self.history
         drift, force, motion = (sums[name].largest() for name in ("drift", "storey", "acceleration"))
         end = float(history.recorder.reached)
@@ -149,11 +151,11 @@ class Formulas:
             if i not in b.bearings:
                 peaks.append(("storey_drift", first["drift"] + n, drift[n]))
                 left = ObservedValue(ObservedKind.ROW, first["drift"] + n, end, math.nan, is_peak=False)
-                yield Formula("residual_drift", label, (left,), lambda y: y)
+                yield PeakFormula("residual_drift", label, (left,), lambda y: y)
             for quantity, row, (value, t) in peaks:
-                yield Formula(quantity, label, (ObservedValue(ObservedKind.ROW, row, t, value),), abs)
+                yield PeakFormula(quantity, label, (ObservedValue(ObservedKind.ROW, row, t, value),), abs)
 
-    def _springs(self) -> Iterator[Formula]:
+    def _springs(self) -> Iterator[PeakFormula]:
         laws = {id(s): i for i, s in enumerate(self.history.system.structure.laws)}
         for r in self.history.springs:
             if r.ductility != r.ductility:
@@ -173,7 +175,7 @@ class Formulas:
                 ObservedValue(ObservedKind.STATIC_FORCE, law, tf, f),
             )
             at_yield, beside = self._constant("yields", law, side), self._constant("beside", law)
-            yield Formula(
+            yield PeakFormula(
                 "ductility",
                 f"{r.spring.element} {r.spring.component}",
                 readings,

@@ -27,7 +27,7 @@ from pound_solve.sensitivity.dual import Dual, duals
 from pound_solve.sensitivity.dual_law import DualLaw
 from pound_solve.sensitivity.equations import TangentEquations
 from pound_solve.sensitivity.instants import InputSlopes
-from pound_solve.sensitivity.quantities import Formula, Formulas
+from pound_solve.sensitivity.quantities import PeakFormula, PeakFormulas
 from pound_solve.sensitivity.refusal import NoDerivativeError
 from pound_solve.sensitivity.samples import ObservedValue, TangentSample, differentiated
 from pound_solve.sensitivity.tangent_run import Crossing, TangentRun
@@ -100,9 +100,9 @@ def derivatives(request: Request, names: Sequence[str], progress: Progress | Non
     each = [derivative(partial(at, name), x, name, middle, base) for name, x in zip(names, values)]
     slopes = Coefficients(*(np.stack(x) for x in zip(*each)))
     equations, excitation = TangentEquations(base, slopes), trajectory.system.excitation
-    formulas, flags = list[Formula](), list[str]()
+    formulas, flags = list[PeakFormula](), list[str]()
     no_slopes = InputSlopes(excitation, slopes.excitation[:0])
-    for f in Formulas(record.history, base, slopes, places).all():
+    for f in PeakFormulas(record.history, base, slopes, places).all():
         peaks = tuple(filter(None, (refined(course, equations, no_slopes, r) for r in f.readings)))
         if len(peaks) == len(f.readings):
             formulas.append(f._replace(readings=peaks))
@@ -123,7 +123,7 @@ def derivatives(request: Request, names: Sequence[str], progress: Progress | Non
 
 
 def _results(
-    formulas: Sequence[Formula],
+    formulas: Sequence[PeakFormula],
     samples: Mapping[float, Sequence[TangentSample]],
     run: TangentRun,
     known: Values,
@@ -205,7 +205,7 @@ def _laws(middle: case.Case, base: Coefficients, slopes: Coefficients) -> list[D
     return laws
 
 
-def _evaluated(f: Formula, samples: Mapping[float, Sequence[TangentSample]], run: TangentRun) -> Dual:
+def _evaluated(f: PeakFormula, samples: Mapping[float, Sequence[TangentSample]], run: TangentRun) -> Dual:
     """Return a quantity with its derivatives."""
 
     def value(reading: ObservedValue) -> Dual:

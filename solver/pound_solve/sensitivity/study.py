@@ -90,21 +90,14 @@ class SensitivityAnalysis:
     Parameters
     ----------
     aim : SensitivityAim
-
-    Attributes
-    ----------
-    result : Sensitivities
-        When `carry_out` has ended.
     """
-
-    result: Sensitivities
 
     def __init__(self, aim: SensitivityAim) -> None:
         self.aim = aim
         self.remarks: list[tuple[str, str]] = []
 
-    def carry_out(self, points: Points) -> None:
-        """Execute the runs and form the derivatives.
+    def carry_out(self, points: Points) -> Sensitivities:
+        """Execute the runs and return the derivatives.
 
         Raises
         ------
@@ -127,7 +120,7 @@ class SensitivityAnalysis:
         lacking = sorted({key[0] for key in itertools.product(*map(range, sizes)) if key not in by_key})
         by_key = differences.along(lacking) | by_key
         ends = zip(self.center.entries, self.center.values)
-        self.result = Sensitivities(
+        return Sensitivities(
             list(self._lines(by_key)),
             {name: e.gentlest for name, e in zip(self.records, self.center.entries)},
             self.remarks,

@@ -24,14 +24,13 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_solve.numerics.types import Array
+from pound_solve.statistics.design_variable import PLACES, DesignVariable
 
 METHODS: Final = ("smooth", "rough")
 STEP: Final = 1e-3  #: of a difference, as a share of the range of a variable
 PENALTY: Final = 10.0  #: scaled value of an objective or an excess that is infinite
-PLACES: Final = 6  #: decimal places of the coordinates of a point
 ROUNDS: Final = 30  #: of sequential quadratic programming from one start
 INDIVIDUALS: Final = 8  #: of a generation of differential evolution, for each variable
-DIGITS: Final = 8  #: of the value of a variable
 EQUAL: Final = 10.0  #: tolerances within which the ends of two starts are one optimum
 NEAR: Final = 0.05  #: share of the ranges within which their points are
 
@@ -122,32 +121,6 @@ class SearchRules(NamedTuple):
     runs: int
     tolerance: float
     seed: int
-
-
-class DesignVariable(NamedTuple):
-    """A variable of a search: value in the study, bounds, and whether its scale is logarithmic."""
-
-    name: str
-    value: float
-    low: float
-    high: float
-    is_log: bool = False
-
-    def at(self, share: float) -> float:
-        """Value at a share of the range, with `DIGITS` digits; at its own share that of the study."""
-        if round(self.share(self.value), PLACES) == share:
-            return self.value
-        if self.is_log:
-            value = self.low * (self.high / self.low) ** share
-        else:
-            value = self.low + share * (self.high - self.low)
-        return min(max(float(f"{value:.{DIGITS}g}"), self.low), self.high)
-
-    def share(self, value: float) -> float:
-        """Share of the range at a value."""
-        if self.is_log:
-            return math.log(value / self.low) / math.log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
 
 
 @dataclass(frozen=True)

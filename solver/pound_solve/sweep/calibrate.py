@@ -19,7 +19,7 @@ from pound_solve.sweep.study import measured
 from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.measured import Measured
 from pound_solve.sweep.study.quantities import QUANTITIES, require, value_of
-from pound_solve.sweep.study.scaling import Scaling
+from pound_solve.sweep.study.scaling import design_variables, scales
 
 TABLE: Final = "calibrate"  #: of a study
 ITEMS: Final = ("starts", "confidence")
@@ -40,11 +40,14 @@ class CalibrationAim:
         Number of starts: the values of the study, and points spread between the bounds.
     confidence : float
         Of the intervals.
+    scales : mapping of str to str
+        Scale of every variable, one of `scaling.SCALES`.
     """
 
     measured: tuple[Measured, ...]
     starts: int
     confidence: float
+    scales: Mapping[str, str]
 
 
 def aim(document: Document) -> CalibrationAim:
@@ -65,7 +68,7 @@ def aim(document: Document) -> CalibrationAim:
         document.mistake("S603", f"starts is a number from 1 to {MOST_STARTS}", (TABLE, "starts"))
     if not 0.0 < confidence < 1.0:
         document.mistake("S603", "confidence is between 0 and 1", (TABLE, "confidence"))
-    return CalibrationAim(wanted, starts, confidence)
+    return CalibrationAim(wanted, starts, confidence, scales(document))
 
 
 class CalibrationAnalysis:
@@ -73,20 +76,13 @@ class CalibrationAnalysis:
 
     Parameters
     ----------
+    points : Points
     aim : CalibrationAim
-    scaling : Scaling
-        Of the variables between their bounds.
-
-    Attributes
-    ----------
-    result : Calibration
-        When `carry_out` has ended.
     """
 
-    result: Calibration
-
-    def __init__(self, aim: CalibrationAim, scaling: Scaling) -> None:
-        self.aim, self.scaling = aim, scaling
+    def __init__(self, points: Points, aim: CalibrationAim) -> None:
+        self.points, self.aim = points, aim
+        self.variables = design_variables(points.variables, aim.scales)
         self.values = np.concatenate([m.values for m in aim.measured])
         sizes = [len(m.values) for m in aim.measured]
         self.block = np.repeat(np.arange(len(sizes)), sizes)
@@ -94,7 +90,7 @@ class CalibrationAnalysis:
         self.largest = np.repeat([np.abs(m.values).max() for m in aim.measured], sizes)
         self.known = all(m.sd > 0.0 for m in aim.measured)
 
-    def carry_out(self, points: Points) -> None:
+    def carry_out(self) -> Calibration:
         """Execute the runs and fit the variables.
 
         Raises
@@ -104,8 +100,7 @@ class CalibrationAnalysis:
         CurveError
             A run has not the quantity, the history or the label that was measured, or no run fits.
         """
-        self.points = points
-        (at_start,) = points.results([points.nominal])
+        (at_start,) = self.points.results([self.points.nominal])
         self._check(at_start)
         fits = []
         for x in self._starts():
@@ -114,11 +109,11 @@ class CalibrationAnalysis:
             )
         best = min((f for _, f in fits), key=lambda f: f.cost)
         starts = [StartedFit(self._point(x), self._point(f.x), f.cost) for x, f in fits]
-        self.result = Calibration(
-            [self._variable(i, best) for i in range(len(points.variables))],
-            list(self._compared(points.results([self._point(best.x)])[0])),
+        return Calibration(
+            [self._variable(i, best) for i in range(len(self.variables))],
+            list(self._compared(self.points.results([self._point(best.x)])[0])),
             starts,
-            correlated(best, [v.name for v in points.variables], CORRELATED),
+            correlated(best, [v.name for v in self.variables], CORRELATED),
             best.scatter,
             self.known,
             self.aim.confidence,
@@ -128,7 +123,7 @@ class CalibrationAnalysis:
         """Points of the unit cube from which the search starts."""
         from scipy.stats.qmc import Sobol
 
-        first = self.scaling.to_unit(self.points.nominal)
+        first = np.array([v.share(v.value) for v in self.variables])
         if self.aim.starts == 1:
             return [first]
         spread = Sobol(len(first), scramble=False).random_base2((self.aim.starts - 1).bit_length() + 1)
@@ -136,7 +131,7 @@ class CalibrationAnalysis:
 
     def _point(self, x: Array) -> tuple[float, ...]:
         """Values of the variables at a point of the unit cube."""
-        return tuple(self.scaling.to_values(x).tolist())
+        return tuple(v.unrounded(min(max(float(s), 0.0), 1.0)) for v, s in zip(self.variables, x))
 
     def _residuals(self, x: Array) -> Array:
         """Weighted residuals at a point of the unit cube."""
@@ -210,18 +205,15 @@ class CalibrationAnalysis:
 
     def _variable(self, i: int, best: Fit) -> FittedVariable:
         """A variable with its interval."""
-        v, x, half = self.points.variables[i], best.x, best.half[i]
-        value = self._point(x)[i]
-        ends = []
-        for sign in (-1.0, 1.0):
-            moved = x.copy()
-            moved[i] += sign * half
-            ends.append(self.scaling.extended(moved)[i] if math.isfinite(half) else sign * half)
+        v, share, half = self.variables[i], float(best.x[i]), float(best.half[i])
+        low, high = (share + sign * half for sign in (-1.0, 1.0))
+        if math.isfinite(half):
+            low, high = v.unrounded(low), v.unrounded(high)
         if math.isnan(half):
-            remark = f"at its {'lower' if x[i] < 0.5 else 'upper'} bound"
+            remark = f"at its {'lower' if share < 0.5 else 'upper'} bound"
         else:
             remark = "" if math.isfinite(half) else "the measured values do not determine it"
-        return FittedVariable(v.name, v.value, value, ends[0], ends[1], remark)
+        return FittedVariable(v.name, v.value, self._point(best.x)[i], low, high, remark)
 
     def _unit(self, m: Measured, result: PointResult) -> str:
         """Unit of measured values."""

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from pound_deck.diagnostics import suggest
 from pound_deck.files import contents
 from pound_deck.formula import Formula, FormulaError
 from pound_deck.revise import with_params
@@ -24,7 +23,6 @@ from pound_solve.statistics.curves import Asked, CurveError
 from pound_solve.statistics.optimum import (
     METHODS,
     DesignLimit,
-    DesignVariable,
     OptimumProblem,
     OptimumSearch,
     PointOutcome,
@@ -32,11 +30,11 @@ from pound_solve.statistics.optimum import (
 )
 from pound_solve.statistics.over_records import MEAN, OverRecords
 from pound_solve.sweep.demands import demands, quantities_of
-from pound_solve.sweep.execution.conduct import State
 from pound_solve.sweep.points import PointResult, Points
 from pound_solve.sweep.study.asked import asked
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.run import ParameterCase
+from pound_solve.sweep.study.scaling import design_variables, scales, word
 from pound_solve.sweep.study.variables import TABLE as VARIABLES
 from pound_solve.sweep.study.variables import StudyVariable, given_values
 
@@ -44,10 +42,8 @@ TABLE: Final = "optimize"  #: of a study
 OBJECTIVE: Final = "objective"
 CONSTRAINT: Final = "constraint"
 TABLES: Final = (VARIABLES, TABLE, OBJECTIVE, CONSTRAINT)
-VARIABLE_ITEMS: Final = ("scale",)  #: items of a variable
 OBJECTIVE_ITEMS: Final = ("quantity", "expression", "records", "goal")
 ITEMS: Final = ("method", "starts", "runs", "tolerance", "seed")
-SCALES: Final = ("linear", "log")
 GOALS: Final = ("minimize", "maximize")
 LARGEST: Final = "max"  #: of the values of all records
 MAX_POINTS: Final = 100_000
@@ -69,7 +65,7 @@ class OptimumAim:
         Quantities of the limits.
     limits : tuple of DesignLimit
     scales : mapping of str to str
-        One of `SCALES` for each variable.
+        One of `scaling.SCALES` for each variable.
     rules : SearchRules
     """
 
@@ -86,10 +82,7 @@ class OptimumAim:
         """The problem of the variables of a study."""
         over = "largest of the records" if self.over.how == 1.0 else self.over.text
         return OptimumProblem(
-            tuple(
-                DesignVariable(v.name, v.value, v.low, v.high, self.scales[v.name] == SCALES[1])
-                for v in variables
-            ),
+            design_variables(variables, self.scales),
             self.formula.text if self.formula else " ".join(filter(None, self.quantity or ())),
             self.is_maximised,
             over,
@@ -103,11 +96,10 @@ def aim(document: Document) -> OptimumAim:
     of a study; mistakes are added to the document.
     """
     names = list(given_values(document))
-    scales = {name: _scale(document, name) for name in names}
     document.take((OBJECTIVE,), dict, {})
     document.known((OBJECTIVE,), OBJECTIVE_ITEMS)
     quantity, formula = _objective(document, names)
-    goal = _choice(document, (OBJECTIVE, "goal"), GOALS)
+    goal = word(document, (OBJECTIVE, "goal"), GOALS)
     limits = list(_limits(document))
     document.take((TABLE,), dict, {})
     document.known((TABLE,), ITEMS)
@@ -118,31 +110,9 @@ def aim(document: Document) -> OptimumAim:
         _over(document),
         tuple(q for q, _ in limits),
         tuple(limit for _, limit in limits),
-        scales,
+        scales(document),
         _rules(document),
     )
-
-
-def _scale(document: Document, name: str) -> str:
-    """Scale of a variable, whose bounds are checked."""
-    path: Path_ = (VARIABLES, name)
-    low, high = (document.take((*path, item), float, math.nan) for item in ("low", "high"))
-    if math.isnan(low) or math.isnan(high):
-        hint = f"{name} = {{ low = ..., high = ... }}: the search stays between them"
-        document.mistake("S604", f"{name} needs low and high", path, hint)
-    scale = _choice(document, (*path, "scale"), SCALES)
-    if scale == SCALES[1] and low <= 0.0:
-        document.mistake("S605", f"a logarithmic scale needs low above zero, not {low:g}", path)
-    return scale
-
-
-def _choice(document: Document, path: Path_, words: Sequence[str]) -> str:
-    """Word of an item; the first one where it is left out."""
-    word = document.take(path, str, words[0])
-    if word not in words:
-        hint = suggest(word, list(words)) or f"there are {' and '.join(words)}"
-        document.mistake("S603", f"{path[-1]} is no {word}", path, hint)
-    return word
 
 
 def _objective(document: Document, names: Sequence[str]) -> tuple[Asked | None, Formula | None]:
@@ -197,7 +167,7 @@ def _limits(document: Document) -> Iterator[tuple[Asked, DesignLimit]]:
 
 def _rules(document: Document) -> SearchRules:
     """Rules of the search."""
-    method = _choice(document, (TABLE, "method"), METHODS)
+    method = word(document, (TABLE, "method"), METHODS)
     starts = document.take((TABLE, "starts"), int, 5)
     runs = document.take((TABLE, "runs"), int, 500)
     seed = document.take((TABLE, "seed"), int, 0)
@@ -233,7 +203,7 @@ class OptimumAnalysis:
         self.points, self.aim = points, aim
         self.problem = aim.problem(points.variables)
 
-    def carry_out(self, report: Callable[[State], None]) -> OptimumSearch:
+    def carry_out(self) -> OptimumSearch:
         """Execute the runs; return the search that asked for them.
 
         Raises
@@ -246,18 +216,15 @@ class OptimumAnalysis:
         problem, aim = self.problem, self.aim
         first = [v.share(v.value) for v in problem.variables]
         search = OptimumSearch(self.outcomes, first, problem.limits, problem.rules)
-        with self.points.conducted(report):
-            (nominal,) = self.points.results([self.points.nominal])
-            quantities_of(nominal, [*([aim.quantity] if aim.quantity else ()), *aim.limited])
-            if aim.formula:
-                try:
-                    aim.formula.value(dict(zip([v.name for v in problem.variables], self.points.nominal)))
-                except FormulaError as err:
-                    raise CurveError(
-                        f"{aim.formula.text} has no value at those of the study: {err}"
-                    ) from err
-            self.before = self._outcome(self.points.nominal, nominal)
-            search.carry_out()
+        (nominal,) = self.points.results([self.points.nominal])
+        quantities_of(nominal, [*([aim.quantity] if aim.quantity else ()), *aim.limited])
+        if aim.formula:
+            try:
+                aim.formula.value(dict(zip([v.name for v in problem.variables], self.points.nominal)))
+            except FormulaError as err:
+                raise CurveError(f"{aim.formula.text} has no value at those of the study: {err}") from err
+        self.before = self._outcome(self.points.nominal, nominal)
+        search.carry_out()
         return search
 
     def outcomes(self, points: list[tuple[float, ...]]) -> list[PointOutcome]:

@@ -7,7 +7,7 @@ records, of which each counts alike.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from types import MappingProxyType
 from typing import Final
 
@@ -27,7 +27,6 @@ from pound_solve.statistics.propagation import CONTACT, SPREAD, Propagated, Unce
 from pound_solve.statistics.replicates import REPLICATES, SAMPLINGS, uniform
 from pound_solve.statistics.sobol_indices import mixed
 from pound_solve.sweep.demands import demands, quantities_of
-from pound_solve.sweep.execution.conduct import State
 from pound_solve.sweep.points import PointResult, Points
 from pound_solve.sweep.study.asked import all_asked, asked
 from pound_solve.sweep.study.document import Document, Path_
@@ -190,7 +189,7 @@ class UncertaintyAnalysis:
         self.points, self.aim = points, aim
         self.distributions = [aim.distributions[v.name] for v in points.variables]
 
-    def carry_out(self, report: Callable[[State], None]) -> Propagated:
+    def carry_out(self) -> Propagated:
         """Execute the runs.
 
         Raises
@@ -206,12 +205,11 @@ class UncertaintyAnalysis:
         parts = [first, *((second, *mixed(first, second)) if aim.with_indices else ())]
         if aim.is_dependent:  # without indices
             parts = [dependent(first, aim.correlation)]
-        with self.points.conducted(report):
-            (nominal,) = self.points.results([self.points.nominal])
-            quantities = self._quantities(nominal)
-            at = np.concatenate([x.reshape(-1, variables) for x in (*parts, self._crosses())])
-            values = np.column_stack([d.quantile(x) for d, x in zip(self.distributions, at.T)])
-            results = self.points.results(values)
+        (nominal,) = self.points.results([self.points.nominal])
+        quantities = self._quantities(nominal)
+        at = np.concatenate([x.reshape(-1, variables) for x in (*parts, self._crosses())])
+        values = np.column_stack([d.quantile(x) for d, x in zip(self.distributions, at.T)])
+        results = self.points.results(values)
         nominals, at_points = ({q: demands(r, q) for q in quantities} for r in ([nominal], results))
         shape = (len(parts), *first.shape[:2], -1)
         sizes = len(parts) * aim.runs

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common, studies
+
+if TYPE_CHECKING:
+    from pound_solve.statistics.calibration import Calibration
+    from pound_solve.sweep.points import Points
 
 SUMMARY = "fit PARAMs to the peaks and histories of a test; intervals of the fitted values"
 EXAMPLES = (("study.toml -o results", "contact stiffness and restitution from a measured history"),)
@@ -31,7 +36,7 @@ def _calibrated(args: argparse.Namespace) -> int:
     from pound_solve.report.sweep import summary
     from pound_solve.results.sweep_file import Sweep, write_table
     from pound_solve.sweep import calibrate
-    from pound_solve.sweep.study import measured, scaling
+    from pound_solve.sweep.study import measured
     from pound_solve.sweep.study.document import Document
     from pound_solve.sweep.study.study import read
     from pound_solve.sweep.study.variables import TABLE
@@ -40,12 +45,15 @@ def _calibrated(args: argparse.Namespace) -> int:
     studies.give_conduct(args, document)
     aim = calibrate.aim(document)
     tables = (TABLE, measured.TABLE, calibrate.TABLE)
-    study = read(document, tables, scaling.check_bounds)
-    analysis = calibrate.CalibrationAnalysis(aim, scaling.scaling(document, study.variables))
-    with studies.explored(args, study, analysis.carry_out) as (session, path, complete):
-        if not complete:
+    study = read(document, tables)
+
+    def explore(points: Points) -> Calibration:
+        return calibrate.CalibrationAnalysis(points, aim).carry_out()
+
+    with studies.explored(args, study, explore) as (session, path, result):
+        if result is None:
             return studies.ended(args, session, path)
-        sweep, result = Sweep.open(path), analysis.result
+        sweep = Sweep.open(path)
         path = path.with_name("calibrate.h5")
         lines = list(report.report(sweep, result, str(document.at(("deck",)))))
         write_table(path, report.columns(result), report.about(sweep, result))

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common, studies
+
+if TYPE_CHECKING:
+    from pound_solve.statistics.optimum import OptimumSearch
+    from pound_solve.sweep.optimize import OptimumAnalysis
+    from pound_solve.sweep.points import Points
 
 SUMMARY = "find PARAMs of a study that minimise a quantity or a cost, with limits of others"
 EXAMPLES = (("study.toml -o results", "minimise the objective under the limits of the study"),)
@@ -32,29 +38,24 @@ def _analysed(args: argparse.Namespace) -> int:
     from pound_solve.results.sweep_file import Sweep, write_table
     from pound_solve.results.whole_file import write_text
     from pound_solve.sweep import optimize
-    from pound_solve.sweep.execution.executors import engine
-    from pound_solve.sweep.execution.lock import locked
-    from pound_solve.sweep.points import Interrupted, Points
-    from pound_solve.sweep.session import Session
     from pound_solve.sweep.study.document import Document
     from pound_solve.sweep.study.study import read
 
     document = Document.read(args.study)
     studies.give_conduct(args, document)
     aim = optimize.aim(document)
-    study = read(document, optimize.TABLES, optimize.VARIABLE_ITEMS)
-    with locked(study.out):
-        session = Session(study, engine(args.executor, study.workers), retry=args.retry)
-        progress = studies.StudyProgress(args)
-        analysis = optimize.OptimumAnalysis(Points(session), aim)
-        analysis.deck(analysis.points.nominal)  # a file in its way is told before any run
-        try:
-            search = analysis.carry_out(progress)
-        except Interrupted:
-            progress.end()
-            return studies.ended(args, session, session.write())
-        progress.end()
-        sweep = Sweep.open(session.write())
+    study = read(document, optimize.TABLES)
+
+    def explore(points: Points) -> tuple[OptimumAnalysis, OptimumSearch]:
+        analysis = optimize.OptimumAnalysis(points, aim)
+        analysis.deck(points.nominal)  # a file in its way is told before any run
+        return analysis, analysis.carry_out()
+
+    with studies.explored(args, study, explore) as (session, path, result):
+        if result is None:
+            return studies.ended(args, session, path)
+        analysis, search = result
+        sweep = Sweep.open(path)
         report = OptimumReport(sweep, analysis.problem, search, analysis.before)
         lines = list(report.report())
         path = study.out / "optimize.h5"

@@ -39,17 +39,17 @@ def _analysed(args: argparse.Namespace) -> int:
     studies.give_conduct(args, document)
     aim = sensitivity.aim(document)
     study = read(document, (TABLE, sensitivity.TABLE), check=sensitivity.check_steps)
-    analysis = sensitivity.SensitivityAnalysis(aim)
-    with studies.explored(args, study, analysis.carry_out) as (session, path, complete):
-        if not complete:
+    explore = sensitivity.SensitivityAnalysis(aim).carry_out
+    with studies.explored(args, study, explore) as (session, path, result):
+        if result is None:
             return studies.ended(args, session, path)
         sweep = Sweep.open(path)
         path = path.with_name("sensitivity.h5")
-        lines = list(report.report(sweep, analysis.result))
-        write_table(path, report.variables(sweep, analysis.result.lines), sweep.about)
+        lines = list(report.report(sweep, result))
+        write_table(path, report.variables(sweep, result.lines), sweep.about)
         summary.write(path, sweep, "sensitivities", lines)
         if args.picture:
-            suites.bars(report.drawn(sweep, analysis.result.lines), args.picture)
+            suites.bars(report.drawn(sweep, result.lines), args.picture)
         if not args.quiet:
             print("\n".join(lines))
         return studies.ended(args, session, path)

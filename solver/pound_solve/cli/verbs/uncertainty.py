@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common, studies
+
+if TYPE_CHECKING:
+    from pound_solve.statistics.propagation import Propagated
+    from pound_solve.sweep.points import Points
 
 SUMMARY = "propagate uncertain PARAMs of a study: moments, fractiles, probabilities, Sobol indices"
 EXAMPLES = (("study.toml -o results", "propagate the distributions under [variables]"),)
@@ -32,10 +37,6 @@ def _analysed(args: argparse.Namespace) -> int:
     from pound_solve.report.sweep.uncertainty import Evaluation
     from pound_solve.results.sweep_file import Sweep, write_table
     from pound_solve.sweep import uncertainty
-    from pound_solve.sweep.execution.executors import engine
-    from pound_solve.sweep.execution.lock import locked
-    from pound_solve.sweep.points import Interrupted, Points
-    from pound_solve.sweep.session import Session
     from pound_solve.sweep.study.document import Document
     from pound_solve.sweep.study.study import read
 
@@ -43,18 +44,15 @@ def _analysed(args: argparse.Namespace) -> int:
     studies.give_conduct(args, document)
     aim = uncertainty.aim(document)
     study = read(document, uncertainty.TABLES)
-    with locked(study.out):
-        session = Session(study, engine(args.executor, study.workers), retry=args.retry)
-        progress = studies.StudyProgress(args)
-        points = Points(session)
-        try:
-            runs = uncertainty.UncertaintyAnalysis(points, aim).carry_out(progress)
-        except Interrupted:
-            progress.end()
-            return studies.ended(args, session, session.write())
-        progress.end()
-        sweep = Sweep.open(session.write())
-        evaluation = Evaluation(sweep, {v.name: v.value for v in points.variables}, aim, runs)
+
+    def explore(points: Points) -> Propagated:
+        return uncertainty.UncertaintyAnalysis(points, aim).carry_out()
+
+    with studies.explored(args, study, explore) as (session, path, runs):
+        if runs is None:
+            return studies.ended(args, session, path)
+        sweep = Sweep.open(path)
+        evaluation = Evaluation(sweep, {v.name: v.value for v in study.variables}, aim, runs)
         lines = list(evaluation.report())
         path = study.out / "uncertainty.h5"
         write_table(path, evaluation.table(), sweep.about)

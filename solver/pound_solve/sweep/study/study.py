@@ -46,7 +46,7 @@ LARGEST: Final[Mapping[str, float]] = MappingProxyType({"seconds": 1e8, "memory"
 OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "ida": "pound-solve ida",
-        TABLE: "pound-solve sensitivity",
+        TABLE: "pound-solve sensitivity, optimize, calibrate or uncertainty",
         "sensitivity": "pound-solve sensitivity",
         "calibrate": "pound-solve calibrate",
         "measured": "pound-solve calibrate",
