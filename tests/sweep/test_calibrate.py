@@ -17,6 +17,7 @@ from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.study import StudyError, read
 from pound_solve.sweep.study.variables import TABLE
 from sweep.small import DECK, Here, folder, swept
+from tiers import at_night
 
 PLAIN = DECK.replace("scale = 1", "kc = 1E6   e = 0.65").replace("K=1E6 E=0.65", "K=kc E=e")
 PLAIN = PLAIN.replace(" SCALE=scale", "").replace("ANALYSIS", "OUTPUT\n   EVERY=0.002\nANALYSIS")
@@ -150,7 +151,7 @@ def test_a_variable_without_effect_has_no_interval(tmp_path):
     assert {v.remark for v in calibrated(path).variables} == {"the measured values do not determine it"}
 
 
-@pytest.mark.parametrize("stop", [1, 13])
+@pytest.mark.parametrize("stop", [13, *at_night(1)])
 def test_an_interrupted_calibration_ends_with_the_same_result(tmp_path, stop):
     path, executor = study(tmp_path), Here()
     test_file(tmp_path, 3)

@@ -6,7 +6,8 @@ import shutil
 import pytest
 
 from standing import Standing
-from sweep import test_calibrate, test_sensitivity
+from sweep import test_calibrate, test_optimize, test_sensitivity, test_uncertainty
+from sweep.small import folder
 from sweep.test_kills import ENDED, noted
 
 pytestmark = pytest.mark.slow
@@ -14,16 +15,29 @@ pytest.importorskip("fcntl", reason="kills by signals")
 KILLS = 5
 
 
-def of_sensitivity(folder):
-    return test_sensitivity.study(folder, "gap = {}\nk = {}")
+def of_sensitivity(to):
+    return test_sensitivity.study(to, "gap = {}\nk = {}")
 
 
-def of_calibrate(folder):
-    test_calibrate.test_file(folder, 4)
-    return test_calibrate.study(folder)
+def of_calibrate(to):
+    test_calibrate.test_file(to, 4)
+    return test_calibrate.study(to)
 
 
-STUDIES = {"sensitivity": of_sensitivity, "calibrate": of_calibrate}
+def of_uncertainty(to):
+    return folder(to, test_uncertainty.WALL)
+
+
+def of_optimize(to):
+    return folder(to, test_optimize.WALL)
+
+
+STUDIES = {
+    "sensitivity": of_sensitivity,
+    "calibrate": of_calibrate,
+    "uncertainty": of_uncertainty,
+    "optimize": of_optimize,
+}
 
 
 @pytest.mark.parametrize("verb", STUDIES)

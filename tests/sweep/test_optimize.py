@@ -20,6 +20,7 @@ from pound_solve.sweep.study.study import StudyError, read
 from standing import Standing
 from sweep.small import Here, folder
 from sweep.test_uncertainty import LINEAR
+from tiers import at_night
 
 #: the least sum of two factors on the motion whose peak is at least 2
 STUDY = """deck = "wall.inp"
@@ -159,7 +160,7 @@ def test_the_deck_of_the_optimum_has_its_results(tmp_path, capsys, monkeypatch):
     assert "is in the way" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("stop", [1, 9, 20])
+@pytest.mark.parametrize("stop", [9, *at_night(1, 20)])
 def test_an_interrupted_search_goes_on_and_ends_the_same(tmp_path, stop):
     """No run is lost or executed twice, and the reports are the same byte by byte."""
     reports = []

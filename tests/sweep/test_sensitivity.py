@@ -16,6 +16,7 @@ from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.study import StudyError, read
 from pound_solve.sweep.study.variables import TABLE
 from sweep.small import DECK, Here, folder
+from tiers import at_night
 
 #: a hinge that yields, before a wall
 YIELDS = DECK.replace("scale = 1", "fy = 120   kc = 1E6   w = 981   xi = 0.05")
@@ -185,7 +186,7 @@ def test_the_mean_and_a_fractile_of_records(tmp_path):
     assert upper.lines[0].derivative == max(parts, key=lambda p: p.value)
 
 
-@pytest.mark.parametrize("stop", [1, 4, 11])
+@pytest.mark.parametrize("stop", [4, *at_night(1, 11)])
 def test_an_interrupted_analysis_ends_with_the_same_lines(tmp_path, stop):
     path, executor = study(tmp_path, "gap = {}\nk = {}"), Here()
     with pytest.raises(Interrupted):

@@ -19,6 +19,7 @@ from pound_solve.sweep.study.document import Document
 from pound_solve.sweep.study.study import StudyError, read
 from standing import Standing
 from sweep.small import DECK, Here, folder
+from tiers import at_night
 
 #: an oscillator that meets nothing: its peak is proportional to the factor on its motion
 LINEAR = (
@@ -132,7 +133,7 @@ def test_statistics_are_those_of_points_and_records(tmp_path):
     assert "Gaussian copula" in lines and "under all 2 records" in lines
 
 
-@pytest.mark.parametrize("stop", [1, 40, 139])
+@pytest.mark.parametrize("stop", [40, *at_night(1, 139)])
 def test_an_interrupted_analysis_goes_on_and_ends_the_same(tmp_path, stop):
     """No run is lost or executed twice, and the reports are the same byte by byte."""
     reports = []
@@ -150,6 +151,7 @@ def test_an_interrupted_analysis_goes_on_and_ends_the_same(tmp_path, stop):
     assert reports[:2] == reports[2:]
 
 
+@pytest.mark.full
 def test_runs_that_fail_are_left_out_and_told(tmp_path):
     """A stiffness below zero has no runs: others give the moments, the intervals take them as either."""
     study = WALL.replace('"lognormal", mean = 4000, cov = 0.3', '"normal", mean = 4000, cov = 0.7')
