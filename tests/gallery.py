@@ -33,6 +33,9 @@ TUTORIAL: Final = "tutorial_contact_force.png"
 TRENDS: Final = "sweep_trends.png"
 TORNADO: Final = "uncertainty.png"
 SEARCH: Final = "optimize.png"
+BARS: Final = "sensitivity.png"
+FIT: Final = "calibrate.png"
+MEASURED: Final = EXAMPLES / "validation" / "cantilevers" / "calibrate.toml"
 BEST: Final = EXAMPLES / "optimize"
 #: decks on the page of the gallery, each with the picture of its one page
 EXHIBITS: Final = {
@@ -44,7 +47,17 @@ EXHIBITS: Final = {
 }
 PAGE: Final = ROOT / "manual" / "gallery.md"
 AT_PEAK: Final = ("deformed", "diagrams")
-ALL_FILES: Final = {*FILES.values(), *EXHIBITS.values(), TWO_RUNS, TUTORIAL, TRENDS, TORNADO, SEARCH}
+ALL_FILES: Final = {
+    *FILES.values(),
+    *EXHIBITS.values(),
+    TWO_RUNS,
+    TUTORIAL,
+    TRENDS,
+    TORNADO,
+    SEARCH,
+    BARS,
+    FIT,
+}
 RESOLUTION: Final = 80  #: dots per inch
 COLOURS: Final = 48  #: of a file, which keeps it small
 FILM_WIDTH: Final = 440  #: dots
@@ -81,7 +94,10 @@ def draw() -> None:
         shutil.copytree(BEST, folder / "best")
         call("motions", folder / "best" / "four_motions.inp", "-o", folder / "best" / "suite")
         call("optimize", folder / "best" / "bumpers.toml", "--quiet", "--picture", folder / SEARCH)
-        for file in (TORNADO, SEARCH):
+        bars, fit, out = folder / BARS, folder / FIT, folder / "fit"
+        call("sensitivity", folder / "suite" / "sensitivity.toml", "--quiet", "--picture", bars)
+        call("calibrate", MEASURED, "-o", out, "--quiet", "--picture", fit)
+        for file in (TORNADO, SEARCH, BARS, FIT):
             reduce(folder / file, FOLDER / file)
         stems = {"capacity": PUSHED.stem, "performance": PUSHED.stem, "study": f"{STUDIED.stem}.study"}
         for picture, file in FILES.items():

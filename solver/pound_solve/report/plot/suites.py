@@ -209,10 +209,10 @@ def fits(panels: Sequence[FitPanel], path: Path) -> None:
     for (above, below), panel in zip(grid.T, panels):
         style.grid(above, "", panel.y_axis).set_title(panel.title)
         style.grid(below, panel.x_axis, "difference")
-        marks = "o" if len(panel.x) <= FEW else ""
-        above.plot(panel.x, panel.measured, marker=marks, markersize=4, color="0.55", label="measured")
-        above.plot(panel.x, panel.fitted, marker=marks, markersize=3, color=style.BLUE, label="fitted")
-        below.plot(panel.x, panel.fitted - panel.measured, marker=marks, markersize=3, color=style.BLUE)
+        line = "o" if len(panel.x) <= FEW else "-"
+        above.plot(panel.x, panel.measured, line, markersize=7, color="0.7", label="measured")
+        above.plot(panel.x, panel.fitted, line, markersize=4, color=style.BLUE, label="fitted")
+        below.plot(panel.x, panel.fitted - panel.measured, line, markersize=4, color=style.BLUE)
         below.axhline(0.0, color="0.2", linewidth=0.8)
     style.legend_below(figure, list(grid.flat))
     style.save(figure, path)
