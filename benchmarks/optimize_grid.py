@@ -32,7 +32,7 @@ def analysis(study, workers):
     """The analysis of a study, without a run."""
     document = Document.read(str(study))
     aim = optimize.aim(document)
-    runs = read(document, optimize.TABLES, optimize.VARIABLE_ITEMS)
+    runs = read(document, optimize.TABLES)
     return optimize.OptimumAnalysis(Points(Session(runs, engine("", workers))), aim)
 
 
@@ -46,7 +46,8 @@ def spent(points):
 def searched(study, workers):
     """The best point of the search, the objective of the study, and what they have cost."""
     own = analysis(study, workers)
-    search = own.carry_out(lambda state: None)
+    with own.points.conducted(lambda state: None):
+        search = own.carry_out()
     return search.best, own.before.objective, len(search.tried), *spent(own.points)
 
 
