@@ -9,6 +9,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -17,7 +18,7 @@ from pound_solve.results.sweep_file import DONE
 from pound_solve.sensitivity.differences import TOGETHER, Differences, Key, estimated
 from pound_solve.sensitivity.worker import differentiated, slopes_of
 from pound_solve.statistics.curves import Asked
-from pound_solve.statistics.over_records import EACH, OverRecords
+from pound_solve.statistics.over_records import EACH, MEAN, OverRecords
 from pound_solve.statistics.sensitivity import Derivative, Sensitivities, Sensitivity, weighted
 from pound_solve.sweep.points import PointResult, Points
 from pound_solve.sweep.study.asked import all_asked, over_records
@@ -28,6 +29,7 @@ from pound_solve.sweep.study.variables import StudyVariable
 TABLE: Final = "sensitivity"  #: of a study
 ITEMS: Final = ("quantities", "records", "step", "method")
 DIFFERENCES, EXACT = METHODS = ("differences", "exact")
+OVER: Final = MappingProxyType({how: OverRecords(how) for how in (EACH, MEAN)})
 STEP: Final = 1e-3  #: first step, as a fraction of the value of a variable
 #: largest disagreement of exact derivatives with a difference beyond its bound, as a fraction
 DISAGREE: Final = 1e-6
@@ -68,7 +70,7 @@ def aim(document: Document) -> SensitivityAim:
     method = document.take((TABLE, "method"), str, DIFFERENCES)
     if method not in METHODS:
         document.mistake("S603", f"method is {DIFFERENCES} or {EXACT}", (TABLE, "method"))
-    over = over_records(document, (TABLE, "records"), OverRecords(EACH))
+    over = over_records(document, (TABLE, "records"), OVER)
     return SensitivityAim(quantities, over, step, method)
 
 

@@ -11,6 +11,7 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -31,7 +32,7 @@ from pound_solve.statistics.optimum import (
 from pound_solve.statistics.over_records import MEAN, OverRecords
 from pound_solve.sweep.demands import demands, quantities_of
 from pound_solve.sweep.points import PointResult, Points
-from pound_solve.sweep.study.asked import asked
+from pound_solve.sweep.study.asked import asked, over_records
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.run import ParameterCase
 from pound_solve.sweep.study.scaling import design_variables, scales, word
@@ -45,7 +46,7 @@ TABLES: Final = (VARIABLES, TABLE, OBJECTIVE, CONSTRAINT)
 OBJECTIVE_ITEMS: Final = ("quantity", "expression", "records", "goal")
 ITEMS: Final = ("method", "starts", "runs", "tolerance", "seed")
 GOALS: Final = ("minimize", "maximize")
-LARGEST: Final = "max"  #: of the values of all records
+OVER: Final = MappingProxyType({MEAN: OverRecords(MEAN), "max": OverRecords(1.0)})
 MAX_POINTS: Final = 100_000
 MARK: Final = "! Optimum of"  #: beginning of a deck that this verb has written
 
@@ -107,7 +108,7 @@ def aim(document: Document) -> OptimumAim:
         quantity,
         formula,
         goal == GOALS[1],
-        _over(document),
+        over_records(document, (OBJECTIVE, "records"), OVER),
         tuple(q for q, _ in limits),
         tuple(limit for _, limit in limits),
         scales(document),
@@ -132,20 +133,6 @@ def _objective(document: Document, names: Sequence[str]) -> tuple[Asked | None, 
             hint = f"a formula of {', '.join(names)}"
             document.mistake("S605", str(err), (OBJECTIVE, "expression"), hint)
     return None, None
-
-
-def _over(document: Document) -> OverRecords:
-    """How the values of all records become one."""
-    path = (OBJECTIVE, "records")
-    value = document.at(path)
-    if value == LARGEST:
-        return OverRecords(1.0)
-    if isinstance(value, float) and 0.0 < value < 1.0:
-        return OverRecords(value)
-    if value not in (None, MEAN):
-        message = f"records is {MEAN}, {LARGEST}, or a share between 0 and 1"
-        document.mistake("S603", message, path, "0.84 is the value that 84 % of the records do not exceed")
-    return OverRecords(MEAN)
 
 
 def _limits(document: Document) -> Iterator[tuple[Asked, DesignLimit]]:

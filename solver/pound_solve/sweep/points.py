@@ -67,6 +67,7 @@ class Points:
             r.identity: r for r in self._base
         }  # in the order of their points
         self._results: dict[str, tuple[JournalEntry, Values]] = {}
+        self._stored: dict[str, Values] | None = None  # values in the journal before the first run
         self._tried = set[str]()  # runs without all results, which are repeated once at most
         self._conductor: Conductor | None = None
 
@@ -125,10 +126,14 @@ class Points:
         missing = {r.identity: r for r in runs if r.identity not in self._results}
         ahead = [r for r in missing.values() if self._is_ahead(r)]
         self._tried |= {r.identity for r in ahead}
+        if self._stored is None:
+            self._stored = dict(session.journal.values(session.entries))
+        before = {i: self._stored[i] for i in missing if i in self._stored}
         session.carry_on(self._conductor, ahead, analysis)
-        entries = {i: session.entries[i] for i in missing if i in session.entries}
-        for identity, values in session.journal.values(entries):
-            self._results[identity] = entries[identity], values
+        ended = {r.identity: session.entries[r.identity] for r in ahead if r.identity in session.entries}
+        now = dict(session.journal.values(ended)) if ended else {}
+        for identity, values in (before | now).items():
+            self._results[identity] = session.entries[identity], values
         if any(r.identity not in self._results for r in missing.values()):
             raise Interrupted
 

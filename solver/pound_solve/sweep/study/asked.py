@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from pound_deck.diagnostics import suggest
 from pound_solve.statistics.curves import Asked
-from pound_solve.statistics.over_records import EACH, MEAN, OverRecords
+from pound_solve.statistics.over_records import OverRecords
 from pound_solve.sweep.study.document import Document, Path_
 from pound_solve.sweep.study.quantities import QUANTITIES
 
@@ -39,15 +39,18 @@ def all_asked(document: Document, path: Path_) -> Iterator[Asked]:
         yield asked(document, path, text)
 
 
-def over_records(document: Document, path: Path_, default: OverRecords) -> OverRecords:
-    """How the values of all records become one: ``each``, ``mean``, or a share such as 0.84."""
-    value = document.at(path)
-    if value is None:
-        return default
+def over_records(document: Document, path: Path_, words: Mapping[str, OverRecords]) -> OverRecords:
+    """How the values of all records become one: a word of the verb, the first of which is the default, or
+    a share such as 0.84.
+    """
+    value, default = document.at(path), next(iter(words.values()))
     if isinstance(value, float) and 0.0 < value < 1.0:
         return OverRecords(value)
-    if value in (EACH, MEAN):
-        return OverRecords(value)
-    hint = "0.84 is the value that 84 % of the records do not exceed"
-    document.mistake("S603", f"{path[-1]} is {EACH}, {MEAN}, or a share between 0 and 1", path, hint)
+    if isinstance(value, str) and value in words:
+        return words[value]
+    if value is not None:
+        hint = "0.84 is the value that 84 % of the records do not exceed"
+        document.mistake(
+            "S603", f"{path[-1]} is {', '.join(words)}, or a share between 0 and 1", path, hint
+        )
     return default
