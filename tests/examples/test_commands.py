@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, NoReturn
 
 import pytest
 
-from legacy.decks import STICK
+from imports.ruaumoko_decks import STICK
 from pound_deck.diagnostics import has_errors
 from pound_solve.cli import common
 from pound_solve.cli.main import VERBS, main, parser

@@ -18,7 +18,7 @@ from agency_files import FILES
 from decks import NAMED
 from fuzz.attacks import attacked
 from fuzz.mutation import damaged, encoded, items, mutated, number, rescaled, revalued, text, words
-from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
+from imports.ruaumoko_decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
 from pound_solve.numerics.providers import provider
 from pound_solve.report.plot.catalog import PICTURES
 from sweep.small import DECK as WALL

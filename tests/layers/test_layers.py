@@ -14,8 +14,8 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).parents[2]
-DECK, LEGACY, SOLVER = (
-    ROOT / name for name in ("parser/pound_deck", "parser/pound_legacy", "solver/pound_solve")
+DECK, IMPORT, SOLVER = (
+    ROOT / name for name in ("parser/pound_deck", "parser/pound_import", "solver/pound_solve")
 )
 
 #: layers, the lowest first: a layer may import only from itself and from layers below it
@@ -227,11 +227,11 @@ CHANGING = {"append", "add", "update", "pop", "setdefault", "extend", "clear"}
 
 
 def modules():
-    return [p for package in (DECK, LEGACY, SOLVER) for p in package.rglob("*.py")]
+    return [p for package in (DECK, IMPORT, SOLVER) for p in package.rglob("*.py")]
 
 
 def place(path):
-    return path.relative_to(next(p for p in (DECK, LEGACY, SOLVER) if path.is_relative_to(p))).as_posix()
+    return path.relative_to(next(p for p in (DECK, IMPORT, SOLVER) if path.is_relative_to(p))).as_posix()
 
 
 class Facts(NamedTuple):
@@ -294,18 +294,18 @@ def test_the_parser_knows_nothing_of_the_solver_nor_of_numbers():
         assert {name.split(".")[0] for name in imported(path)} <= allowed, path
 
 
-def test_old_decks_are_read_with_the_parts_of_the_parser_that_hold_no_grammar():
+def test_models_of_others_are_read_with_the_parts_of_the_parser_that_hold_no_grammar():
     allowed = {f"pound_deck.{name}" for name in ("diagnostics", "files", "model", "schema", "source")}
-    for path in LEGACY.rglob("*.py"):
+    for path in IMPORT.rglob("*.py"):
         for name in imported(path):
             package = name.split(".")[0]
-            own = package in sys.stdlib_module_names or package == "pound_legacy"
+            own = package in sys.stdlib_module_names or package == "pound_import"
             assert own or name.rpartition(".")[0] in allowed or name in allowed, f"{path}: {name}"
 
 
-def test_only_the_driver_and_the_verb_read_old_decks():
+def test_only_the_driver_and_the_verb_read_models_of_others():
     users = {
-        place(p) for p in SOLVER.rglob("*.py") if any(n.startswith("pound_legacy") for n in imported(p))
+        place(p) for p in SOLVER.rglob("*.py") if any(n.startswith("pound_import") for n in imported(p))
     }
     assert users == {"driver/reading.py", "cli/verbs/import.py"}
 

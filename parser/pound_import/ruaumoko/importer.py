@@ -9,12 +9,13 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
 from pound_deck.model import Span
 from pound_deck.schema import Catalog
-from pound_legacy import analysis, elements, header, nodal, nodes, props
-from pound_legacy.draft import CONVENTION, ORDER, Draft
-from pound_legacy.equake import File
-from pound_legacy.header import Control
-from pound_legacy.lines import DataLine, DataLines, row
-from pound_legacy.recognise import control_lines, in_space
+from pound_import.draft import Draft
+from pound_import.ruaumoko import analysis, elements, header, nodal, nodes, props
+from pound_import.ruaumoko.equake import File
+from pound_import.ruaumoko.header import Control
+from pound_import.ruaumoko.lines import DataLine, DataLines, row
+from pound_import.ruaumoko.recognise import control_lines, in_space
+from pound_import.translation import Translation, written
 
 #: heads of sections
 _HEADS: Final = ("NODES", "DRIFT", "ELEMENTS", "PROPS", "WEIGHTS", "LOADS", "SHAPE", "DAMPING", "EQUAKE")
@@ -22,36 +23,8 @@ _NEEDED: Final = ("NODES", "ELEMENTS", "PROPS")
 _RUN: Final = (
     "pound-solve import DECK -o model.inp marks it in a deck of this program; check it there, and run that"
 )
+_CHECK: Final = "compare it with your manual of Ruaumoko or a listing of the deck"
 _MOST_LINES: Final = 200_000  #: before the record
-
-
-@dataclass(frozen=True, slots=True)
-class Translation:
-    """A deck that was read.
-
-    Attributes
-    ----------
-    text : str
-        The new deck, empty where the old one has mistakes.
-    origins : tuple of Span or None
-        For each line of `text`, from the first, its line in the old deck.
-    report : tuple of Diagnostic
-        Mistakes, what was read by convention, what was not carried over; spans are in the old deck.
-    """
-
-    text: str
-    origins: tuple[Span | None, ...]
-    report: tuple[Diagnostic, ...]
-
-    def moved(self, diagnostics: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
-        """Diagnostics of the new deck, called `name`, moved to the lines of the old one."""
-        return [
-            replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d
-            for d in diagnostics
-        ]
-
-    def _origin(self, span: Span) -> Span:
-        return next((place for place in reversed(self.origins[: span.line]) if place), span)
 
 
 def translate(
@@ -77,7 +50,7 @@ def translate(
     -------
     Translation
     """
-    draft = Draft()
+    draft = Draft(_CHECK)
     lines = text.splitlines()
     try:
         sections, control = _outline(name, text, lines, draft)
@@ -94,8 +67,8 @@ def translate(
     if has_errors(draft.report):
         return Translation("", (), tuple(draft.report))
     title = lines[0].strip() if lines else ""
-    new, origins = _written(title, name, draft)
-    return Translation(new, origins, tuple(draft.report))
+    source = f"Read from the Ruaumoko-2D deck {name}."
+    return written(title, source, draft)
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,27 +203,3 @@ def _ground(draft: Draft, here: Span) -> Diagnostic:
     if draft.evidence:
         text += "; by decks of others: " + "; ".join(draft.evidence)
     return Diagnostic("L606", text, here, "the page Coming from Ruaumoko says what is known", "warning")
-
-
-def _written(title: str, name: str, draft: Draft) -> tuple[str, tuple[Span | None, ...]]:
-    """Text of the new deck, and for each line its place in the old one."""
-    lines: list[tuple[str, Span | None]] = [
-        (f"TITLE {_plain(title)}", None),
-        (f"! Read from the Ruaumoko-2D deck {_plain(name)}.", None),
-        (f"! No source confirms what is marked {CONVENTION}: compare it with a manual or a listing.", None),
-    ]
-    for section in ORDER:
-        entries = draft.sections[section]
-        if not entries:
-            continue
-        lines += [("", None), *([(section, None)] if section else [])]
-        for entry in entries:
-            lines += [(f"   ! {_plain(note)}", entry.span) for note in entry.notes]
-            if entry.text:
-                lines.append((f"   {entry.text}" if section else entry.text, entry.span))
-    return "\n".join(text for text, _ in lines) + "\n", tuple(span for _, span in lines)
-
-
-def _plain(text: str) -> str:
-    """Text without line ends and other characters that cannot be printed."""
-    return "".join(c for c in text if c.isprintable())

@@ -7,8 +7,8 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_deck.schema import Spec
-from pound_legacy.draft import Draft, number
-from pound_legacy.lines import DataLines
+from pound_import.draft import Draft, number
+from pound_import.ruaumoko.lines import DataLines
 
 NAMES: Final = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 _WORDS: Final = {

@@ -7,7 +7,7 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic, Mistake
 from pound_deck.files import opened
 from pound_deck.model import Span
-from pound_legacy.recognise import HEAD, is_legacy
+from pound_import.ruaumoko.recognise import HEAD, is_legacy
 
 MAX_BYTES: Final = 256_000_000  #: of a deck with its record
 

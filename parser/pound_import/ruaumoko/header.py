@@ -17,8 +17,8 @@ from typing import Final
 
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
-from pound_legacy.draft import Draft, number
-from pound_legacy.lines import DataLine
+from pound_import.draft import Draft, number
+from pound_import.ruaumoko.lines import DataLine
 
 ANALYSIS: Final = (
     *("IPANAL", "IFMT", "IPLAS", "IPCONM", "ICTYPE", "IPVERT"),

@@ -1,4 +1,4 @@
-"""Draft of the new deck: its lines, the basis of each, and the mistakes of the old one."""
+"""Draft of the new deck: its lines, the basis of each, and the mistakes of the model that is read."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ ORDER: Final = (
     "PROPS",
     "WEIGHTS",
     "LOADS",
+    "MEMBER_LOADS",
+    "INITIAL",
     "DAMPING",
     "FORCES",
     "EQUAKE",
@@ -25,12 +27,11 @@ ORDER: Final = (
     "OUTPUT",
 )
 CONVENTION: Final = "BY CONVENTION"  #: mark in the new deck of items that no source confirms
-_CHECK: Final = "compare it with your manual of Ruaumoko or a listing of the deck"
 
 
 @dataclass(frozen=True, slots=True)
 class DraftLine:
-    """A line of the new deck, its comments, and the line of the old deck that it comes from."""
+    """A line of the new deck, its comments, and the place that it comes from."""
 
     text: str
     span: Span
@@ -43,12 +44,15 @@ class Draft:
 
     Attributes
     ----------
+    check : str
+        Where the user can confirm what is read by convention.
     report : list of Diagnostic
         Mistakes; readings by convention and losses are warnings.
     evidence : list of str
         Items that decks of others confirm.
     """
 
+    check: str
     report: list[Diagnostic] = field(default_factory=list)
     sections: dict[str, list[DraftLine]] = field(default_factory=lambda: {name: [] for name in ORDER})
     evidence: list[str] = field(default_factory=list)
@@ -59,7 +63,7 @@ class Draft:
 
     def doubt(self, span: Span, reading: str) -> str:
         """Warn that an item is read by convention; return the comment that marks it."""
-        self.report.append(Diagnostic("L605", f"by convention, {reading}", span, _CHECK, "warning"))
+        self.report.append(Diagnostic("L605", f"by convention, {reading}", span, self.check, "warning"))
         return f"{CONVENTION}: {reading}"
 
     def lose(self, span: Span, what: str, remedy: str = "add it to the new deck by hand") -> str:

@@ -11,8 +11,8 @@ from typing import Final, NamedTuple
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_deck.schema import Catalog, Spec
-from pound_legacy.draft import Draft, number, numbers
-from pound_legacy.lines import DataLine, DataLines
+from pound_import.draft import Draft, number, numbers
+from pound_import.ruaumoko.lines import DataLine, DataLines
 
 Values = dict[str, float]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
-from pound_legacy.draft import Draft, number
-from pound_legacy.lines import DataItem, DataLine, DataLines
-from pound_legacy.nodes import LegacyNode
+from pound_import.draft import Draft, number
+from pound_import.ruaumoko.lines import DataItem, DataLine, DataLines
+from pound_import.ruaumoko.nodes import LegacyNode
 
 WEIGHTS: Final = ("N", "WX", "WY", "MZ")
 LOADS: Final = ("N", "FX", "FY", "MZ")

@@ -6,12 +6,12 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
 from pound_deck.schema import Catalog
-from pound_legacy import frames, springs
-from pound_legacy.draft import Draft
-from pound_legacy.elements import LegacyMember
-from pound_legacy.lines import DataLine, DataLines
-from pound_legacy.nodes import LegacyNode
-from pound_legacy.property_set import PropertySet
+from pound_import.draft import Draft
+from pound_import.ruaumoko import frames, springs
+from pound_import.ruaumoko.elements import LegacyMember
+from pound_import.ruaumoko.lines import DataLine, DataLines
+from pound_import.ruaumoko.nodes import LegacyNode
+from pound_import.ruaumoko.property_set import PropertySet
 
 READERS: Final = {"SPRING": springs.read, "FRAME": frames.read}
 #: types of the old program by name; their lines are not known

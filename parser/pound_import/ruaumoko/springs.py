@@ -10,10 +10,10 @@ from __future__ import annotations
 from typing import Final
 
 from pound_deck.diagnostics import mistake
-from pound_legacy import loss, rules
-from pound_legacy.draft import number, numbers
-from pound_legacy.lines import DataLine
-from pound_legacy.property_set import PropertySet
+from pound_import.draft import number, numbers
+from pound_import.ruaumoko import loss, rules
+from pound_import.ruaumoko.lines import DataLine
+from pound_import.ruaumoko.property_set import PropertySet
 
 NAMES: Final = ("ITYPE", "IHYST", "ILOS", "IDAMG", "KX", "KY", "GJ", "WGT", "RF", "RT")
 FORCES: Final = ("FX+", "FX-", "FY+", "FY-", "MZ+", "MZ-")

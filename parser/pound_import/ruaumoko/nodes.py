@@ -12,8 +12,8 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
 from pound_deck.model import Span
-from pound_legacy.draft import Draft, number
-from pound_legacy.lines import DataLine, DataLines
+from pound_import.draft import Draft, number
+from pound_import.ruaumoko.lines import DataLine, DataLines
 
 NAMES: Final = ("N", "X", "Y", "NF1", "NF2", "NF3", "KUP1", "KUP2", "KUP3", "IOUT")
 _LETTERS: Final = "XYR"

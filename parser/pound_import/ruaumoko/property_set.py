@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pound_deck.schema import Catalog
-from pound_legacy.draft import Draft
-from pound_legacy.lines import DataLines
-from pound_legacy.nodes import LegacyNode
+from pound_import.draft import Draft
+from pound_import.ruaumoko.lines import DataLines
+from pound_import.ruaumoko.nodes import LegacyNode
 
 
 @dataclass(frozen=True, slots=True)

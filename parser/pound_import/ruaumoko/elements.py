@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
-from pound_legacy.draft import Draft
-from pound_legacy.lines import DataLine, DataLines
-from pound_legacy.nodes import LegacyNode
+from pound_import.draft import Draft
+from pound_import.ruaumoko.lines import DataLine, DataLines
+from pound_import.ruaumoko.nodes import LegacyNode
 
 NAMES: Final = ("N", "MT", "I", "J", "K", "L", "IOUT")
 

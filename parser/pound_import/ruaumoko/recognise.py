@@ -8,7 +8,7 @@ from __future__ import annotations
 from itertools import islice
 from typing import Final
 
-from pound_legacy.lines import DataLine, row
+from pound_import.ruaumoko.lines import DataLine, row
 
 HEAD: Final = 20_000  #: characters examined
 #: data lines examined: the title, up to six control lines and some that are out of place

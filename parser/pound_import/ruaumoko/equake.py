@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from pound_deck.diagnostics import mistake
-from pound_legacy.draft import Draft, number, quoted
-from pound_legacy.lines import DataItem, DataLine, row
+from pound_import.draft import Draft, number, quoted
+from pound_import.ruaumoko.lines import DataItem, DataLine, row
 
 NAMES: Final = ("IBERG", "ISTART", "DELTAT", "ASCALE", "END", "VEL", "DIS", "TSCALE")
 _COUNTED: Final = 3

@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import Final
 
 from pound_deck.diagnostics import mistake
-from pound_legacy import loss, rules
-from pound_legacy.draft import number, numbers
-from pound_legacy.lines import DataLine
-from pound_legacy.property_set import PropertySet
+from pound_import.draft import number, numbers
+from pound_import.ruaumoko import loss, rules
+from pound_import.ruaumoko.lines import DataLine
+from pound_import.ruaumoko.property_set import PropertySet
 
 OPTIONS: Final = ("ITYPE", "IPIN", "ICOND", "IHYST", "ILOS", "IDAMG", "ICOL", "IGA", "IDUCT")
 SECTION: Final = ("E", "G", "A", "AS", "I", "WGT", "END1", "END2", "FJ1", "FJ2")

@@ -6,12 +6,12 @@ import random
 
 import pytest
 
-from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
+from imports.ruaumoko_decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
 from pound_deck.diagnostics import has_errors
 from pound_deck.reader import read_text
-from pound_legacy.equake import File
-from pound_legacy.importer import translate
-from pound_legacy.recognise import is_legacy
+from pound_import.ruaumoko.equake import File
+from pound_import.ruaumoko.importer import translate
+from pound_import.ruaumoko.recognise import is_legacy
 from pound_solve.catalog import catalog
 
 CATALOG = catalog()
