@@ -106,7 +106,7 @@ def prepare(request: Request, at_rest: bool = False) -> Prepared:
         The deck cannot be read.
     """
     deck = read(request)
-    model = _at_rest(deck.model) if deck.model and at_rest else deck.model
+    model = without_motions(deck.model) if deck.model and at_rest else deck.model
     try:
         ready = assembled(request, model, deck.diagnostics, deck.files)
     except DeckError as err:
@@ -114,7 +114,7 @@ def prepare(request: Request, at_rest: bool = False) -> Prepared:
     return replace(ready, warnings=tuple(deck.moved(ready.warnings, request.deck)))
 
 
-def _at_rest(model: Model) -> Model:
+def without_motions(model: Model) -> Model:
     """Return the model without its motions, its time-dependent forces, its histories, and the performance
     points of its pushovers, which need a motion.
     """

@@ -63,7 +63,7 @@ def read(request: Request) -> ReadDeck:
     name = request.deck
     if os.path.realpath(name) in request.unsaved or not recognised(name):
         return ReadDeck(*read_deck(name, catalog(), request.params, request.unsaved))
-    text, old = imported(name, shown=Path(name).name, run=True)
+    text, old = ruaumoko(name, shown=Path(name).name, run=True)
     files = {name: text}
     if has_errors(old.report):
         return ReadDeck(None, list(old.report), files, old)
@@ -72,7 +72,7 @@ def read(request: Request) -> ReadDeck:
     return deck._replace(diagnostics=[*old.report, *deck.moved(diagnostics, name)])
 
 
-def imported(
+def ruaumoko(
     name: str, records: Sequence[File] = (), shown: str = "", run: bool = False
 ) -> tuple[str, Translation]:
     """Return the text of an old deck, and its translation; see `translate`.

@@ -1,4 +1,4 @@
-"""``pound-solve import``: translate a deck of Ruaumoko-2D into one of this program."""
+"""``pound-solve import``: translate a model of another program into a deck of this one."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from pathlib import Path
 
 from pound_solve.cli import common
 
-SUMMARY = "make a deck of this program of one of Ruaumoko-2D; comments say how it was read"
-EXAMPLES = (("old.dat -o model.inp", "translate a deck of Ruaumoko-2D"),)
+SUMMARY = "make a deck of a model of OpenSees or Ruaumoko-2D; comments say how it was read"
+EXAMPLES = (
+    ("old.dat -o model.inp", "translate a deck of Ruaumoko-2D"),
+    ("frame.tcl --units kip,in,s -o model.inp", "translate a model of OpenSees"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("deck", type=Path, help="deck of Ruaumoko-2D")
+    parser.add_argument("deck", type=Path, help="deck of Ruaumoko-2D, or model of OpenSees (.tcl, .py)")
     parser.add_argument(
         "-o", "--out", type=Path, metavar="FILE", help="new deck (default: standard output)"
     )
@@ -25,7 +28,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         type=Path,
         metavar="FILE",
-        help="file of a record that does not follow in the deck; twice: the vertical one, too",
+        help="Ruaumoko: file of a record that does not follow in the deck; twice: the vertical one, too",
+    )
+    parser.add_argument(
+        "--units",
+        type=_units,
+        default=(),
+        metavar="F,L,T",
+        help="OpenSees: units of force, length and time of the model, such as kip,in,s",
+    )
+    parser.add_argument(
+        "--execute",
+        dest="executed",  # `execute` is the verb's function
+        action="store_true",
+        help="OpenSees: execute a model in Python, which reads it",
     )
 
 
@@ -34,12 +50,20 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import has_errors, render
     from pound_deck.files import contents
     from pound_import.ruaumoko.equake import File
-    from pound_solve.driver.reading import imported
+    from pound_solve.driver.importing import Choices, imported
 
     folder = args.out.parent if args.out else Path()
-    records = [File(_from(folder, path), contents(path).decode("latin-1")) for path in args.record]
-    text, old = imported(str(args.deck), records, _from(folder, args.deck))
-    print(render(old.report, {str(args.deck): text}), file=sys.stderr)
+
+    def shown(path: Path) -> str:
+        """Path of a file relative to the folder of the new deck, where there is one."""
+        try:
+            return Path(os.path.relpath(path, folder)).as_posix()
+        except ValueError:  # another drive
+            return path.resolve().as_posix()
+
+    records = [File(shown(path), contents(path).decode("latin-1")) for path in args.record]
+    texts, old = imported(str(args.deck), Choices(records, shown, args.executed, args.units))
+    print(render(old.report, texts), file=sys.stderr)
     if has_errors(old.report):
         return common.MISTAKES
     if args.out is None:
@@ -53,9 +77,9 @@ def execute(args: argparse.Namespace) -> int:
     return common.DONE
 
 
-def _from(folder: Path, path: Path) -> str:
-    """Path of a file relative to the folder of the deck, where there is one."""
-    try:
-        return Path(os.path.relpath(path, folder)).as_posix()
-    except ValueError:  # another drive
-        return path.resolve().as_posix()
+def _units(text: str) -> tuple[str, ...]:
+    """Names of three units."""
+    names = tuple(text.split(","))
+    if len(names) != 3 or not all(name.strip() == name != "" for name in names):
+        raise argparse.ArgumentTypeError("three names joined by commas are needed, such as kN,m,s")
+    return names

@@ -1,0 +1,108 @@
+"""Models of OpenSees, written for the tests."""
+
+#: two storeys of elastic members with loads, damping and a motion; units kN, m, s
+FRAME = """\
+# two storeys, one bay
+wipe
+model BasicBuilder -ndm 2 -ndf 3
+set h 3.5
+for {set k 0} {$k < 3} {incr k} {
+    node [expr {10*$k + 1}] 0.0 [expr {$k*$h}]
+    node [expr {10*$k + 2}] 6.0 [expr {$k*$h}]
+}
+fix 1 1 1 1
+fix 2 1 1 1
+geomTransf PDelta 1
+geomTransf Linear 2
+proc column {tag i j} {
+    element elasticBeamColumn $tag $i $j 0.09 2.5e7 6.75e-4 1
+}
+column 1 1 11
+column 2 2 12
+column 3 11 21
+column 4 12 22
+element elasticBeamColumn 5 11 12 0.12 2.5e7 1.6e-3 2
+element elasticBeamColumn 6 21 22 0.12 2.5e7 1.6e-3 2
+foreach n {11 12} { mass $n 16.0 16.0 0.0 }
+mass 21 14.0 14.0 0.0
+mass 22 14.0 14.0 0.0
+timeSeries Linear 1
+pattern Plain 1 1 {
+    load 11 0.0 -98.1 0.0
+    load 12 0.0 -98.1 0.0
+    eleLoad -ele 5 6 -type -beamUniform -20.0
+}
+set lambda [eigen 2]
+set w1 [expr {sqrt([lindex $lambda 0])}]
+set w2 [expr {sqrt([lindex $lambda 1])}]
+set xi 0.05
+rayleigh [expr {2*$xi*$w1*$w2/($w1 + $w2)}] 0.0 [expr {2*$xi/($w1 + $w2)}] 0.0
+recorder Drift -file out/drift.txt -iNode 1 11 -jNode 11 21 -dof 1 -perpDirn 2
+constraints Transformation
+system BandGeneral
+test NormDispIncr 1e-10 20
+algorithm Newton
+integrator LoadControl 0.1
+analysis Static
+analyze 10
+loadConst -time 0.0
+timeSeries Trig 2 0.0 5.0 0.6 -factor 2.0
+pattern UniformExcitation 2 1 -accel 2
+wipeAnalysis
+integrator Newmark 0.5 0.25
+analysis Transient
+set ok 0
+while {$ok == 0 && [getTime] < 5.0} {
+    set ok [analyze 1 0.01]
+}
+puts "the roof went to [nodeDisp 21 1]"
+"""
+#: two masses on springs that yield, with a gap between them
+POUNDING = """\
+model basic -ndm 2 -ndf 3
+node 1 0 0
+node 2 0 0
+node 3 1 0
+node 4 1 0
+foreach n {1 3} { fix $n 1 1 1 }
+foreach n {2 4} { fix $n 0 1 1 }
+mass 2 1.0 1.0 0.0
+mass 4 2.0 2.0 0.0
+uniaxialMaterial Steel01 1 4.0 100.0 0.05
+uniaxialMaterial Elastic 2 500.0
+uniaxialMaterial ElasticPPGap 3 1e5 -1e9 -0.02
+element zeroLength 1 1 2 -mat 1 -dir 1 -doRayleigh 1
+element zeroLength 2 3 4 -mat 2 -dir 1 -doRayleigh 1
+element twoNodeLink 3 2 4 -mat 3 -dir 1
+region 1 -ele 1 -rayleigh 0.2 0.0 0.001 0.0
+region 2 -ele 2 -rayleigh 0.1 0.0 0.0 0.0
+timeSeries Path 1 -dt 0.1 -values {0.0 3.0 -3.0 2.0 -2.0 1.0 0.0} -factor 1.5
+pattern UniformExcitation 1 1 -accel 1
+analysis Transient
+analyze 300 0.01
+"""
+#: a cantilever of a fibre section under its weight, pushed
+FIBRES = """\
+model basic -ndm 2 -ndf 3
+node 1 0 0
+node 2 0 3.0
+fix 1 1 1 1
+mass 2 20.0 20.0 0.0
+uniaxialMaterial Concrete01 1 -30e3 -0.002 -25e3 -0.01
+uniaxialMaterial Steel01 2 420e3 2.0e8 0.01
+section Fiber 1 {
+    patch rect 1 20 1 -0.2 -0.2 0.2 0.2
+    layer straight 2 3 5e-4 0.15 -0.15 0.15 0.15
+    layer straight 2 3 5e-4 -0.15 -0.15 -0.15 0.15
+}
+geomTransf Linear 1
+element nonlinearBeamColumn 1 1 2 5 1 1
+pattern Plain 1 Linear { load 2 0.0 -600.0 0.0 }
+integrator LoadControl 1.0
+analysis Static
+analyze 1
+loadConst -time 0.0
+pattern Plain 2 Linear { load 2 1.0 0.0 0.0 }
+integrator DisplacementControl 2 1 0.001
+analyze 60
+"""
