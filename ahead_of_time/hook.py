@@ -17,10 +17,25 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
-def platform_tag() -> str:
-    """Tag of the platform that code is compiled for."""
-    own = sysconfig.get_platform().replace("universal2", platform.machine())
-    return own.replace("-", "_").replace(".", "_")
+def platform_tag(python: str, machine: str, oldest: str) -> str:
+    """Tag of the platform that code is compiled for.
+
+    Parameters
+    ----------
+    python : str
+        The platform of Python, which on macOS may have several processors.
+    machine : str
+        The processor.
+    oldest : str
+        The oldest macOS that the compiler is asked for; empty: that of Python.
+    """
+    if python.startswith("macosx"):
+        release = oldest or python.split("-")[1]
+        major, minor = [int(part) for part in f"{release}.0".split(".")[:2]]
+        if major > 10 or machine == "arm64":  # the first macOS for arm64 is 11, and tags have no 11.1
+            major, minor = max(major, 11), 0
+        python = f"macosx-{major}.{minor}-{machine}"
+    return python.replace("-", "_").replace(".", "_")
 
 
 class KernelsHook(BuildHookInterface):  # type: ignore[misc] # not installed where types are checked
@@ -47,4 +62,6 @@ class KernelsHook(BuildHookInterface):  # type: ignore[misc] # not installed whe
         for own in folder.iterdir():
             build_data["force_include"][str(own)] = f"pound_solve/numerics/{own.name}"
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{platform_tag()}"
+        oldest = os.environ.get("MACOSX_DEPLOYMENT_TARGET", "")
+        tag = platform_tag(sysconfig.get_platform(), platform.machine(), oldest)
+        build_data["tag"] = f"py3-none-{tag}"

@@ -34,6 +34,8 @@ def link(objects: Mapping[str, bytes], path: Path) -> None:
         os.environ["ARCHFLAGS"] = f"-arch {platform.machine()}"
     compiler = new_compiler()
     customize_compiler(compiler)
+    if sys.platform != WINDOWS:  # a folder of this machine, in which others would look for libraries
+        compiler.linker_so = [word for word in compiler.linker_so if "rpath" not in word]
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder, f"{name}{compiler.obj_extension}") for name in objects]
         for own, content in zip(paths, objects.values()):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,6 +16,10 @@ from pound_solve.numerics.addressed import Addressed
 from pound_solve.numerics.library import CONTENTS
 
 WHOLE, REAL, ADDRESS = "i64", "double", "ptr"  #: LLVM's names of types of 64 bits
+#: version of the mathematical functions that every glibc has, by processor
+FIRST = {"x86_64": "GLIBC_2.2.5", "aarch64": "GLIBC_2.17"}
+#: functions of which glibc 2.29, or 2.38, has a second version: of other errors, not of other numbers
+RENEWED = ("exp", "exp2", "log", "log2", "pow", "fmod")
 
 
 def unoptimised(call: Call) -> tuple[Any, str]:
@@ -90,6 +95,12 @@ def contents(calls: Sequence[Call], numbers: dict[str, int]) -> str:
     return f"{text}\ndefine ptr @{CONTENTS}() {{\nret ptr @text\n}}"
 
 
+def first_versions() -> str:
+    """LLVM's text by which code calls the first version of functions, so that old systems can load it."""
+    first = FIRST.get(platform.machine(), "") if platform.libc_ver()[0] == "glibc" else ""
+    return "".join(f'module asm ".symver {name}, {name}@{first}"\n' for name in RENEWED if first)
+
+
 def machine_code(name: str, source: str, kernel: Any = None) -> bytes:
     """An object file with one function that is seen from outside.
 
@@ -105,11 +116,12 @@ def machine_code(name: str, source: str, kernel: Any = None) -> bytes:
     kernel : module of LLVM or None
         What it calls.
     """
+    llvm.initialize_native_asmparser()  # for `first_versions`
     with jit.compiling(), global_compiler_lock:
         library = AOTCPUCodegen(name).create_library(name)
         if kernel is not None:
             library.add_llvm_module(llvm.parse_bitcode(kernel.as_bitcode()))
-        library.add_llvm_module(llvm.parse_assembly(source))
+        library.add_llvm_module(llvm.parse_assembly(first_versions() + source))
         module = library._final_module
         for own in (*module.functions, *module.global_variables):
             if not own.is_declaration and own.name != name:
