@@ -1,3 +1,3 @@
 """Version of the program, in its own module so that every package may import it."""
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
