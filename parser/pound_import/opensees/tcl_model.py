@@ -176,7 +176,7 @@ class TclModel:
 
     def _stop_of_model(self) -> tuple[str, int]:
         """File and line of the mistake that ended the model."""
-        trace = self._tcl.eval("interp eval model {set ::errorInfo}")
+        trace = self._tcl.eval("interp eval model {expr {[info exists ::errorInfo] ? $::errorInfo : {}}}")
         file, line = self._path.name, 1
         for text in trace.splitlines():
             text = text.strip()

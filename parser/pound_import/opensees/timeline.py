@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Final
 
+MOST: Final = 1e15  #: magnitude of a step or count
 STATIC, TRANSIENT = "Static", "Transient"
 _LOAD: Final = ("LoadControl", "LoadPath", "ArcLength", "MinUnbalDispNorm")
 
@@ -74,7 +75,9 @@ def _after(words: Sequence[str], flag: str, default: float) -> float:
 
 
 def _number(text: str, default: float) -> float:
+    """Number of a word, or the default where it is none of possible magnitude."""
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
         return default
+    return value if abs(value) <= MOST else default

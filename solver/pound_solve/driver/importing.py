@@ -96,17 +96,19 @@ def _text(name: str) -> str:
 
 
 def _modes(name: str, commands: Sequence[Command], count: int) -> NaturalModes:
-    """NaturalModes of a model of OpenSees as far as its commands define it; none where it has mistakes."""
+    """Modes of a model of OpenSees as far as its commands define it; none where it has mistakes."""
     from pound_import.opensees.importer import so_far
+    from numpy.linalg import LinAlgError
+
     from pound_import.opensees.replay import NaturalModes
     from pound_solve.driver.prepare import DeckError
 
     text, numbers = so_far(name, commands)
     try:
         structure = _structure(name, text)
-    except DeckError:
+        modes = structure.vibration(count)
+    except (DeckError, LinAlgError):  # LinAlgError: a mechanism
         return NaturalModes()
-    modes = structure.vibration(count)
     n = min(count, len(modes.omega))
     shapes = {
         tag: [
