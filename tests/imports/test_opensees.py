@@ -491,6 +491,8 @@ REFUSED = {
     "rayleigh 0.1 0.1 0.1 0.0": ("L622", "at once"),
     "rayleigh -0.1 0 0 0": ("L620", "negative"),
     "setNodeDisp 2 1 0.1": ("L622", "sets a state"),
+    "uniaxialMaterial Elastic 5 1\nelement zeroLength 8 1 2 -mat 5 -dir 1\n"
+    "pattern Plain 5 Linear {\neleLoad -ele 8 -type -beamUniform 1\n}": ("L622", "no beam"),
     "remove element 1": ("L622", "changes between analyses"),
 }
 

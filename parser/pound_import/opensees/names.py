@@ -41,7 +41,8 @@ LEFT_OUT: Final = _words(
 #: commands that control the solution or write results
 SILENT: Final = _words(
     """
-    system numberer constraints test algorithm initialize print printA printB printGID database save restore
+    system numberer constraints test algorithm initialize print printModel printA printB printGID
+    database save restore
     logFile record remove_recorders barrier start stop setPrecision display prp vrp vup vpn viewWindow plane
     port projection fill domainChange reactions InitialStateAnalysis computeGradients defaultUnits
     sensitivityAlgorithm invoke setCreep numFact playback

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from pound_deck.model import Span
 from pound_import.draft import Draft, number
 from pound_import.opensees.commands import Command
 from pound_import.opensees.model import DIRECTIONS, ScriptModel
@@ -35,6 +34,7 @@ class NewDeck:
         self.damped: dict[str, list[str]] = {}  #: labels by the damping of their stiffness
         self.masses = {tag: list(point.mass) for tag, point in model.points.items()}
         self.written: dict[int, list[int]] = {}  #: numbers of the new elements by those of the model
+        self.members: set[int] = set()  #: tags of elements that are a FRAME
 
     def node(self, tag: int) -> int:
         """Number of a node in the new deck."""
@@ -84,6 +84,8 @@ class NewDeck:
             self._last += 1
             number_of_it = self._last
         self.written.setdefault(tag, []).append(number_of_it)
+        if words.startswith("FRAME "):
+            self.members.add(tag)
         i, j = (self._nodes[end] for end in ends)
         self.draft.add("ELEMENTS", f"{number_of_it} {self._labels[key]} {i} {j}", command.span)
 
@@ -146,8 +148,3 @@ def ends(command: Command, model: ScriptModel) -> tuple[int, int]:
     model.point(i, command)
     model.point(j, command)
     return i, j
-
-
-def place(command: Command) -> Span:
-    """Place of a command."""
-    return command.span

@@ -65,7 +65,7 @@ class PythonModel:
 
     def _install(self) -> None:
         """Put the recording module, and empty ones for pictures, in place of the libraries."""
-        recording = ModuleType("opensees")
+        recording = _Recording("opensees", self._recorded)
         for name in EVERY:
             setattr(recording, name, self._recorded(name))
         recording.__dict__["__all__"] = list(EVERY)
@@ -99,6 +99,19 @@ class PythonModel:
             if path.is_absolute() and path.is_relative_to(folder) and "site-packages" not in path.parts:
                 return path.relative_to(folder).as_posix(), frame.lineno or 1
         return self._path.name, 1
+
+
+class _Recording(ModuleType):
+    """A module that records its functions, those too that are not known."""
+
+    def __init__(self, name: str, recorded: Callable[[str], Callable[..., Any]]) -> None:
+        super().__init__(name)
+        self._recorded = recorded
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self._recorded(name)
 
 
 class _Nothing(ModuleType):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -16,6 +17,8 @@ from pound_deck.model import Span
 from pound_import.opensees.commands import Command
 
 SECONDS: Final = 60.0  #: that a replay may take
+#: for libraries that a model in Python imports: one thread, no windows
+_QUIET: Final = {"OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +81,12 @@ def replay(path: Path, shown: str, module: str, eigen: Eigen, seconds: float = S
     """
     words = [sys.executable, "-P", "-m", f"{__package__}.{module}", str(path), str(seconds)]
     process = subprocess.Popen(
-        words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, encoding="utf-8"
+        words,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        encoding="utf-8",
+        env={**os.environ, **_QUIET},
     )
     assert process.stdin and process.stdout
     replayed = Replayed()

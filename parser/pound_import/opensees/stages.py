@@ -137,6 +137,8 @@ class Stages:
             element = self.model.item("the element", self.model.elements, tag, load)
             if tag not in self.deck.written:
                 continue  # the element itself is a mistake
+            if tag not in self.deck.members:
+                raise load.mistake(f"eleLoad on element {tag}, which is no beam", "load its nodes")
             i, j = (self.model.points[end] for end in ends(element, self.model))
             length = ((j.x - i.x) ** 2 + (j.y - i.y) ** 2) ** 0.5 or 1.0
             cos, sin = (j.x - i.x) / length, (j.y - i.y) / length

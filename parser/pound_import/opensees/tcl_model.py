@@ -176,6 +176,8 @@ class TclModel:
 
     def _stop_of_model(self) -> tuple[str, int]:
         """File and line of the mistake that ended the model."""
+        for kind, value in (("time", "-seconds"), ("commands", "-value")):  # else nothing more is evaluated
+            self._tcl.eval(f"interp limit model {kind} {value} {{}}")
         trace = self._tcl.eval("interp eval model {expr {[info exists ::errorInfo] ? $::errorInfo : {}}}")
         file, line = self._path.name, 1
         for text in trace.splitlines():
