@@ -22,7 +22,7 @@ SUBJECTS = {
     "R4": "Records",
     "A5": "Stops of an analysis",
     "S6": "Studies of many runs",
-    "L6": "Decks of Ruaumoko",
+    "L6": "Models of other programs",
 }
 
 

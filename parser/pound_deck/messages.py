@@ -2,7 +2,7 @@
 
 ``messages.txt`` holds them: a line of number and title, and the meaning, indented, below it.  Numbers: P1xx
 source text, P2xx cards and values, P3xx the model, R4xx records, A5xx stops of an analysis, S6xx studies of
-many runs, L6xx decks of Ruaumoko.  The number of a message never changes.
+many runs, L6xx models of other programs.  The number of a message never changes.
 """
 
 from __future__ import annotations

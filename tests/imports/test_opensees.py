@@ -521,8 +521,13 @@ def test_a_script_without_elements(tmp_path):
 
 
 def test_all_messages_of_models_of_opensees_are_in_use():
-    told = {refusal[0] for refusal in REFUSED.values()} | {"L621", "L624", "L625"}  # above and below
-    assert {code for code in MESSAGES if code.startswith("L62")} == told
+    told = {refusal[0] for refusal in REFUSED.values()} | {
+        "L621",
+        "L624",
+        "L625",
+        "L626",
+    }  # above and below
+    assert {code for code in MESSAGES if code.startswith("L62")} == told | {"L621", "L624", "L625", "L626"}
 
 
 # ---------------------------------------------------------------------- Python
@@ -568,6 +573,15 @@ def test_a_mistake_in_python_has_its_line(tmp_path):
 
 
 # ---------------------------------------------------------------------- the verb
+
+
+@pytest.mark.parametrize("name", ["model.tcl", "model.py", "model.s2k", "model.$2k"])
+def test_a_model_of_another_program_is_not_run_as_a_deck(tmp_path, capsys, name):
+    (tmp_path / name).write_text(FRAME)
+    for words in ([], ["check"]):
+        assert main([*words, str(tmp_path / name)]) == 2
+        told = capsys.readouterr().err
+        assert told.count("error") == 1 and f"pound-solve import {name} -o model.inp" in told
 
 
 def test_the_verb_writes_a_deck_beside_which_the_record_is_found(tmp_path, capsys):

@@ -75,7 +75,7 @@ def _after(words: Sequence[str], flag: str, default: float) -> float:
 
 
 def _number(text: str, default: float) -> float:
-    """Number of a word, or the default where it is none of possible magnitude."""
+    """Number of a word, or the default where it has no possible magnitude."""
     try:
         value = float(text)
     except ValueError:

@@ -13,7 +13,7 @@ from pound_deck.model import Span
 from pound_deck.reader import read_text
 from pound_import.translation import Translation
 from pound_solve.catalog import catalog
-from pound_solve.driver.reading import ruaumoko
+from pound_solve.driver.reading import OF_OTHERS, ruaumoko
 
 if TYPE_CHECKING:
     from pound_import.opensees.commands import Command
@@ -41,12 +41,16 @@ class Choices:
         A model in Python may be executed.
     units : tuple of str
         Of a model of OpenSees: force, length, time; none: not known.
+    plane, load : str
+        Of a model of SAP2000: the plane that is read, and its static loads; empty: the only ones.
     """
 
     records: Sequence[File] = ()
     shown: Callable[[Path], str] = Path.as_posix
     execute: bool = False
     units: tuple[str, ...] = ()
+    plane: str = ""
+    load: str = ""
 
 
 def imported(name: str, choices: Choices) -> tuple[dict[str, str], Translation]:
@@ -58,8 +62,11 @@ def imported(name: str, choices: Choices) -> tuple[dict[str, str], Translation]:
         A file cannot be read.
     """
     suffix = Path(name).suffix.lower()
-    if suffix in (".tcl", ".py"):
-        return _opensees(name, suffix, choices)
+    match OF_OTHERS.get(suffix):
+        case "OpenSees":
+            return _opensees(name, suffix, choices)
+        case "SAP2000":
+            return _sap2000(name, choices)
     text, translation = ruaumoko(name, choices.records, choices.shown(Path(name)))
     return {name: text}, translation
 
@@ -87,6 +94,14 @@ def _opensees(name: str, suffix: str, choices: Choices) -> tuple[dict[str, str],
     return {file: _text(file) for file in sorted(files)}, translation
 
 
+def _sap2000(name: str, choices: Choices) -> tuple[dict[str, str], Translation]:
+    """Translate a model of SAP2000."""
+    from pound_import.sap2000.importer import translate
+
+    text = contents(name).decode("utf-8-sig", "replace").replace("\r\n", "\n")
+    return {name: text}, translate(name, text, catalog(), choices.plane, choices.load)
+
+
 def _text(name: str) -> str:
     """Text of a file for the lines that a message shows, empty where it cannot be read."""
     try:
@@ -97,9 +112,9 @@ def _text(name: str) -> str:
 
 def _modes(name: str, commands: Sequence[Command], count: int) -> NaturalModes:
     """Modes of a model of OpenSees as far as its commands define it; none where it has mistakes."""
-    from pound_import.opensees.importer import so_far
     from numpy.linalg import LinAlgError
 
+    from pound_import.opensees.importer import so_far
     from pound_import.opensees.replay import NaturalModes
     from pound_solve.driver.prepare import DeckError
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
-from pound_deck.model import Model
+from pound_deck.model import Model, Span
 from pound_deck.reader import read_deck, read_text
 from pound_import.ruaumoko.files import recognised, text_of
 from pound_solve.catalog import catalog
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from pound_import.ruaumoko.equake import File
     from pound_import.translation import Translation
 
+#: endings of models that only `import` reads, with their programs
+OF_OTHERS: Final = {".tcl": "OpenSees", ".py": "OpenSees", ".s2k": "SAP2000", ".$2k": "SAP2000"}
 AS_READ: Final = " as read"  #: suffix of the name of a deck converted from an old one
 
 
@@ -61,6 +63,10 @@ def read(request: Request) -> ReadDeck:
         The deck cannot be read.
     """
     name = request.deck
+    if Path(name).suffix.lower() in OF_OTHERS:
+        what = f"{Path(name).name} is a model of {OF_OTHERS[Path(name).suffix.lower()]}, not a deck"
+        hint = f"pound-solve import {Path(name).name} -o model.inp makes a deck of it"
+        return ReadDeck(None, [Diagnostic("L626", what, Span(name, 1, 1, 2), hint)], {})
     if os.path.realpath(name) in request.unsaved or not recognised(name):
         return ReadDeck(*read_deck(name, catalog(), request.params, request.unsaved))
     text, old = ruaumoko(name, shown=Path(name).name, run=True)

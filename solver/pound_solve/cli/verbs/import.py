@@ -9,16 +9,21 @@ from pathlib import Path
 
 from pound_solve.cli import common
 
-SUMMARY = "make a deck of a model of OpenSees or Ruaumoko-2D; comments say how it was read"
+SUMMARY = "make a deck of a model of OpenSees, SAP2000 or Ruaumoko-2D; comments say how it was read"
 EXAMPLES = (
     ("old.dat -o model.inp", "translate a deck of Ruaumoko-2D"),
     ("frame.tcl --units kip,in,s -o model.inp", "translate a model of OpenSees"),
+    ("frame.s2k --plane XZ@Y=3.5 --load DEAD -o model.inp", "translate a plane of a model of SAP2000"),
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("deck", type=Path, help="deck of Ruaumoko-2D, or model of OpenSees (.tcl, .py)")
+    parser.add_argument(
+        "deck",
+        type=Path,
+        help="model of OpenSees (.tcl, .py) or SAP2000 (.s2k, .$2k), or deck of Ruaumoko-2D",
+    )
     parser.add_argument(
         "-o", "--out", type=Path, metavar="FILE", help="new deck (default: standard output)"
     )
@@ -43,6 +48,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="OpenSees: execute a model in Python, which reads it",
     )
+    parser.add_argument(
+        "--plane",
+        default="",
+        metavar="PLANE",
+        help="SAP2000: plane of a model in space, such as XZ, XZ@Y=3.5 or Y=3.5",
+    )
+    parser.add_argument(
+        "--load",
+        default="",
+        metavar="CASE",
+        help="SAP2000: static case, combination, or load patterns joined by commas",
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -62,7 +79,9 @@ def execute(args: argparse.Namespace) -> int:
             return path.resolve().as_posix()
 
     records = [File(shown(path), contents(path).decode("latin-1")) for path in args.record]
-    texts, old = imported(str(args.deck), Choices(records, shown, args.executed, args.units))
+    texts, old = imported(
+        str(args.deck), Choices(records, shown, args.executed, args.units, args.plane, args.load)
+    )
     print(render(old.report, texts), file=sys.stderr)
     if has_errors(old.report):
         return common.MISTAKES
