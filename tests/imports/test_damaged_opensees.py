@@ -8,6 +8,7 @@ import random
 
 import pytest
 
+from imports.damage import damaged
 from imports.opensees_models import FIBRES, FRAME, POUNDING
 from pound_deck.diagnostics import has_errors
 from pound_deck.model import Span
@@ -63,37 +64,6 @@ WORDS = (
 )
 
 
-def damaged(text: str, rng: random.Random) -> str:
-    """A model with one to six changes of lines, words or characters."""
-    lines = text.split("\n")
-    for _ in range(rng.choice((1, 1, 2, 3, 6))):
-        k = rng.randrange(len(lines))
-        words = lines[k].split(" ")
-        match rng.randrange(8):
-            case 0:
-                lines.insert(k, lines[rng.randrange(len(lines))])
-            case 1:
-                words[rng.randrange(len(words))] = rng.choice(WORDS)
-                lines[k] = " ".join(words)
-            case 2:
-                del words[rng.randrange(len(words))]
-                lines[k] = " ".join(words)
-            case 3:
-                words.insert(rng.randrange(len(words) + 1), rng.choice(WORDS))
-                lines[k] = " ".join(words)
-            case 4:
-                lines[k] = lines[k][: rng.randrange(len(lines[k]) + 1)]
-            case 5:
-                at = rng.randrange(len(lines[k]) + 1)
-                lines[k] = lines[k][:at] + chr(rng.randrange(1, 256)) + lines[k][at + 1 :]
-            case 6:
-                other = rng.randrange(len(lines))
-                lines[k], lines[other] = lines[other], lines[k]
-            case _:
-                lines = lines[: k + 1]
-    return "\n".join(lines)
-
-
 def recorded(folder, text: str) -> Replayed:
     """Commands of a model, replayed in this process."""
     from pound_import.opensees.tcl_model import TclModel
@@ -112,7 +82,7 @@ def recorded(folder, text: str) -> Replayed:
 
 def check(folder, rng: random.Random) -> bool:
     """Translate a damaged model; return whether it was read."""
-    text = damaged(rng.choice(MODELS), rng)
+    text = damaged(rng.choice(MODELS), rng, WORDS)
     replayed = recorded(folder, text)
     done = translate("model.tcl", replayed, lambda deck: {}, ("kN", "m", "s") if rng.random() < 0.5 else ())
     assert bool(done.text) != has_errors(done.report)

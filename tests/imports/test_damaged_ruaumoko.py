@@ -6,6 +6,7 @@ import random
 
 import pytest
 
+from imports.damage import damaged
 from imports.ruaumoko_decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
 from pound_deck.diagnostics import has_errors
 from pound_deck.reader import read_text
@@ -22,43 +23,12 @@ ITEMS = (
 )
 
 
-def damaged(text: str, rng: random.Random) -> str:
-    """A deck with one to six changes of lines, items or characters."""
-    lines = text.split("\n")
-    for _ in range(rng.choice((1, 1, 2, 3, 6))):
-        k = rng.randrange(len(lines))
-        items = lines[k].split(" ")
-        match rng.randrange(8):
-            case 0:
-                lines.insert(k, lines[rng.randrange(len(lines))])
-            case 1:
-                items[rng.randrange(len(items))] = rng.choice(ITEMS)
-                lines[k] = " ".join(items)
-            case 2:
-                del items[rng.randrange(len(items))]
-                lines[k] = " ".join(items)
-            case 3:
-                items.insert(rng.randrange(len(items) + 1), rng.choice(ITEMS))
-                lines[k] = " ".join(items)
-            case 4:
-                lines[k] = lines[k][: rng.randrange(len(lines[k]) + 1)]
-            case 5:
-                at = rng.randrange(len(lines[k]) + 1)
-                lines[k] = lines[k][:at] + chr(rng.randrange(1, 256)) + lines[k][at + 1 :]
-            case 6:
-                other = rng.randrange(len(lines))
-                lines[k], lines[other] = lines[other], lines[k]
-            case _:
-                lines = lines[: k + 1]
-    return "\n".join(lines)
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_a_damaged_deck_is_read_or_told(seed):
     rng = random.Random(seed)
     ends = set()
     for _ in range(60):
-        text = damaged(rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE)), rng)
+        text = damaged(rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE)), rng, ITEMS)
         is_legacy(text)
         records = [RECORD] if rng.random() < 0.7 else []
         old = translate("old.dat", text, CATALOG, records, run=rng.random() < 0.3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -361,3 +363,22 @@ def test_a_mistake_in_an_old_deck_has_its_line_in_every_verb(tmp_path, capsys):
     for words in (["motions", str(deck)], ["spectrum", str(deck)], ["sweep", str(study)]):
         assert main(words) == 2
         assert f"old.dat:{line}:" in capsys.readouterr().err, words
+
+
+def test_the_page_shows_one_model_in_both_languages():
+    page = (Path(__file__).parents[2] / "manual" / "coming-from-ruaumoko.md").read_text("utf-8")
+    old, new = (block.lstrip("\n") for block in page.split("## 7.")[1].split("```")[1::2])
+    ours, _, _ = read_text(new, CATALOG)
+    theirs = model(old)
+    assert ours
+    nodes, elements, cards = (
+        [select(m) for m in (ours, theirs)]
+        for select in (
+            lambda m: [(n.x, n.y, n.fixed) for n in m.nodes.values()],
+            lambda m: [(e.prop, e.i, e.j) for e in m.elements.values()],
+            lambda m: [*m.props.values(), *m.weights, *m.damping, *m.equake, *m.analyses, m.output],
+        )
+    )
+    assert nodes[0] == nodes[1] and elements[0] == elements[1]
+    for first, second in zip(*cards, strict=True):
+        assert dict(first.values) == dict(second.values)
