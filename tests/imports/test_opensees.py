@@ -381,6 +381,24 @@ analyze 5
     assert (point["PX"], point["AT"]) == pytest.approx((-15.0, 0.25)) and point["PY"] == pytest.approx(0.0)
 
 
+def test_a_push_in_small_steps_has_its_turns_as_targets(tmp_path):
+    text = (
+        HEAD
+        + BEAM
+        + """
+pattern Plain 1 Linear { load 2 2.0 0 0 }
+analysis Static
+foreach {step count} {0.001 10 -0.001 25 0.002 10} {
+    integrator DisplacementControl 2 1 $step
+    for {set k 0} {$k < $count} {incr k} { analyze 1 }
+}
+"""
+    )
+    push = model(tmp_path, text).analyses[-1]
+    assert push["TARGET"] == pytest.approx((0.01, -0.015, 0.005), abs=1e-15)
+    assert (push["NODES"], push["FORCES"]) == ((2,), (2.0,))
+
+
 MOTIONS = {
     'pattern UniformExcitation 2 1 -accel "Series -dt 0.02 -filePath quake.txt -factor 9.81"': (
         "RECORD",
@@ -490,6 +508,14 @@ REFUSED = {
     "pattern Plain 5 Linear { sp 2 1 0.1 }": ("L622", "sp in a pattern"),
     "rayleigh 0.1 0.1 0.1 0.0": ("L622", "at once"),
     "rayleigh -0.1 0 0 0": ("L620", "negative"),
+    "uniaxialMaterial Elastic 5 1\nsection Fiber 5 { fiber 0 0 1 5 }\nelement zeroLengthSection 8 1 2 5": (
+        "L622",
+        "fibres without a length",
+    ),
+    "uniaxialMaterial Elastic 5 1\nsection Fiber 5 { fiber 0 0 1 5 }\nelement truss 8 1 2 5": (
+        "L620",
+        "or a section",
+    ),
     "setNodeDisp 2 1 0.1": ("L622", "sets a state"),
     "uniaxialMaterial Elastic 5 1\nelement zeroLength 8 1 2 -mat 5 -dir 1\n"
     "pattern Plain 5 Linear {\neleLoad -ele 8 -type -beamUniform 1\n}": ("L622", "no beam"),

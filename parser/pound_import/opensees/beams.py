@@ -306,8 +306,8 @@ class Beams:
             area = command.real(5, "the area")
             parts = self.materials.parts(command.whole(6, "the material"), command)
         elif len(choice.plain) == 1:
-            law = self.sections.section(command.whole(5, "the section"), command).laws.get(AXIAL)
-            parts = [law] if law else []
+            section = self.sections.section(command.whole(5, "the section"), command)
+            parts = [section.laws[AXIAL]] if AXIAL in section.laws and not section.fibres else []
         if not parts or area <= 0.0:
             what = f"{command.words[1]} {tag}: an area above 0 and a material, or a section"
             raise command.mistake(what, code="L620")

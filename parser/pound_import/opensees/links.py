@@ -52,6 +52,8 @@ class Links:
         choice = options(command, 6)
         choice.only(("-orient", "-doRayleigh"))
         section = self.sections.section(command.whole(5, "the section"), command)
+        if section.fibres:
+            raise command.mistake(f"element {tag}: a section of fibres without a length")
         for force in section.laws:
             if force not in _FORCES:
                 raise command.mistake(

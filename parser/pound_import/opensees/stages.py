@@ -7,7 +7,7 @@ which start from that state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from pound_deck.diagnostics import Mistake
@@ -224,10 +224,7 @@ class Stages:
         forces = {tag: force for tag, force in forces.items() if force}
         if not forces:
             raise command.mistake("a push without loads that grow")
-        targets, at = [], 0.0
-        for stage in pushes:
-            at += stage.moved
-            targets.append(at)
+        targets = _turns([stage.moved for stage in pushes])
         self.draft.add(
             "ANALYSIS",
             f"PUSHOVER {self.deck.node(node)} {numbers(targets)} DIRECTION={axis} PATTERN=FORCES "
@@ -253,6 +250,20 @@ class Stages:
                         f"{load.name} that grows in a push has no counterpart", "load the nodes"
                     )
                 yield scale * acting.factor, load
+
+
+def _turns(steps: Iterable[float]) -> list[float]:
+    """Displacements at which a sequence of steps turns, and the last."""
+    targets: list[float] = []
+    at = before = 0.0
+    for step in steps:
+        at = float(f"{at + step:.12g}")
+        if targets and step * before >= 0.0:
+            targets[-1] = at
+        else:
+            targets.append(at)
+        before = step or before
+    return targets
 
 
 def _sorted(stages: Calls) -> tuple[Calls, Calls, Calls]:

@@ -58,13 +58,13 @@ class Timeline:
     def _analyze(self, rest: Sequence[str]) -> None:
         steps = _number(rest[0], 0.0)
         if self.kind == TRANSIENT:
-            self.time += steps * _number((*rest[1:2], "0")[0], 0.0)
+            self.time = _sum(self.time, steps * _number((*rest[1:2], "0")[0], 0.0))
         elif self.integrator[0] == "DisplacementControl":
             node, direction, step = (_number(w, 0.0) for w in (*self.integrator[1:4], "0", "0", "0")[:3])
             place = int(node), int(direction)
-            self.moved[place] = self.moved.get(place, 0.0) + steps * step
+            self.moved[place] = _sum(self.moved.get(place, 0.0), steps * step)
         elif self.integrator[0] in _LOAD:
-            self.time += steps * _number((*self.integrator[1:2], "0")[0], 0.0)
+            self.time = _sum(self.time, steps * _number((*self.integrator[1:2], "0")[0], 0.0))
 
 
 def _after(words: Sequence[str], flag: str, default: float) -> float:
@@ -72,6 +72,11 @@ def _after(words: Sequence[str], flag: str, default: float) -> float:
         if before == flag:
             return _number(word, default)
     return default
+
+
+def _sum(before: float, step: float) -> float:
+    """Sum without the rounding of many steps."""
+    return float(f"{before + step:.12g}")
 
 
 def _number(text: str, default: float) -> float:
