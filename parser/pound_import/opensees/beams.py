@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from pound_import.draft import number, numbers
@@ -80,6 +80,9 @@ class Beams:
         plain = choice.plain
         if len(plain) == 2:
             section = self.sections.section(command.whole(5, "the section"), command)
+            if SHEAR in section.laws:
+                reading = f"element {tag} has no shear deformation, as in OpenSees 3.7.1"
+                section = _slender(section, self.materials.doubt(command, reading))
         elif len(plain) == 4:
             area, e, inertia = command.reals(5, "A E I")
             section = _section(e, area, inertia)
@@ -195,6 +198,8 @@ class Beams:
         self, tag: int, command: Command, rule: str, count: int, section_tag: int, transformation: int
     ) -> None:
         section = self._under_load(self.sections.section(section_tag, command), tag, command)
+        if command.words[1] == "dispBeamColumn":  # it ignores the shear of its section
+            section = _slender(section)
         shape = self._shape(command, transformation)
         if section.bends or section.fibres:
             self._elastic(tag, command, section, shape, "")
@@ -379,6 +384,12 @@ class Beams:
         if sum(blocks) >= full:
             raise given.mistake(f"element {command.words[2]}: its -jntOffset leaves no length", code="L620")
         return Shape(full - sum(blocks), (blocks[0], blocks[1]))
+
+
+def _slender(section: SectionLaws, *notes: str) -> SectionLaws:
+    """Section without shear deformation."""
+    laws = {force: law for force, law in section.laws.items() if force != SHEAR}
+    return replace(section, laws=laws, notes=(*section.notes, *notes))
 
 
 def _section(e: float, area: float, inertia: float) -> SectionLaws:
