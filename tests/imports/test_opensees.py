@@ -307,6 +307,9 @@ BEAMS = {
     ),
     "element elasticBeamColumn 1 1 2 0.1 2e7 1e-3 1 -mass 2.0 -cMass": "WGT=19.62",
     "section Elastic 4 2e7 0.1 1e-3\nelement dispBeamColumn 1 1 2 3 4 1": "E=2e7 A=0.1 I=1e-3",
+    "section Elastic 4 2e7 0.1 1e-3 8e6 0.8\nelement dispBeamColumn 1 1 2 3 4 1": "E=2e7 A=0.1 AS=0",
+    "section Elastic 4 2e7 0.1 1e-3 8e6 0.8\nelement elasticBeamColumn 1 1 2 4 1": "E=2e7 A=0.1 AS=0",
+    "section Elastic 4 2e7 0.1 1e-3 8e6 0.8\nelement forceBeamColumn 1 1 2 3 4 1": "G=2e7 AS=0.032",
     "uniaxialMaterial Steel01 1 50 2e4 0.1\nuniaxialMaterial Elastic 2 2e6\n"
     "section Aggregator 4 1 Mz 2 P\nelement forceBeamColumn 1 1 2 4 4 1": (
         "E=1 A=2e6 I=2e4 RULE=BILINEAR R=0.1 MI=50,-50 MJ=50,-50 LP=0.25"

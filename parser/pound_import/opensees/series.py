@@ -19,7 +19,6 @@ _FLAGS: Final = (
     "-values",
     "-time",
     "-factor",
-    "-useLast",
     "-prependZero",
     "-startTime",
 )
