@@ -261,6 +261,62 @@ def test_a_mistake_stands_at_its_place(old, new, code, place):
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("2 0 1 0 2 0 0", "2 0 1 0 4 0 0", "ICTYPE, item 5 of the line, is 4, a damping"),
+        ("2 0 1 0 2 0 0", "2 0 1 x 2 0 0", "IPCONM, item 4 of the line, is 'x', not a number"),
+        ("2 0 1 0 2 0 0", "2 0 1 3 2 0 0", "IPCONM, item 4 of the line, is 3"),
+        ("2 0 1 0 2 0 0", "2 0 1 0 2 0 3", "INLGEO, item 7 of the line, is 3"),
+        ("2 0 1 0 2 0 0", "2 1 1 0 2 0 0", "IFMT, item 2 of the line, is not 0"),
+        ("9.81 5.0 5.0 0.005", "9.81 5.0 -5 0.005", "C2, item 9 of the line, is -5, a damping ratio"),
+        ("9.81 5.0 5.0 0.005 0.4", "9.81 5.0 5.0 0.005 0", "TIME, item 11 of the line, is not above zero"),
+        ("2 2 2 1 2 9.81", "2 2 2 1 1 9.81", "MODE1, item 5 of the line, is 1, and MODE2"),
+        ("2 3.0 0.0 0 1 1", "2 3.0 0.0 0 3 1", "NF2, item 5 of the line, is 3"),
+        ("2 3.0 0.0 0 1 1 0", "2 3.0 0.0 2 1 1 9", "KUP1, item 7 of the line, is 9, no node"),
+        ("2 2 2 3", "2 5 2 3", "MT, item 2 of the line, is 5, a property set"),
+        ("2 2 2 3", "2 2 2 9", "J, item 4 of the line, is 9, which NODES do not hold"),
+        ("DRIFT\n1 3", "DRIFT\n1 9", "a node of DRIFT, item 2 of the line, is 9"),
+        ("2 SPRING", "2 WALL", "TYPE, item 2 of the line, is WALL"),
+        ("1 2 0 0 6000", "1 45 0 0 6000", "IHYST, item 2 of the line, is 45"),
+        ("1 2 0 0 6000", "1 2 0 1 6000", "IDAMG, item 4 of the line, is 1"),
+        ("3 49.05 0 0", "3 49.05 z 0", "WY, item 3 of the line, is 'z'"),
+        ("3 1 0.01 1 -1", "3 9 0.01 1 -1", "ISTART, item 2 of the line, is 9, a counter"),
+        ("3 1 0.01 1 -1", "2 1 0.01 1 -1", "IBERG, item 1 of the line, is 2, a format"),
+        ("3 1 0.01 1 -1", "6 1 0 1 -1", "DELTAT, item 3 of the line, is not above zero"),
+        ("3 1 0.01 1 -1", "3 1 0.01 0 -1", "ASCALE, item 4 of the line, is zero"),
+        ("3 1 0.01 1 -1", "3 1 0.01 1 0.001", "END, item 5 of the line, is 0.001, not after the start"),
+    ],
+)
+def test_a_mistake_of_an_item_names_it_with_its_position(old, new, told):
+    """The position is that of the place, too."""
+    assert old in STICK
+    text = STICK.replace(old, new, 1)
+    (d,) = (d for d in read(text).report if d.message.startswith(told))
+    before = text.splitlines()[d.span.line - 1][: d.span.column - 1]
+    assert f", item {len(before.split()) + 1} of the line, " in d.message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("1 0 0 4 0 0 0 0 0", "3 0 0 4 0 0 0 0 0", "ITYPE, item 1 of the line, is 3"),
+        ("1 0 0 4 0 0 0 0 0", "1 5 0 4 0 0 0 0 0", "IPIN, item 2 of the line, is 5"),
+        ("1 0 0 4 0 0 0 0 0", "1 0 4 4 0 0 0 0 0", "ICOND, item 3 of the line, is 4"),
+        ("1 0 0 4 0 0 0 0 0", "1 0 0 4 8 0 0 0 0", "ILOS, item 5 of the line, is 8"),
+        ("1 0 0 4 0 0 0 0 0", "1 0 0 4 0 0 0 2 0", "IGA, item 8 of the line, is 2"),
+    ],
+)
+def test_the_options_of_a_frame_are_named_with_their_positions(old, new, told):
+    assert old in PORTAL
+    text = PORTAL.replace(old, new, 1)
+    if "ILOS" in told:
+        text = text.replace("0 0 120 -120 120 -120", "0 0 120 -120 120 -120\n2 6 0.5")
+    (d,) = (d for d in read(text, RECORD).report if d.message.startswith(told))
+    before = text.splitlines()[d.span.line - 1][: d.span.column - 1]
+    assert f", item {len(before.split()) + 1} of the line, " in d.message
+
+
+@pytest.mark.parametrize(
     ("levels", "cure"),
     [
         (1, "NLEVEL stands in line 4, column 19: write 2 there"),
@@ -305,7 +361,7 @@ def test_a_record_in_a_file_of_its_own_must_be_named():
 
 
 def test_all_messages_of_old_decks_are_in_use():
-    assert {c for c in MESSAGES if c.startswith(("L60", "L61"))} == {f"L6{n:02}" for n in range(1, 13)}
+    assert {c for c in MESSAGES if c.startswith(("L60", "L61"))} == {f"L6{n:02}" for n in range(1, 14)}
 
 
 def test_a_mistake_of_the_model_is_told_at_the_old_line(tmp_path):

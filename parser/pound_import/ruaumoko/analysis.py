@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from pound_deck.diagnostics import mistake
-from pound_import.draft import Draft, number, numbers
+from pound_deck.diagnostics import Mistake, mistake
+from pound_import.draft import Draft, number, numbers, quoted
 from pound_import.ruaumoko import equake
 from pound_import.ruaumoko.header import Control
 from pound_import.ruaumoko.lines import DataLine, DataLines
@@ -31,8 +31,8 @@ def kind(control: Control) -> int:
     """
     code = control.whole("IPANAL")
     if code not in (STATIC, STATIC_MODAL, EARTHQUAKE, FORCES):
-        text = f"IPANAL {code}: an analysis that is not carried over"
-        raise mistake("L604", text, control.place("IPANAL"), "0 and 1 static, 2 earthquake, 3 forces")
+        what = f"is {code}, an analysis that is not carried over"
+        raise control.mistake("L604", "IPANAL", what, "0 and 1 static, 2 earthquake, 3 forces")
     return code
 
 
@@ -46,13 +46,13 @@ def damping(control: Control, draft: Draft) -> None:
     """
     code, place = control.whole("ICTYPE"), control.place("ICTYPE")
     if code not in _DAMPING:
-        text = f"ICTYPE {code}: a damping that is not carried over"
-        raise mistake("L604", text, place, "0, 1, 6 Rayleigh; 2, 3 ratios over frequency")
+        what = f"is {code}, a damping that is not carried over"
+        raise control.mistake("L604", "ICTYPE", what, "0, 1, 6 Rayleigh; 2, 3 ratios over frequency")
     ratios = control["C1"], control["C2"]
-    if min(ratios) < 0.0:
-        raise mistake(
-            "L603", "a damping ratio is below zero", control.place("C1"), "C1 and C2 are percents"
-        )
+    for name, ratio in zip(("C1", "C2"), ratios):
+        if ratio < 0.0:
+            what = f"is {number(ratio)}, a damping ratio below zero"
+            raise control.mistake("L603", name, what, "C1 and C2 are percents")
     if not any(ratios):
         return
     card, item, known = _DAMPING[code]
@@ -62,8 +62,8 @@ def damping(control: Control, draft: Draft) -> None:
         draft.rest(reading)
     modes = [int(control[name]) for name in ("MODE1", "MODE2")]
     if min(modes) < 1 or modes[0] == modes[1]:
-        text = f"MODE1 and MODE2 are {modes[0]} and {modes[1]}"
-        raise mistake("L603", text, control.place("MODE1"), "two modes, counted from 1")
+        what = f"is {modes[0]}, and MODE2 behind it is {modes[1]}"
+        raise control.mistake("L603", "MODE1", what, "two modes, counted from 1")
     xi = numbers(c / 100.0 for c in ratios)
     draft.add("DAMPING", f"{card} XI={xi} MODES={numbers(modes)} {item}", control.place("C1"), notes)
 
@@ -84,9 +84,7 @@ def runs(control: Control, loaded: bool, draft: Draft) -> None:
         notes = []
     if code in (EARTHQUAKE, FORCES):
         if control["TIME"] <= 0.0:
-            raise mistake(
-                "L603", "TIME is not above zero", control.place("TIME"), "the length of the history"
-            )
+            raise control.mistake("L603", "TIME", "is not above zero", "the length of the history")
         text = f"HISTORY {number(control['TIME'])} METHOD=NEWMARK DT={number(control['DT'])}"
         draft.add("ANALYSIS", text, control.place("TIME"), notes)
         notes = []
@@ -113,28 +111,37 @@ def motions(
     if control.whole("IPVERT"):
         vertical = rows.next("the second line of EQUAKE")
         notes.append(draft.doubt(control.place("IPVERT"), "IPVERT: a second line and a second file, for y"))
-    behind = equake.Appended(appended, rows.here.line + 1)
     if vertical is None:
-        _motion(horizontal, control, behind, separate[:1], "", notes, draft)
-    else:
-        nothing = equake.Appended(equake.File("", ""), 1)
-        _motion(horizontal, control, nothing, separate[:1], "", notes, draft)
-        _motion(vertical, control, nothing, separate[1:], " DIRECTION=Y", [], draft)
+        behind = equake.Appended(appended, rows.here.line + 1)
+        _motion(horizontal, control, behind, separate[0] if separate else None, "", notes, draft)
+        return
+    if len(separate) < 2:
+        text = "IPVERT: a horizontal and a vertical record, each in a file of its own"
+        hint = "pound-solve import DECK --record HORIZONTAL --record VERTICAL names them"
+        raise mistake("L611", text, horizontal.span, hint)
+    nothing = equake.Appended(equake.File("", ""), 1)
+    for row, file, direction in zip((horizontal, vertical), separate, ("", " DIRECTION=Y")):
+        try:
+            _motion(row, control, nothing, file, direction, notes, draft)
+        except Mistake as error:  # both files are reported
+            error.keep(draft.report)
+        notes = []
 
 
 def _motion(
     row: DataLine,
     control: Control,
     appended: equake.Appended,
-    separate: list[equake.File],
+    separate: equake.File | None,
     direction: str,
     notes: list[str],
     draft: Draft,
 ) -> None:
-    file = equake.record(row, appended, separate[0] if separate else None, draft, notes)
-    factor = equake.scale(row, control["FACTOR"], draft)
+    record = equake.record(row, appended, separate, draft, notes)
+    factor = equake.scale(row, control["FACTOR"], record.unit, draft, notes)
+    unit = quoted(record.unit) if record.unit and record.unit != "G" else "G"
     scale = f" SCALE={number(factor)}" if factor != 1.0 else ""
-    draft.add("EQUAKE", f"RECORD {file} UNIT=G{scale}{direction}", row.span, notes)
+    draft.add("EQUAKE", f"RECORD {record.items} UNIT={unit}{scale}{direction}", row.span, notes)
 
 
 def forces(
@@ -154,8 +161,8 @@ def forces(
     """
     row, notes = rows.next("the line of EQUAKE: " + " ".join(equake.NAMES)), list[str]()
     behind = equake.Appended(appended, rows.here.line + 1)
-    file = equake.record(row, behind, separate[0] if separate else None, draft, notes)
-    factor = equake.scale(row, control["FACTOR"], draft)
+    file = equake.record(row, behind, separate[0] if separate else None, draft, notes).items
+    factor = equake.scale(row, control["FACTOR"], None, draft, notes)  # shares of SHAPE have no unit
     notes.append(draft.doubt(row.span, "the force of a node is SHAPE times FACTOR times the record"))
     for line, id_, values in shape:
         components = " ".join(number(factor * x) for x in values)

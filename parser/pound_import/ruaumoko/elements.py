@@ -56,14 +56,15 @@ def _member(
     id_, kind, i, j = row.wholes(NAMES[:4], 4)
     first = before.id if before else 0
     if not first < id_ <= last or (not first and id_ > 1):
-        text = f"member {id_} does not follow {first} on the way to NMEM, {last}"
-        raise mistake("L608", text, row.items[0].span, "members ascend from 1 to NMEM")
+        what = f"is {id_}: member {id_} does not follow {first} on the way to NMEM, {last}"
+        raise row.items[0].mistake("L608", "N", what, "members ascend from 1 to NMEM")
     if not 1 <= kind <= kinds:
-        text = f"property set {kind} does not lie between 1 and NTYPE, {kinds}"
-        raise mistake("L608", text, row.items[1].span, "correct the number or NTYPE")
+        what = f"is {kind}, a property set that is not from 1 to NTYPE, {kinds}"
+        raise row.items[1].mistake("L608", "MT", what, "correct the number or NTYPE")
     for k, node in ((2, i), (3, j)):
         if node not in nodes:
-            raise mistake("L608", f"there is no node {node}", row.items[k].span, "correct the number")
+            what = f"is {node}, which NODES do not hold"
+            raise row.items[k].mistake("L608", NAMES[k], what, "correct the number")
     return LegacyMember(id_, kind, i, j, row)
 
 

@@ -36,18 +36,20 @@ def read(props: PropertySet, label: str) -> None:
     options = props.rows.next("the options of a FRAME: " + " ".join(OPTIONS))
     kind, pin, initial, code, losing, damaged, *rest = options.wholes(OPTIONS, 4)
     if kind not in (_BEAM, _CONCRETE):
-        text = f"ITYPE {kind}: a kind of FRAME that is not carried over"
-        raise mistake("L604", text, options.items[0].span, "1 one-component beam, 2 concrete beam-column")
+        what = f"is {kind}, a kind of FRAME that is not carried over"
+        hint = "1 one-component beam, 2 concrete beam-column"
+        raise options.items[0].mistake("L604", "ITYPE", what, hint)
     if not 0 <= pin < len(_PINS):
-        raise mistake("L604", f"IPIN {pin} is not known", options.items[1].span, "0 to 3")
-    if damaged or any(rest[:2]):
-        text = "IDAMG, ICOL and IGA: what they add to the lines is not known"
-        raise mistake("L604", text, options.span, "write 0")
+        raise options.items[1].mistake("L604", "IPIN", f"is {pin}, which is not known", "0 to 3")
+    for k, asked in enumerate((damaged, *rest[:2]), 5):
+        if asked:
+            what = f"is {asked}: what it adds to the lines is not known"
+            raise options.items[k].mistake("L604", OPTIONS[k], what, "write 0")
     section = props.rows.next("the section of a FRAME: " + " ".join(SECTION))
     notes.append(props.draft.doubt(section.span, f"the order of a FRAME's section is {' '.join(SECTION)}"))
     items = _section(section, pin)
     if initial:
-        items.append(_initial(props, initial, notes))
+        items.append(_initial(props, initial, options, notes))
     word = "FRAME"
     if code and not props.elastic:
         word, more = _hinges(props, (kind, code, losing), section, options, notes)
@@ -70,11 +72,11 @@ def _section(row: DataLine, pin: int) -> list[str]:
     return [*items, f"PIN={_PINS[pin]}"] if pin else items
 
 
-def _initial(props: PropertySet, code: int, notes: list[str]) -> str:
+def _initial(props: PropertySet, code: int, options: DataLine, notes: list[str]) -> str:
     """Items of the initial forces: the axial force (ICOND 1), the end moments (2), or both (3)."""
     names = {1: INITIAL[:1], 2: INITIAL[1:], 3: INITIAL}.get(code)
     if names is None:
-        raise mistake("L604", f"ICOND {code} is not known", props.rows.here, "0 to 3")
+        raise options.items[2].mistake("L604", "ICOND", f"is {code}, which is not known", "0 to 3")
     row = props.rows.next("the initial forces: " + " ".join(names))
     v = dict(zip(names, row.reals(names, len(names))))
     notes.append(
@@ -92,7 +94,7 @@ def _hinges(
 ) -> tuple[str, str]:
     """Kind of element in the new deck, and the items of its hinges."""
     kind, code, losing = codes
-    rule = rules.known(code, options.items[3].span, props.catalog)
+    rule = rules.known(code, options.items[3], props.catalog)
     hinges = props.rows.next("the hinges: " + " ".join(HINGES))
     _, ratio, *lengths = hinges.reals(HINGES, 2)
     if 0.0 in lengths:
@@ -102,7 +104,7 @@ def _hinges(
     word, items = (_beam if kind == _BEAM else _column)(props, strengths, notes)
     lost = ""
     if losing:
-        lost = loss.read(losing, rule, props.rows, options.items[4].span, props.draft, notes)
+        lost = loss.read(losing, rule, props.rows, options.items[4], props.draft, notes)
     parameters = rules.read(code, props.rows, ratio, props.draft, notes)
     return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={rule.name}", parameters, lost) if x)
 

@@ -15,10 +15,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from pound_deck.diagnostics import mistake
+from pound_deck.diagnostics import Mistake, mistake
 from pound_deck.model import Span
 from pound_import.draft import Draft, number
-from pound_import.ruaumoko.lines import DataLine
+from pound_import.ruaumoko.lines import DataItem, DataLine
 
 ANALYSIS: Final = (
     *("IPANAL", "IFMT", "IPLAS", "IPCONM", "ICTYPE", "IPVERT"),
@@ -45,10 +45,10 @@ _GRAVITIES: Final = (  # limits, and the usual units
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """Values of the control lines by the names of their items, and their places."""
+    """Values of the control lines by the names of their items, and the items."""
 
     values: dict[str, float]
-    places: dict[str, Span]
+    items: dict[str, DataItem]
 
     def __getitem__(self, name: str) -> float:
         return self.values[name]
@@ -59,7 +59,11 @@ class Control:
 
     def place(self, name: str) -> Span:
         """Place of an item."""
-        return self.places[name]
+        return self.items[name].span
+
+    def mistake(self, code: str, name: str, what: str, hint: str) -> Mistake:
+        """Make a Mistake about an item; `what` begins with a verb."""
+        return self.items[name].mistake(code, name, what, hint)
 
 
 def read(rows: Sequence[DataLine], here: Span) -> Control:
@@ -71,7 +75,7 @@ def read(rows: Sequence[DataLine], here: Span) -> Control:
         A line is missing, is cut before an item that is needed, or holds something else.
     """
     values: dict[str, float] = {}
-    places: dict[str, Span] = {}
+    items: dict[str, DataItem] = {}
     kinds = ((ANALYSIS, 5), (STRUCTURE, 11), (OUTPUT, 9), (ITERATION, 3))
     for k, (names, least) in enumerate(kinds):
         if k >= len(rows):
@@ -79,19 +83,19 @@ def read(rows: Sequence[DataLine], here: Span) -> Control:
         row = rows[k]
         whole = names is ANALYSIS
         values |= zip(names, row.wholes(names, least) if whole else row.reals(names, least))
-        places |= {name: row.item(n).span for n, name in enumerate(names)}
+        items |= {name: row.item(n) for n, name in enumerate(names)}
     if "FACTOR" in values and len(rows[1].items) < len(STRUCTURE):
         values["FACTOR"] = 1.0
     for name in ("NNP", "NMEM", "NTYPE"):
         count = values[name]
         if count != int(count) or not 1 <= count <= _MOST:
-            text = f"{name} is {number(count)}, not a count from 1 to {_MOST}"
-            raise mistake("L603", text, places[name], f"the line is {' '.join(STRUCTURE)}")
+            what = f"is {number(count)}, not a count from 1 to {_MOST}"
+            raise items[name].mistake("L603", name, what, f"the line is {' '.join(STRUCTURE)}")
     for name in ("GRAV", "DT"):
         if values[name] <= 0.0:
-            text = f"{name} is {number(values[name])}, not above zero"
-            raise mistake("L603", text, places[name], f"the line is {' '.join(STRUCTURE)}")
-    return Control(values, places)
+            what = f"is {number(values[name])}, not above zero"
+            raise items[name].mistake("L603", name, what, f"the line is {' '.join(STRUCTURE)}")
+    return Control(values, items)
 
 
 def write(control: Control, draft: Draft) -> None:
@@ -111,16 +115,15 @@ def write(control: Control, draft: Draft) -> None:
 
 def _fixed_format(control: Control) -> None:
     if control.whole("IFMT"):
-        text = "IFMT is not 0: items in fixed columns"
-        raise mistake(
-            "L604", text, control.place("IFMT"), "write the items with blanks between, and IFMT 0"
-        )
+        what = "is not 0: items in fixed columns"
+        raise control.mistake("L604", "IFMT", what, "write the items with blanks between, and IFMT 0")
 
 
 def _mass(control: Control, draft: Draft) -> None:
     code, place = control.whole("IPCONM"), control.place("IPCONM")
     if code not in (0, 1, 2):
-        raise mistake("L604", f"IPCONM {code} is not known", place, "0 lumped, 1 diagonal, 2 consistent")
+        what = f"is {code}, which is not known"
+        raise control.mistake("L604", "IPCONM", what, "0 lumped, 1 diagonal, 2 consistent")
     notes = []
     if code == 1:
         notes.append(draft.doubt(place, "IPCONM 1: lumped mass; give rotational inertia in WEIGHTS (WR)"))
@@ -133,9 +136,8 @@ def _geometry(control: Control, draft: Draft) -> None:
     code, place = control.whole("INLGEO"), control.place("INLGEO")
     words = {0: "SMALL", 1: "PDELTA", 2: "LARGE"}
     if code not in words:
-        raise mistake(
-            "L604", f"INLGEO {code} is not known", place, "0 small, 1 P-Delta, 2 large displacements"
-        )
+        what = f"is {code}, which is not known"
+        raise control.mistake("L604", "INLGEO", what, "0 small, 1 P-Delta, 2 large displacements")
     notes = [draft.doubt(place, f"INLGEO {code}: GEOMETRY {words[code]}")] if code else []
     draft.add("", f"GEOMETRY {words[code]}", place, notes)
 

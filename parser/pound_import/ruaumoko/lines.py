@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from pound_deck.diagnostics import mistake
+from pound_deck.diagnostics import Mistake, mistake
 from pound_deck.model import Span
 from pound_deck.source import without_comment
 
@@ -19,15 +19,20 @@ MOST_ITEMS: Final = 200  #: most items of a line
 
 @dataclass(frozen=True, slots=True)
 class DataItem:
-    """One item and its place."""
+    """One item, its place, and its number in the line, from 1 on."""
 
     text: str
     span: Span
+    number: int
 
     @property
     def numeric(self) -> bool:
         """Whether it is a number."""
         return is_number(self.text)
+
+    def mistake(self, code: str, name: str, what: str, hint: str) -> Mistake:
+        """Make a Mistake about the item called `name`; `what` begins with a verb."""
+        return mistake(code, f"{name}, item {self.number} of the line, {what}", self.span, hint)
 
     def real(self, name: str) -> float:
         """Value of the item called `name`.
@@ -38,18 +43,12 @@ class DataItem:
             It is no number, or beyond all magnitudes.
         """
         if not self.numeric:
-            raise mistake(
-                "L603", f"{name} is {self.text[:40]!r}, not a number", self.span, "write a number"
-            )
+            raise self.mistake("L603", name, f"is {self.text[:40]!r}, not a number", "write a number")
         value = float(self.text.translate(_D_EXPONENT))
         if value == 0.0 or 1.0 / MOST <= abs(value) <= MOST:
             return value
-        raise mistake(
-            "L603",
-            f"{name} is {self.text[:40]}: its magnitude is not within {1.0 / MOST:g} and {MOST:g}",
-            self.span,
-            "check the columns",
-        )
+        what = f"is {self.text[:40]}: its magnitude is not within {1.0 / MOST:g} and {MOST:g}"
+        raise self.mistake("L603", name, what, "check the columns")
 
     def whole(self, name: str) -> int:
         """Value of an item as a whole number; ``1.0`` is one, too.
@@ -61,9 +60,8 @@ class DataItem:
         """
         value = self.real(name)
         if value != round(value) or abs(value) > 1e9:
-            raise mistake(
-                "L603", f"{name} is {self.text[:40]}, not a whole number", self.span, "check the columns"
-            )
+            what = f"is {self.text[:40]}, not a whole number"
+            raise self.mistake("L603", name, what, "check the columns")
         return int(value)
 
 
@@ -90,7 +88,7 @@ class DataLine:
 
     def item(self, k: int) -> DataItem:
         """Item by position; a zero where the line is shorter."""
-        return self.items[k] if k < len(self.items) else DataItem("0", self.span)
+        return self.items[k] if k < len(self.items) else DataItem("0", self.span, k + 1)
 
     def reals(self, names: Sequence[str], least: int = 0) -> list[float]:
         """Values of the items called `names`; those left out at the end are zero.
@@ -121,9 +119,10 @@ def row(file: str, number: int, raw: str) -> DataLine | None:
     code = without_comment(raw)
     if not code or code.isspace():
         return None
-    items = []
+    items: list[DataItem] = []
     for match in _ITEM.finditer(code):
-        items.append(DataItem(match[0], Span(file, number, match.start() + 1, match.end() + 1)))
+        place = Span(file, number, match.start() + 1, match.end() + 1)
+        items.append(DataItem(match[0], place, len(items) + 1))
         if len(items) == MOST_ITEMS:
             break
     if not items:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from pound_deck.diagnostics import mistake
-from pound_deck.model import Span
 from pound_deck.schema import Spec
 from pound_import.draft import Draft, number
-from pound_import.ruaumoko.lines import DataLines
+from pound_import.ruaumoko.lines import DataItem, DataLines
 
 NAMES: Final = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 _WORDS: Final = {
@@ -24,7 +22,7 @@ _SUDDEN: Final = (5, 7)
 _COUNTING: Final = 4  #: the first code with RCYC
 
 
-def read(code: int, rule: Spec, rows: DataLines, place: Span, draft: Draft, notes: list[str]) -> str:
+def read(code: int, rule: Spec, rows: DataLines, item: DataItem, draft: Draft, notes: list[str]) -> str:
     """Text of the items of the loss of strength in the new deck.
 
     Parameters
@@ -33,8 +31,8 @@ def read(code: int, rule: Spec, rows: DataLines, place: Span, draft: Draft, note
         ILOS, above zero.
     rule : Spec
         The hysteresis rule.
-    place : Span
-        Of the code.
+    item : DataItem
+        The code.
 
     Raises
     ------
@@ -44,10 +42,10 @@ def read(code: int, rule: Spec, rows: DataLines, place: Span, draft: Draft, note
     row = rows.next("the loss of strength: " + " ".join(NAMES))
     begin, end, left, gone, cycle = row.reals(NAMES, 3)
     if code not in _WORDS:
-        raise mistake("L604", f"ILOS {code} is not known", place, "0 to 7")
+        raise item.mistake("L604", "ILOS", f"is {code}, which is not known", "0 to 7")
     if rule.field("ILOS") is None:
-        text = f"ILOS {code}: {rule.name} has no loss of strength"
-        raise mistake("L604", text, place, "write 0, or take rule 1, 2, 4, 7, 10, 11 or 12")
+        what = f"is {code}, and {rule.name} has no loss of strength"
+        raise item.mistake("L604", "ILOS", what, "write 0, or take rule 1, 2, 4, 7, 10, 11 or 12")
     notes.append(draft.doubt(row.span, "the line of the loss of strength stands before those of the rule"))
     if code in _SUDDEN and not gone:  # the loss never occurs
         code -= 1

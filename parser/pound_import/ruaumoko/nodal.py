@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.diagnostics import Diagnostic, Mistake
 from pound_import.draft import Draft, number
 from pound_import.ruaumoko.lines import DataItem, DataLine, DataLines
 from pound_import.ruaumoko.nodes import LegacyNode
@@ -22,7 +22,8 @@ def _lines(
         try:
             id_, values = row.item(0).whole("N"), row.reals(names, 2)[1:]
             if id_ not in nodes:
-                raise mistake("L608", f"there is no node {id_}", row.items[0].span, "correct the number")
+                what = f"is {id_}, which NODES do not hold"
+                raise row.items[0].mistake("L608", "N", what, "correct the number")
         except Mistake as error:
             error.keep(draft.report)
             continue

@@ -72,15 +72,15 @@ def _node(row: DataLine, last: int, before: LegacyNode | None) -> LegacyNode:
     x, y = row.item(1).real("X"), row.item(2).real("Y")
     first = 0 if before is None else before.id
     if not first < id_ <= last or (not first and id_ > 1):
-        text = f"node {id_} does not follow {first} on the way to NNP, {last}"
-        raise mistake("L608", text, row.items[0].span, "nodes ascend from 1 to NNP")
+        what = f"is {id_}: node {id_} does not follow {first} on the way to NNP, {last}"
+        raise row.items[0].mistake("L608", "N", what, "nodes ascend from 1 to NNP")
     for k, code in enumerate(codes[:3]):
         if code not in (_FREE, _FIXED, _SLAVED):
-            text = f"NF{k + 1} is {code}"
-            raise mistake("L604", text, row.item(3 + k).span, "0 free, 1 fixed, 2 slaved to KUP")
+            hint = "0 free, 1 fixed, 2 slaved to KUP"
+            raise row.item(3 + k).mistake("L604", NAMES[3 + k], f"is {code}", hint)
         if code == _SLAVED and not 0 < codes[3 + k] <= last:
-            text = f"NF{k + 1} is 2 and KUP{k + 1} is {codes[3 + k]}, no node"
-            raise mistake("L608", text, row.item(6 + k).span, "KUP is the node that it follows")
+            what = f"is {codes[3 + k]}, no node, and {NAMES[3 + k]} is 2"
+            raise row.item(6 + k).mistake("L608", NAMES[6 + k], what, "KUP is the node that it follows")
     return LegacyNode(id_, x, y, tuple(codes[:3]), tuple(codes[3:6]), row)
 
 
@@ -151,12 +151,11 @@ def drifts(rows: DataLines, levels: int, place: Span, nodes: dict[int, LegacyNod
             count += 1
             try:
                 id_ = item.whole("a node of DRIFT")
+                if id_ not in nodes:
+                    what = f"is {id_}, which NODES do not hold"
+                    raise item.mistake("L608", "a node of DRIFT", what, "correct the number")
             except Mistake as error:
                 error.keep(draft.report)
-                continue
-            if id_ not in nodes:
-                text = f"DRIFT names node {id_}, which NODES do not hold"
-                draft.report.append(Diagnostic("L608", text, item.span, "correct the number"))
                 continue
             listed.append((id_, row))
     if count != levels:

@@ -60,12 +60,11 @@ def _kind(head: DataLine, expected: int) -> str:
         )
     word = head.items[1].text.strip("\"'").upper()
     if word in OTHERS:
-        text = f"{word}: no source states its lines"
-        raise mistake("L604", text, head.items[1].span, "write the property set in the new language")
+        what = f"is {word}, and no source states its lines"
+        raise head.items[1].mistake("L604", "TYPE", what, "write the property set in the new language")
     if word not in READERS:
-        raise mistake(
-            "L604", f"{head.items[1].text[:40]} is no type of member", head.items[1].span, "SPRING or FRAME"
-        )
+        what = f"is {head.items[1].text[:40]}, no type of member"
+        raise head.items[1].mistake("L604", "TYPE", what, "SPRING or FRAME")
     return word
 
 

@@ -8,11 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from pound_deck.diagnostics import mistake
-from pound_deck.model import Span
 from pound_deck.schema import Catalog, Spec
 from pound_import.draft import Draft, number, numbers
-from pound_import.ruaumoko.lines import DataLine, DataLines
+from pound_import.ruaumoko.lines import DataItem, DataLine, DataLines
 
 Values = dict[str, float]
 
@@ -95,8 +93,8 @@ LAYOUTS: Final = {
 CERTAIN: Final = (0, 1, 2, 7, 52)  #: rules without parameters, and the one of a deck with known results
 
 
-def known(code: int, place: Span, catalog: Catalog) -> Spec:
-    """Spec of a rule that can be carried over.
+def known(code: int, item: DataItem, catalog: Catalog) -> Spec:
+    """Spec of the rule of a code, IHYST, that can be carried over.
 
     Raises
     ------
@@ -106,8 +104,8 @@ def known(code: int, place: Span, catalog: Catalog) -> Spec:
     spec = catalog.by_code("hysteresis", code)
     if spec is None or code not in LAYOUTS:
         have = ", ".join(str(c) for c in sorted(LAYOUTS) if catalog.by_code("hysteresis", c))
-        text = f"IHYST {code}: this rule is not carried over"
-        raise mistake("L604", text, place, f"rules that are: {have}")
+        what = f"is {code}, a rule that is not carried over"
+        raise item.mistake("L604", "IHYST", what, f"rules that are: {have}")
     return spec
 
 

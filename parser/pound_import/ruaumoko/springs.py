@@ -36,12 +36,11 @@ def read(props: PropertySet, label: str) -> None:
     weight, rf, rt = (row.item(k).real(NAMES[k]) for k in (7, 8, 9))
     row.need(NAMES, 8)
     if kind != 1:
-        text = f"ITYPE {kind}: a SPRING whose components act on each other"
-        raise mistake("L604", text, row.items[0].span, "only ITYPE 1 is carried over")
+        what = f"is {kind}, a SPRING whose components act on each other"
+        raise row.items[0].mistake("L604", "ITYPE", what, "only ITYPE 1 is carried over")
     if damaged:
-        raise mistake(
-            "L604", f"IDAMG {damaged}: the line of the index is not known", row.items[3].span, "0"
-        )
+        what = f"is {damaged}: the line of the index is not known"
+        raise row.items[3].mistake("L604", "IDAMG", what, "write 0")
     if len(row.items) > len(NAMES) and any(i.text != "0" for i in row.items[len(NAMES) :]):
         notes.append(props.draft.lose(row.items[len(NAMES)].span, "items behind RT"))
     if weight:
@@ -78,12 +77,12 @@ def _yielding(
     notes: list[str],
 ) -> str:
     """Text of the items of the components that yield; empty where none does, or all is elastic."""
-    rule = rules.known(code, row.items[1].span, props.catalog)
+    rule = rules.known(code, row.items[1], props.catalog)
     strong = props.rows.next("the yield forces: " + " ".join(FORCES))
     forces = strong.reals(FORCES)
     lost = ""
     if losing:
-        lost = loss.read(losing, rule, props.rows, row.items[2].span, props.draft, notes)
+        lost = loss.read(losing, rule, props.rows, row.items[2], props.draft, notes)
     sets = [rules.read(code, props.rows, r, props.draft, notes) for r in ratios]
     yielding = [k for k in range(3) if stiff[k] and (forces[2 * k] or forces[2 * k + 1])]
     for k in range(3):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from functools import partial
 from pathlib import Path
 
 from pound_solve.cli import common
@@ -67,7 +68,7 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import has_errors, render
     from pound_deck.files import contents
     from pound_import.ruaumoko.equake import File
-    from pound_solve.driver.importing import Choices, imported
+    from pound_solve.driver.importing import Choices, imported, recognise
 
     folder = args.out.parent if args.out else Path()
 
@@ -78,10 +79,12 @@ def execute(args: argparse.Namespace) -> int:
         except ValueError:  # another drive
             return path.resolve().as_posix()
 
-    records = [File(shown(path), contents(path).decode("latin-1")) for path in args.record]
-    texts, old = imported(
-        str(args.deck), Choices(records, shown, args.executed, args.units, args.plane, args.load)
-    )
+    records = [
+        File(shown(path), contents(path).decode("latin-1"), partial(recognise, path))
+        for path in args.record
+    ]
+    choices = Choices(records, shown, args.executed, args.units, args.plane, args.load)
+    texts, old = imported(str(args.deck), choices)
     print(render(old.report, texts), file=sys.stderr)
     if has_errors(old.report):
         return common.MISTAKES
