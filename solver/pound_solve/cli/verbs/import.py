@@ -68,7 +68,8 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import has_errors, render
     from pound_deck.files import contents
     from pound_import.ruaumoko.equake import File
-    from pound_solve.driver.importing import Choices, imported, recognise
+    from pound_solve.driver.importing import Choices, imported
+    from pound_solve.driver.record_format import recognise
 
     folder = args.out.parent if args.out else Path()
 
