@@ -519,6 +519,8 @@ REFUSED = {
         "L620",
         "or a section",
     ),
+    "element elasticBeamColumn 8 1 2 0.1 2e7 1e-3 1 -release 4": ("L620", "-release is 4"),
+    "uniaxialMaterial Elastic 5 1\nelement truss 8 1 2 0.1 5 -rho 1 -cMass 1": ("L622", "consistent mass"),
     "setNodeDisp 2 1 0.1": ("L622", "sets a state"),
     "uniaxialMaterial Elastic 5 1\nelement zeroLength 8 1 2 -mat 5 -dir 1\n"
     "pattern Plain 5 Linear {\neleLoad -ele 8 -type -beamUniform 1\n}": ("L622", "no beam"),

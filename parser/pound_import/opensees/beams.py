@@ -91,8 +91,12 @@ class Beams:
                 f"elasticBeamColumn {tag}: A E I and a transformation, or a section", code="L620"
             )
         shape = self._shape(command, command.whole(4 + len(plain), "the transformation"))
-        release = int(choice.real("-release", choice.real("-releasez", 0.0)))
-        self._elastic(tag, command, section, shape, _PINS.get(release, ""))
+        release = choice.real("-release", choice.real("-releasez", 0.0))
+        if release not in _PINS:
+            raise command.mistake(
+                f"elasticBeamColumn {tag}: -release is {release:g}, not 0 to 3", code="L620"
+            )
+        self._elastic(tag, command, section, shape, _PINS[int(release)])
 
     def timoshenko(self, tag: int, command: Command) -> None:
         """``ElasticTimoshenkoBeam``: E G A I and the shear area."""
@@ -319,6 +323,8 @@ class Beams:
         both = ends(command, self.model)
         length = self._length(command, both)
         rho = choice.real("-rho", 0.0)
+        if rho and choice.flags.get("-cMass", ("0",))[:1] != ("0",):
+            raise command.mistake(f"{command.words[1]} {tag}: a consistent mass of a bar (-cMass)")
         self.deck.add_mass(both, 0.5 * rho * length)
         self.geometries.setdefault("LARGE" if command.words[1].startswith("corot") else "SMALL", command)
         for part in parts:
