@@ -144,6 +144,15 @@ def test_a_model_that_ends_early_is_told_with_its_place(tmp_path, text, message)
         assert done.mistake.span.line == (1 if message == "use of memory" else 2)
 
 
+def test_a_loop_that_waits_for_a_result_is_no_warning(tmp_path):
+    text = HEAD + BEAM + "analysis Static\nwhile {[nodeDisp 2 1] < 1} { analyze 1 }\n"
+    (tmp_path / "model.tcl").write_text(text)
+    done = replay(
+        tmp_path / "model.tcl", "model.tcl", "tcl_model", lambda c, n: NaturalModes(), seconds=2.0
+    )
+    assert done.mistake and done.mistake.severity == "error" and "a count" in done.mistake.hint
+
+
 def test_what_a_model_asks_of_its_results_does_not_refuse_it(tmp_path):
     text = HEAD + BEAM + "analysis Static\nanalyze 1\nset x [expr {1/int([nodeDisp 2 1])}]\n"
     translation = read(tmp_path, text)

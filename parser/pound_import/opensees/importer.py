@@ -62,7 +62,10 @@ def translate(
         draft.report.append(replayed.mistake)
     model = _chosen(sorted_models(replayed.commands, draft), name, draft)
     if model is not None:
-        forces = _forces(model, replayed, axial, draft)
+        cut = (
+            replayed.mistake is not None and replayed.mistake.severity == "error"
+        )  # loads are not complete
+        forces = None if cut else _forces(model, replayed, axial)
         _write(model, replayed, units, shown, draft, forces)
     draft.report[:] = dict.fromkeys(draft.report)
     draft.report.sort(key=lambda d: (d.span.file, d.span.line) if d.span else ("", 0))
@@ -72,7 +75,7 @@ def translate(
     return written(title, f"Read from the OpenSees model {title}.", draft)
 
 
-def _forces(model: ScriptModel, replayed: Replayed, axial: Axial, draft: Draft) -> dict[int, float]:
+def _forces(model: ScriptModel, replayed: Replayed, axial: Axial) -> dict[int, float]:
     """Axial forces of elements in the static state with elastic sections, where some are of fibres."""
     if not any(section.words[1] in FIBRES for section in model.sections.values()):
         return {}

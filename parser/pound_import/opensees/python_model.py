@@ -58,8 +58,9 @@ class PythonModel:
         except SystemExit:
             pass
         except BaseException as error:  # whatever the file raises ends the replay
-            text = str(error) if isinstance(error, TooMuch) else f"{type(error).__name__}: {error}"
-            self._recorder.end(text, *self._place(traceback.extract_tb(error.__traceback__)))
+            limit = isinstance(error, TooMuch)
+            text = str(error) if limit else f"{type(error).__name__}: {error}"
+            self._recorder.end(text, *self._place(traceback.extract_tb(error.__traceback__)), limit=limit)
             return
         self._recorder.end()
 

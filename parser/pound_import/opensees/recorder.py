@@ -79,9 +79,9 @@ class CommandRecorder:
             return self._eigen(words)
         return ["0"] if name == "analyze" else []
 
-    def end(self, text: str = "", file: str = "", line: int = 0) -> None:
-        """Send the end: without a text, as the model ends; with one, by a mistake at a place."""
-        self._send({"end": text, "file": file, "line": line})
+    def end(self, text: str = "", file: str = "", line: int = 0, limit: bool = False) -> None:
+        """Send the end: without a text, as the model ends; with one, by a mistake or a limit at a place."""
+        self._send({"end": text, "file": file, "line": line, "limit": limit})
 
     def _send(self, value: Any) -> None:
         self._to.write(json.dumps(value) + "\n")

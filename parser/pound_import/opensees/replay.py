@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Timer
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Span
@@ -91,7 +91,8 @@ def replay(path: Path, shown: str, module: str, eigen: Eigen, seconds: float = S
     assert process.stdin and process.stdout
     replayed = Replayed()
     folder = Path(shown).parent
-    end: Mapping[str, Any] = {"end": f"it was stopped after {seconds:g} s, or for its use of memory"}
+    text = f"it was stopped after {seconds:g} s, or for its use of memory"
+    end: Mapping[str, Any] = {"end": text, "limit": True}
     clock = Timer(seconds + 5.0, process.kill)
     clock.start()
     try:
@@ -123,12 +124,19 @@ def replay(path: Path, shown: str, module: str, eigen: Eigen, seconds: float = S
         place = Span(
             (folder / end["file"]).as_posix() if end.get("file") else shown, end.get("line", 1), 1, 2
         )
-        what, hint = f"the model stops: {end['end']}", ""
-        severity: Literal["error", "warning"] = "error"
-        if end.get("line") and any(command.name == "analyze" for command in replayed.commands):
-            hint, severity = (
-                "what stands before it is read; results that a model asks for are zero here",
-                "warning",
-            )
-        replayed.mistake = Diagnostic("L621", what, place, hint, severity)
+        replayed.mistake = _mistake(end, place, any(c.name == "analyze" for c in replayed.commands))
     return replayed
+
+
+def _mistake(end: Mapping[str, Any], place: Span, analysed: bool) -> Diagnostic:
+    """Diagnostic of a replay that ended before the model; a warning where only results are asked for."""
+    what = f"the model stops: {end['end']}"
+    if end["limit"]:
+        hint = (
+            "nothing is solved in a replay: give a loop that waits for a displacement a count of its steps"
+        )
+        return Diagnostic("L621", what, place, hint)
+    if analysed:
+        hint = "what stands before it is read; results that a model asks for are zero here"
+        return Diagnostic("L621", what, place, hint, "warning")
+    return Diagnostic("L621", what, place)

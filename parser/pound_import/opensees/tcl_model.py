@@ -122,12 +122,9 @@ class TclModel:
         except (TclError, OSError) as error:
             if not self._ended:
                 text = self._too_much or str(error)
-                if text in (
-                    "",
-                    "time limit exceeded",
-                ):  # within a command that Python answers Tcl says nothing
-                    text = f"it takes more than {seconds:g} s"
-                self._recorder.end(text, *self._stop_of_model())
+                late = text in ("", "time limit exceeded")  # none within a command that Python answers
+                text = f"it takes more than {seconds:g} s" if late else text
+                self._recorder.end(text, *self._stop_of_model(), limit=late or bool(self._too_much))
                 return
         self._recorder.end()
 
