@@ -198,6 +198,45 @@ def test_a_frame_has_the_periods_displacements_and_peaks_of_opensees(tmp_path):
     assert moved == pytest.approx([-0.10180726810, 0.10490725041], rel=2e-6)
 
 
+def test_a_model_that_asks_for_modes_under_load_gets_those_of_opensees(tmp_path):
+    """OpenSees 3.7.1: a cantilever with P-Delta, whose first circular frequency is 1.60565."""
+    text = """
+model basic -ndm 2 -ndf 3
+node 1 0 0
+node 2 0 4
+fix 1 1 1 1
+mass 2 20 20 0
+geomTransf PDelta 1
+element elasticBeamColumn 1 1 2 0.1 2.7e7 1e-4 1
+pattern Plain 1 Linear { load 2 0 -300 0 }
+integrator LoadControl 0.1
+analysis Static
+analyze 10
+loadConst -time 0.0
+set w [expr {sqrt([eigen 1])}]
+rayleigh [expr {0.1*$w}] 0 0 0
+"""
+    (damping,) = model(tmp_path, text).damping
+    assert damping["ALPHA"] == pytest.approx(0.160565, rel=1e-5)
+
+
+def test_a_record_that_the_model_writes_is_in_the_deck(tmp_path):
+    text = (
+        HEAD
+        + BEAM
+        + """
+set out [open quake.dat w]
+foreach a {0.0 1.0 -1.0 0.0} { puts $out $a }
+close $out
+pattern UniformExcitation 2 1 -accel "Series -dt 0.02 -filePath quake.dat -factor 2.0"
+analysis Transient
+analyze 100 0.01
+"""
+    )
+    (card,) = model(tmp_path, text).equake
+    assert (card.spec.name, card["POINTS"]) == ("TABLE", (0.0, 0.0, 0.02, 2.0, 0.04, -2.0, 0.06, 0.0))
+
+
 def test_two_masses_that_collide_go_where_those_of_opensees_go(tmp_path):
     """OpenSees 3.7.1: Newmark, steps of 1e-4 and 5e-5 s, which differ by 1e-4."""
     m = model(tmp_path, POUNDING)
@@ -530,6 +569,11 @@ REFUSED = {
     ),
     "element elasticBeamColumn 8 1 2 0.1 2e7 1e-3 1 -release 4": ("L620", "-release is 4"),
     "uniaxialMaterial Elastic 5 1\nelement truss 8 1 2 0.1 5 -rho 1 -cMass 1": ("L622", "consistent mass"),
+    "fix 2 1 1": ("L620", "2 restraints, not 3"),
+    "node 2 0 4": ("L620", "defined twice"),
+    "geomTransf PDelta 1": ("L620", "defined twice"),
+    "pattern Plain 5 Linear { load 2 1.0 }": ("L620", "1 values, not 3"),
+    "pattern Plain 5 Linear { }\npattern Plain 5 Linear { }": ("L620", "defined twice"),
     "setNodeDisp 2 1 0.1": ("L622", "sets a state"),
     "uniaxialMaterial Elastic 5 1\nelement zeroLength 8 1 2 -mat 5 -dir 1\n"
     "pattern Plain 5 Linear {\neleLoad -ele 8 -type -beamUniform 1\n}": ("L622", "no beam"),

@@ -451,6 +451,7 @@ LOST = [
     ("Force=12   Displ=0.03", "Force=15   Displ=0.03", "L609", "a curve that no rule has"),
     ("05 - GAP", "06 - HOOK", "L609", "link GAP of the kind Gap"),
     ("Link=G1   DOF=U1", "Link=G1   DOF=R3", "L609", "a gap of a rotation"),
+    ("   TransOpen=0.05", "", "L605", "is closed: no TransOpen"),
     ("LoadName=U3", "LoadName=U2", "L609", "U2: acceleration out of the plane"),
     ("LoadType=Accel   LoadName=U3", 'LoadType="Load pattern"   LoadName=LIVE', "L609", "no acceleration"),
     ("CoordSys=GLOBAL   Angle=0", "CoordSys=GLOBAL   Angle=10", "L609", "an acceleration at an angle"),

@@ -78,7 +78,7 @@ class Beams:
         choice = options(command, 5)
         choice.only(("-mass", "-cMass", "-lMass", "-release", "-releasez"))
         plain = choice.plain
-        if len(plain) == 2:
+        if len(plain) == 2 and _is_whole(plain[0]):
             section = self.sections.section(command.whole(5, "the section"), command)
             if SHEAR in section.laws:
                 reading = f"element {tag} has no shear deformation, as in OpenSees 3.7.1"
@@ -408,7 +408,9 @@ def _elastic_words(command: Command, section: SectionLaws) -> str:
     if section.elastic:
         e, area, inertia = section.elastic
     elif AXIAL in section.laws and BENDING in section.laws:
-        e, area, inertia = 1.0, section.laws[AXIAL].k, section.laws[BENDING].k
+        area = section.area
+        e = section.laws[AXIAL].k / area if area != 1.0 else 1.0
+        area, inertia = section.laws[AXIAL].k / e, section.laws[BENDING].k / e
     else:
         raise command.mistake(
             f"element {command.words[2][:20]}: its section has no axial or no bending stiffness"

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Final
 
 from pound_deck.diagnostics import Mistake
 from pound_import.draft import Draft
 from pound_import.opensees.commands import Command
 from pound_import.opensees.model import DIRECTIONS, ScriptModel
 
+_ONE: Final = (
+    "here a node follows one other: leave out the constraint of the floor, whose beams do the same but for "
+    "their strain, or give members their hinges (beamWithHinges)"
+)
 #: letters of a node that follow another, and that node
 Followers = dict[int, tuple[str, int]]
 
@@ -25,7 +30,7 @@ def followers(model: ScriptModel, draft: Draft) -> Followers:
         try:
             letters, master, slave = _tie(model, command)
             if slave in tied and tied[slave][1] != master:
-                raise command.mistake(f"node {slave} follows two nodes")
+                raise command.mistake(f"node {slave} follows two nodes", _ONE)
             known = tied[slave][0] if slave in tied else ""
             tied[slave] = known + "".join(d for d in letters if d not in known), master, command
         except Mistake as mistake:
@@ -75,9 +80,8 @@ def _root(
         if master in passed:
             raise command.mistake(f"node {slave} follows itself through others", code="L620")
         if not set(letters) <= set(tied[master][0]):
-            raise command.mistake(
-                f"node {slave} follows node {master}, which follows another in some directions only"
-            )
+            what = f"node {slave} follows node {master}, which follows another in some directions only"
+            raise command.mistake(what, _ONE)
         passed.add(master)
         master = tied[master][1]
     return master

@@ -88,12 +88,14 @@ def _forces(model: ScriptModel, replayed: Replayed, axial: Axial) -> dict[int, f
 
 
 def so_far(name: str, commands: Sequence[Command]) -> tuple[str, dict[int, int]]:
-    """Deck of what the commands so far define, to find its modes, and the numbers of its nodes by tags."""
+    """Deck of the state that the commands so far define, to find modes, and its nodes' numbers by tags."""
     draft = Draft(_CHECK)
     model = sorted_models(commands, draft)[-1]
     if not model.elements:
         return "", {}
-    model.stages, model.modes, model.patterns, model.damping = [], [(1, commands[-1])], {}, []
+    model.modes, model.damping = [(1, commands[-1])], []
+    if not model.stages:  # at rest
+        model.patterns = {}
     deck = _write(model, Replayed(), (), lambda file: file, draft, None)
     return written(name, "", draft).text, {tag: deck.node(tag) for tag in model.points}
 
@@ -104,7 +106,8 @@ def _chosen(models: Sequence[ScriptModel], name: str, draft: Draft) -> ScriptMod
     if not built:
         here = Span(name, 1, 1, 2)
         hint = "name the file that builds the model, and sources the others"
-        draft.report.append(Diagnostic("L624", f"{name} builds no elements", here, hint))
+        if not has_errors(draft.report):  # else these say why
+            draft.report.append(Diagnostic("L624", f"{name} builds no elements", here, hint))
         return None
     chosen = next((model for model in built if model.complete), built[-1])
     for model in built:
@@ -199,8 +202,12 @@ def _geometry(geometries: Mapping[str, Command], draft: Draft) -> None:
             place = geometries[name].span
             notes = []
             if len(geometries) > 1:
-                others = ", ".join(sorted(set(geometries) - {name}))
-                notes = [draft.doubt(place, f"GEOMETRY {name} also for the members with {others}")]
+                other = next(kind for kind in ("SMALL", "PDELTA_VARYING") if kind in geometries)
+                first = geometries[other]
+                reading = (
+                    f"GEOMETRY {name} also for {first.words[1]} {first.words[2]} and others of {other}"
+                )
+                notes = [draft.doubt(first.span, reading)]
             draft.add("", f"GEOMETRY {name}", place, notes)
             return
 

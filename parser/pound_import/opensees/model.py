@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from typing import Final
 
 from pound_deck.diagnostics import Mistake
@@ -175,7 +176,9 @@ class _Script:
                     if name in REFUSED
                     else f"{name[:40]} is not a known command of OpenSees"
                 )
-                raise command.mistake(what, "delete the line, or what needs it")
+                near = get_close_matches(name, READ, 1) if name not in REFUSED else []
+                hint = f"did you mean {near[0]}?" if near else "delete the line, or what needs it"
+                raise command.mistake(what, hint)
         except Mistake as mistake:
             mistake.keep(self._draft.report)
         self._timeline.take(command.words)
@@ -214,12 +217,14 @@ class _Script:
         y = command.real(3, "y") if self.model.dimension > 1 else 0.0
         choice = options(command, 2 + self.model.dimension)
         choice.only(("-mass", "-ndf"))
+        _once(self.model.points, tag, command)
         self.model.points[tag] = Point(command, x, y)
         self._set_mass(tag, choice.reals("-mass"))
 
     def _set_mass(self, tag: int, values: list[float]) -> None:
+        mass = self.model.points[tag].mass = [0.0, 0.0, 0.0]
         for value, letter in zip(values, self.model.letters):
-            self.model.points[tag].mass[DIRECTIONS.index(letter)] = value
+            mass[DIRECTIONS.index(letter)] = value
 
     def _mass(self, command: Command) -> None:
         tag = command.whole(1, "the node")
@@ -227,7 +232,12 @@ class _Script:
         self._set_mass(tag, [command.real(k, "the mass") for k in range(2, len(command.words))])
 
     def _fix(self, command: Command) -> None:
-        self._fix_point(self.model.point(command.whole(1, "the node"), command), command)
+        point = self.model.point(command.whole(1, "the node"), command)
+        if len(command.words) < 2 + len(self.model.letters):
+            count = len(command.words) - 2
+            what = f"fix {command.words[1]}: {count} restraints, not {len(self.model.letters)}"
+            raise command.mistake(what, "1 is fixed, 0 is free, in each direction", "L620")
+        self._fix_point(point, command)
 
     def _fix_point(self, point: Point, command: Command) -> None:
         for letter, word in zip(self.model.letters, command.words[2:]):
@@ -249,6 +259,7 @@ class _Script:
 
     def _section_begins(self, command: Command) -> None:
         self._section = command.whole(2, "the tag")
+        _once(self.model.sections, self._section, command)
         self.model.sections[self._section] = command
         self.model.fibres[self._section] = []
 
@@ -259,6 +270,7 @@ class _Script:
 
     def _pattern_begins(self, command: Command) -> None:
         self._pattern = command.whole(2, "the tag")
+        _once(self.model.patterns, self._pattern, command)
         self.model.patterns[self._pattern] = ScriptPattern(command)
 
     def _load(self, command: Command) -> None:
@@ -316,11 +328,20 @@ class _Script:
         raise command.mistake(f"{command.name} sets a state", "start from the state under the loads")
 
 
+def _once(items: Mapping[int, object], tag: int, command: Command) -> None:
+    """Raise a Mistake if a tag is taken."""
+    if tag in items:
+        what = f"{' '.join(command.words[:3])[:60]}: the tag {tag} is defined twice"
+        raise command.mistake(what, "OpenSees stops there, too: give one of them another tag", "L620")
+
+
 def _kept(items: str) -> Callable[[_Script, Command], None]:
     """Return a function that keeps a command by its tag, the word behind its type."""
 
     def keep(reader: _Script, command: Command) -> None:
-        getattr(reader.model, items)[command.whole(2, "the tag")] = command
+        tag = command.whole(2, "the tag")
+        _once(getattr(reader.model, items), tag, command)
+        getattr(reader.model, items)[tag] = command
 
     return keep
 

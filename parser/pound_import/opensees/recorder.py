@@ -69,7 +69,7 @@ class CommandRecorder:
         self._count += 1
         if self._count > MOST_COMMANDS:
             raise TooMuch(f"the model has more than {MOST_COMMANDS} commands")
-        for flag, path in pairwise(words):
+        for flag, path in pairwise(" ".join(words).split() if name in ("pattern", "timeSeries") else ()):
             if flag in FILES and (text := self.written(path)) is not None:
                 self._send({"written": path, "text": text})
         self._send([list(words), file, line])

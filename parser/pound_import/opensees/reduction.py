@@ -54,7 +54,8 @@ def reduced(
         f"EI = {k / gross:.3f} of the section without cracks",
     )
     law = SpringPart(k, (sides[0].strength, -sides[1].strength), rule, items)
-    return SectionLaws({**section.laws, BENDING: law}, notes=(*section.notes, note))
+    laws = {**section.laws, BENDING: law}
+    return SectionLaws(laws, notes=(*section.notes, note), area=section.area)
 
 
 def _rule(cracks: bool, hardening: float) -> tuple[str, Items]:

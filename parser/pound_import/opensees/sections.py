@@ -38,12 +38,15 @@ class SectionLaws:
         Comments.
     fibres : Fibres or None
         That it is made of.
+    area : float
+        Of its fibres; 1 without, so that E A and E I stand in place of A and I [L^2].
     """
 
     laws: Mapping[str, SpringPart] = field(default_factory=dict)
     elastic: tuple[float, ...] = ()
     notes: tuple[str, ...] = ()
     fibres: Fibres | None = None
+    area: float = 1.0
 
     @property
     def bends(self) -> bool:
@@ -94,7 +97,7 @@ class Sections:
             made = fibres(self._model, command.whole(2, "the tag"), command)
             stiffness = initial(made.fibres)
             laws = {AXIAL: SpringPart(stiffness.axial), BENDING: SpringPart(stiffness.bending)}
-            return SectionLaws(laws, fibres=made)
+            return SectionLaws(laws, fibres=made, area=sum(fibre.area for fibre in made.fibres))
         hint = "give the section its moments and curvatures: Uniaxial, Aggregator or Elastic"
         raise command.mistake(f"section {name[:40]} has no counterpart", hint)
 

@@ -116,8 +116,12 @@ class Stages:
         node = load.whole(1, "the node")
         self.model.point(node, load)
         values = [0.0, 0.0, 0.0]
+        plain = [word for word in load.words if word != "-const"]
+        if len(plain) != 2 + len(self.model.letters):
+            what = f"load {node}: {len(plain) - 2} values, not {len(self.model.letters)}"
+            raise load.mistake(what, "OpenSees leaves such a load out", "L620")
         for k, letter in enumerate(self.model.letters):
-            values["XYR".index(letter)] = load.real(2 + k, "a force") if k + 2 < len(load.words) else 0.0
+            values["XYR".index(letter)] = load.real(2 + k, "a force")
         return node, values
 
     def _member(self, load: Command, factor: float) -> None:

@@ -65,6 +65,8 @@ def _gap(writer: ElementWriter, at: LinkDof, rows: Sequence[SapRow]) -> None:
     if not k:
         raise mistake("L643", f"{at.key('K')} of a gap is zero", row.place(at.key("K")), "above zero")
     notes, angle = [], at.angle
+    if not row.has(at.key("Open")):
+        notes.append(writer.draft.doubt(row.span, f"the gap {at.link[:40]} is closed: no {at.key('Open')}"))
     if " " not in at.ends:  # the ground is the first joint, but the wall of a contact is the second
         angle += 180.0
         notes.append(writer.draft.doubt(row.span, f"the gap {at.link[:40]} closes towards its ground"))

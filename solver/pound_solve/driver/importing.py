@@ -117,13 +117,18 @@ def _modes(name: str, commands: Sequence[Command], count: int) -> NaturalModes:
 
     from pound_import.opensees.importer import so_far
     from pound_import.opensees.replay import NaturalModes
+    from pound_solve.analyses.static import solve
+    from pound_solve.analyses.tangent_solution import InstabilityError
     from pound_solve.driver.prepare import DeckError
 
     text, numbers = so_far(name, commands)
     try:
         structure = _structure(name, text)
+        if structure.model.geometry != "SMALL":  # P-Delta of the loads that act when the model asks
+            state = solve(structure)
+            structure = structure.stressed(state.axial).displaced(state.u)
         modes = structure.vibration(count)
-    except (DeckError, LinAlgError):  # LinAlgError: a mechanism
+    except (DeckError, InstabilityError, LinAlgError):  # LinAlgError: a mechanism
         return NaturalModes()
     n = min(count, len(modes.omega))
     shapes = {
