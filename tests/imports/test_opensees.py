@@ -220,6 +220,12 @@ rayleigh [expr {0.1*$w}] 0 0 0
     assert damping["ALPHA"] == pytest.approx(0.160565, rel=1e-5)
 
 
+def test_a_record_that_is_missing_is_told_at_its_line(tmp_path):
+    motion = 'pattern UniformExcitation 2 1 -accel "Series -dt 0.02 -filePath none.txt"\n'
+    (warning,) = read(tmp_path, HEAD + BEAM + motion).report
+    assert (warning.code, warning.span.line) == ("L609", 8) and "none.txt" in warning.message
+
+
 def test_a_record_that_the_model_writes_is_in_the_deck(tmp_path):
     text = (
         HEAD

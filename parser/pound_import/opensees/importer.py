@@ -148,7 +148,7 @@ def _write(
     _drifts(model, deck, draft)
     _velocities(model, deck, draft)
     factors.write(deck)
-    Stages(model, deck, draft, Motions(model, draft, replayed.written, shown)).write()
+    Stages(model, deck, draft, Motions(model, draft, replayed, shown)).write()
     return deck
 
 

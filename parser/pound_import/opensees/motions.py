@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from pound_import.draft import Draft, number, quoted
 from pound_import.opensees.commands import Command, options
 from pound_import.opensees.model import ScriptModel
+from pound_import.opensees.replay import Replayed
 from pound_import.opensees.series import TimeSeries, series
 
 _AXES = {1: "X", 2: "Y"}
@@ -19,16 +20,17 @@ class Motions:
     ----------
     model : ScriptModel
     draft : Draft
-    written : mapping of str to str
-        Texts of the files that the model wrote.
+    replayed : Replayed
+        Has the folder of the model, and the texts of the files that it wrote.
     shown : function
         Name of a file beside the model as the new deck names it.
     """
 
     def __init__(
-        self, model: ScriptModel, draft: Draft, written: Mapping[str, str], shown: Callable[[str], str]
+        self, model: ScriptModel, draft: Draft, replayed: Replayed, shown: Callable[[str], str]
     ) -> None:
-        self._model, self._draft, self.written, self._shown = model, draft, written, shown
+        self._model, self._draft, self._shown = model, draft, shown
+        self._folder, self.written = replayed.folder, replayed.written
 
     def write(self, command: Command) -> None:
         """Write the motion of a pattern UniformExcitation.
@@ -66,6 +68,9 @@ class Motions:
         if acting.choice.flags.get("-fileTime"):
             hint = "write times and values into one file with two columns"
             raise acting.command.mistake("a Path with -fileTime", hint)
+        if not (self._folder / acting.path()).is_file():
+            what = f"the record {acting.path()}, which is not in the folder of the model"
+            self._draft.lose(acting.command.span, what, "put it there, or its new path into the new deck")
         return quoted(self._shown(acting.path())), f"FORMAT=COLUMNS DT={number(_step(acting))} COLUMN=0"
 
     def points(self, acting: TimeSeries) -> list[tuple[float, float]]:

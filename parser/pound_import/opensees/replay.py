@@ -47,6 +47,8 @@ class Replayed:
 
     Attributes
     ----------
+    folder : Path
+        Of the model.
     commands : list of Command
     written : dict of str to str
         Texts of the files that the model wrote and reads as data, by name.
@@ -54,6 +56,7 @@ class Replayed:
         Why the replay ended before the model did.
     """
 
+    folder: Path = Path()
     commands: list[Command] = field(default_factory=list)
     written: dict[str, str] = field(default_factory=dict)
     mistake: Diagnostic | None = None
@@ -89,7 +92,7 @@ def replay(path: Path, shown: str, module: str, eigen: Eigen, seconds: float = S
         env={**os.environ, **_QUIET},
     )
     assert process.stdin and process.stdout
-    replayed = Replayed()
+    replayed = Replayed(path.parent)
     folder = Path(shown).parent
     text = f"it was stopped after {seconds:g} s, or for its use of memory"
     end: Mapping[str, Any] = {"end": text, "limit": True}
