@@ -22,7 +22,9 @@ from typing import Any, NamedTuple, NoReturn
 
 import pytest
 
+from imports.opensees_models import FRAME, IN_PYTHON
 from imports.ruaumoko_decks import STICK
+from imports.sap2000_models import TWO_PATTERNS
 from pound_deck.diagnostics import has_errors
 from pound_solve.cli import common
 from pound_solve.cli.main import VERBS, main, parser
@@ -181,9 +183,12 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "wall.inp": next(b for b in blocks("README.md") if b.startswith("TITLE")),
     }
     files |= dict.fromkeys(
-        ("kobe_1995_jma_ns_gal_0p01.txt", "kobe.txt", "station.txt", "quake.eqb", "FILE"), SAMPLES
+        ("kobe_1995_jma_ns_gal_0p01.txt", "kobe.txt", "station.txt", "quake.eqb", "quake.at2", "FILE"),
+        SAMPLES,
     )
     files |= dict.fromkeys(("old.dat", "legacy.dat", "DECK"), STICK)
+    files |= {"frame.tcl": FRAME, "frame.py": IN_PYTHON, "model.py": IN_PYTHON}
+    files |= dict.fromkeys(("frame.s2k", "model.s2k"), TWO_PATTERNS)
     (desk / "suite").mkdir()
     for name, text in files.items():
         (desk / name).write_text(text, "utf-8")

@@ -106,3 +106,21 @@ pattern Plain 2 Linear { load 2 1.0 0.0 0.0 }
 integrator DisplacementControl 2 1 0.001
 analyze 60
 """
+#: two storeys of elastic members in Python
+IN_PYTHON = """\
+import openseespy.opensees as ops
+import opsvis
+ops.wipe()
+ops.model('basic', '-ndm', 2, '-ndf', 3)
+for i in range(3):
+    ops.node(i + 1, 0.0, 3.0 * i)
+ops.fix(1, *[1, 1, 1])
+ops.geomTransf('Linear', 1)
+for i in range(2):
+    ops.element('elasticBeamColumn', i + 1, i + 1, i + 2, 0.1, 2e7, 1e-3, 1)
+    ops.mass(i + 2, 10.0, 10.0, 0.0)
+w = [x ** 0.5 for x in ops.eigen(2)]
+ops.rayleigh(0.1 * w[0] * w[1] / (w[0] + w[1]), 0.0, 0.1 / (w[0] + w[1]), 0.0)
+opsvis.plot_model()
+print('not a command')
+"""

@@ -10,6 +10,10 @@ PORTAL, SEVEN_STOREYS = (
 #: two frames with a gap between them, and a row of every table that is read
 EVERYTHING = (FOLDER / "everything.s2k").read_text("utf-8")
 
+#: the portal with a second, empty load pattern
+_DEAD = "   LoadPat=DEAD   DesignType=Dead   SelfWtMult=0\n"
+TWO_PATTERNS = PORTAL.replace("FLOOR", "DEAD").replace(_DEAD, _DEAD + "   LoadPat=LIVE   SelfWtMult=0\n")
+
 
 def table(name, *rows):
     """Text of a table."""

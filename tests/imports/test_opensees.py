@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from imports.opensees_models import FIBRES, FRAME, POUNDING
+from imports.opensees_models import FIBRES, FRAME, IN_PYTHON, POUNDING
 from pound_deck.diagnostics import has_errors
 from pound_deck.messages import MESSAGES
 from pound_deck.reader import read_text
@@ -622,28 +622,10 @@ def test_all_messages_of_models_of_opensees_are_in_use():
 
 # ---------------------------------------------------------------------- Python
 
-PYTHON = """\
-import openseespy.opensees as ops
-import opsvis
-ops.wipe()
-ops.model('basic', '-ndm', 2, '-ndf', 3)
-for i in range(3):
-    ops.node(i + 1, 0.0, 3.0 * i)
-ops.fix(1, *[1, 1, 1])
-ops.geomTransf('Linear', 1)
-for i in range(2):
-    ops.element('elasticBeamColumn', i + 1, i + 1, i + 2, 0.1, 2e7, 1e-3, 1)
-    ops.mass(i + 2, 10.0, 10.0, 0.0)
-w = [x ** 0.5 for x in ops.eigen(2)]
-ops.rayleigh(0.1 * w[0] * w[1] / (w[0] + w[1]), 0.0, 0.1 / (w[0] + w[1]), 0.0)
-opsvis.plot_model()
-print('not a command')
-"""
-
 
 def test_a_model_in_python_is_executed_only_on_request(tmp_path):
-    assert [(c, line) for c, line, _ in errors(read(tmp_path, PYTHON, "model.py"))] == [("L625", 1)]
-    translation = read(tmp_path, PYTHON, "model.py", execute=True)
+    assert [(c, line) for c, line, _ in errors(read(tmp_path, IN_PYTHON, "model.py"))] == [("L625", 1)]
+    translation = read(tmp_path, IN_PYTHON, "model.py", execute=True)
     assert not translation.report
     new, _, _ = read_text(translation.text, catalog())
     assert new and len(new.elements) == 2

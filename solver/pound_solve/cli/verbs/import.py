@@ -14,7 +14,7 @@ SUMMARY = "make a deck of a model of OpenSees, SAP2000 or Ruaumoko-2D; comments 
 EXAMPLES = (
     ("old.dat -o model.inp", "translate a deck of Ruaumoko-2D"),
     ("frame.tcl --units kip,in,s -o model.inp", "translate a model of OpenSees"),
-    ("frame.s2k --plane XZ@Y=3.5 --load DEAD -o model.inp", "translate a plane of a model of SAP2000"),
+    ("frame.s2k --plane XZ@Y=0 --load DEAD -o model.inp", "translate a plane of a model of SAP2000"),
 )
 
 
