@@ -226,6 +226,24 @@ def test_a_record_that_is_missing_is_told_at_its_line(tmp_path):
     assert (warning.code, warning.span.line) == ("L609", 8) and "none.txt" in warning.message
 
 
+def test_a_force_of_a_file_that_the_model_writes_has_its_factor_once(tmp_path):
+    text = (
+        HEAD
+        + BEAM
+        + """
+set out [open force.dat w]
+foreach f {0.0 1.0 0.0} { puts $out $f }
+close $out
+timeSeries Path 2 -dt 0.5 -filePath force.dat -factor 3.0
+pattern Plain 2 2 { load 2 5.0 0 0 }
+analysis Transient
+analyze 100 0.01
+"""
+    )
+    (force,) = model(tmp_path, text).forces
+    assert (force["FX"], force["POINTS"]) == (5.0, (0.0, 0.0, 0.5, 3.0, 1.0, 0.0))
+
+
 def test_a_record_that_the_model_writes_is_in_the_deck(tmp_path):
     text = (
         HEAD

@@ -156,11 +156,13 @@ class Stages:
 
     def _forces(self, pattern: ScriptPattern, acting: TimeSeries, scale: float) -> None:
         """Write forces that vary with time."""
+        of_file = bool(acting.path()) and acting.path() not in self.motions.written
+        tabled = acting.kind == "Path" and not of_file  # the values of a table have the series' factor
+        factor = scale if tabled else scale * acting.factor
         for load in pattern.loads:
             if load.name != "load":
                 raise load.mistake(f"{load.name} that varies with time has no counterpart")
             node, values = self._nodal(load)
-            factor = scale * (1.0 if acting.kind == "Path" and not acting.path() else acting.factor)
             direction = " ".join(
                 f"{item}={number(factor * value)}"
                 for item, value in zip(("FX", "FY", "MZ"), values)
@@ -171,7 +173,7 @@ class Stages:
             head = f"{self.deck.node(node)} {direction}"
             if acting.kind == "Trig":
                 words = f"SINE {head} {wave(acting)}"
-            elif acting.path() and acting.path() not in self.motions.written:
+            elif of_file:
                 file, layout = self.motions.record(acting)
                 words = f"RECORD {head} FILE={file} {layout}"
             else:
