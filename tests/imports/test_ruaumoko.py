@@ -207,8 +207,32 @@ def test_losses_of_strength(code, line, items):
     assert "L605" in codes(read(text))
 
 
+@pytest.mark.parametrize(
+    ("rule", "line", "items"),
+    [
+        (5, "0.1 -0.1 0", {"SLACK": (0.1, -0.1), "GROW": "YES"}),
+        (52, "1 0.1 0.9 0.9 0.8 0.8 3 3 0\n0.4 0 0.3 0.3 0 0", {"FCR": (0.9, 0.9), "PINCH": 0.3}),
+    ],
+)
+def test_losses_of_rules_that_lose_by_each_direction_only(rule, line, items):
+    lines = "\n".join(["12 -10 0 0 0 0", "2 6 0.5", *[line] * 3])
+    text = STICK.replace("12 -10 0 0 0 0", lines)
+    card = model(text.replace("1 2 0 0 6000", f"1 {rule} 1 0 6000")).props["P1"]
+    wanted = {"ILOS": "EACH", "DUCT1": 2.0, "DUCT2": 6.0, "RDUCT": 0.5, "DUCT3": None} | items
+    assert {name: card[name] for name in wanted} == wanted
+    report = read(text.replace("1 2 0 0 6000", f"1 {rule} 3 0 6000")).report
+    (d,) = (d for d in report if d.code == "L604")
+    assert d.message.startswith("ILOS, item 3 of the line, is 3") and d.hint == "write 0 or 1"
+
+
+def test_matsushima():
+    text = STICK.replace("1 2 0 0 6000", "1 28 0 0 6000")
+    card = model(text.replace("12 -10 0 0 0 0", "12 -10 0 0 0 0" + "\n0.9 0.8" * 3)).props["P1"]
+    assert (card["RULE"][0], card["ALFA"], card["BETA"]) == ("MATSUSHIMA", 0.9, 0.8)
+
+
 def test_losses_that_are_refused():
-    for rule, code, line in ((2, 8, "2 6 0.5"), (5, 1, "2 6 0.5\n0.1 -0.1 0")):
+    for rule, code, line in ((2, 8, "2 6 0.5"), (9, 1, "2 6 0.5\n20 2 0 1 0 0 1 0 0")):
         text = STICK.replace("1 2 0 0 6000", f"1 {rule} {code} 0 6000")
         found = codes(read(text.replace("12 -10 0 0 0 0", f"12 -10 0 0 0 0\n{line}")))
         assert "L604" in found, rule

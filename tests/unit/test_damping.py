@@ -17,7 +17,7 @@ from pound_solve.analyses import modal
 from pound_solve.driver.prepare import DeckError, prepare
 from pound_solve.driver.request import Request
 from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, BranchKind, Law, Rule, drive, linear
-from pound_solve.laws.hysteresis import bilinear, bilinear_slack
+from pound_solve.laws.hysteresis import bilinear, slack_growing
 from pound_solve.numerics.modes import condense, massless
 from pound_solve.structure.assembly import AssemblyError
 from pound_solve.structure.damping import caughey
@@ -686,7 +686,7 @@ def test_steps_converge_to_the_exact_method_with_order_two(stiffness):
 # ---------------------------------------------------------------- laws that know their secant stiffness
 
 BILINEAR = (bilinear.RULE, (100.0, 5.0, -5.0, 0.1))
-SLACK = (bilinear_slack.RULE, (100.0, 5.0, -5.0, 0.01, -0.02, 0.05, 1.0))
+SLACK = (slack_growing.RULE, slack_growing.growing(100.0, (5.0, -5.0), (0.01, -0.02), 0.05).p)
 
 
 def spring(law, **factors):

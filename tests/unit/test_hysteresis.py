@@ -212,11 +212,30 @@ def same(one: Law, other: Law, reach: float = 30.0) -> None:
             assert other.dissipated(b.state, d) == pytest.approx(one.dissipated(a.state, d), abs=1e-9)
 
 
+@pytest.mark.parametrize(("r", "alpha", "beta"), [(0.0, 0.8, 0.9), (0.2, 0.9, 1.0), (0.0, 1.0, 0.7)])
+def test_matsushima_falls_with_each_half_cycle(r: float, alpha: float, beta: float) -> None:
+    walk = Walk(rule("MATSUSHIMA", 20.0, -20.0, R=r, ALFA=alpha, BETA=beta))
+    for n in range(6):
+        end = 40.0 * (-1) ** n
+        force = (1.0 - r) * 20.0 * beta**n * (-1) ** n + 10.0 * r * end
+        assert walk.move(end).force == pytest.approx(force, rel=1e-12)
+        tangent = walk.law.force(walk.move(0.999 * end).state, walk.d)[1]
+        assert tangent == pytest.approx(10.0 * (r + (1.0 - r) * alpha**n), rel=1e-12)
+
+
+def test_matsushima_half_cycles_need_a_yield_and_keep_a_hundredth() -> None:
+    walk = Walk(rule("MATSUSHIMA", 20.0, -20.0, ALFA=0.5, BETA=0.5)).move(1.9, -1.9, 1.9, -1.9)
+    assert walk.force == pytest.approx(-19.0)  # no yield, no loss
+    walk.move(*[100.0, -100.0] * 10)
+    assert walk.force == pytest.approx(-0.2, rel=1e-12)
+
+
 @pytest.mark.parametrize("r", [0.0, 0.05, 0.4])
 def test_rules_that_are_bilinear_in_a_limit(r: float) -> None:
     bilinear = rule("BILINEAR", R=r)
     same(bilinear, rule("BILINEAR_SLACK", R=r, SLACK=(0.0,), GROW="NO"))
     same(bilinear, rule("DEGRADING_BILINEAR", R=r))
+    same(bilinear, rule("MATSUSHIMA", R=r))
     same(bilinear, rule("DEGRADING_BILINEAR", R=r, ILOS="EACH", DUCT1=40.0, DUCT2=50.0, RDUCT=0.5))
     if r:
         same(bilinear, rule("TRILINEAR", R=r, R2=-0.1, F2=(1e3,)))

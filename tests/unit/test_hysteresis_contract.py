@@ -37,7 +37,7 @@ from pound_solve.laws.automaton import (
     on_spring,
 )
 from pound_solve.laws.condensed import without
-from pound_solve.laws.hysteresis import bilinear, takeda_slip, wayne_stewart
+from pound_solve.laws.hysteresis import bilinear, cracking, slipping, wayne_stewart
 from samples import values
 
 pytestmark = pytest.mark.full
@@ -58,6 +58,8 @@ DEGRADING: list[dict[str, Any]] = [
     {"R": 0.05, "ILOS": "LARGEST_RCYC", "RCYC": 8.0, **LOSS, "DUCT3": 7.0},
     {"ILOS": "CYCLES", "DUCT1": 1.0, "DUCT2": 6.0, "RDUCT": 0.4},
 ]
+#: the loss of rules with a crack point, beyond their yield point at 0.04 or so
+CRACKED_LOSS = {"ILOS": "EACH", "DUCT1": 1.0, "DUCT2": 1.6, "RDUCT": 0.3}
 FALLING = [{n: v for n, v in sample.items() if n != "ALFA"} for sample in DEGRADING if "ILOS" in sample]
 #: at 0.045 (or 0.025) the cap; capacities that make the component fail on some paths, and not on others
 CAPPED: list[dict[str, Any]] = [
@@ -82,6 +84,10 @@ SAMPLES: dict[str, list[dict[str, Any]]] = {
         {"R": r, "SLACK": slack, "GROW": grow}
         for r, slack in ((0.0, (0.0,)), (0.05, (0.004, -0.002)), (0.4, (0.004,)), (0.9, (0.004, -0.002)))
         for grow in ("YES", "NO")
+    ]
+    + [
+        {"R": r, "SLACK": (0.004, -0.002), "GROW": "YES", "ILOS": "EACH", **LOSS, "DUCT3": gone}
+        for r, gone in ((0.0, None), (0.05, 5.5))
     ],
     "BOUC_WEN": [{"R": 0.0, "N": 1.0}, {"R": 0.1, "N": 2.0}, {"R": 0.05, "N": 1.5, "BETA": 0.7}],
     "CLOUGH": DEGRADING,
@@ -93,15 +99,36 @@ SAMPLES: dict[str, list[dict[str, Any]]] = {
     "IMK_PINCHING": [
         {**sample, "KAPPAF": f, "KAPPAD": d} for sample in CAPPED for f, d in ((0.3, 0.5), (0.7, 0.0))
     ],
+    "MATSUSHIMA": [
+        {"R": r, "ALFA": alfa, "BETA": beta}
+        for r, alfa, beta in ((0.0, 0.8, 0.9), (0.3, 0.5, 0.5), (0.1, 1.0, 0.6), (0.9, 0.3, 1.0))
+    ],
     "ORIGIN_CENTRED": [{n: v for n, v in sample.items() if n != "ALFA"} for sample in DEGRADING],
     "Q_HYST": DEGRADING,
     "RAMBERG_OSGOOD": [{"N": 5.0}, {"N": 1.7, "ALPHA": 0.4}, {"N": 15.0, "ALPHA": 2.0}],
+    "RING_SPRING": [
+        {"R": r, "LOWER": lower} for r, lower in ((0.0, 0.3), (0.1, 0.9), (0.4, 0.01), (0.9, 0.5))
+    ],
+    "SCHOETTLER_RESTREPO": [
+        {"R": 0.0, "ALFA": 0.5, "PINCH": 0.3, **CRACKED_LOSS},
+        {"R": 0.05, "RHO": (0.9, 0.6), **CRACKED_LOSS, "DUCT3": 2.0},
+    ],
+    "SINA": [
+        {"R": 0.3, "ALFA": 1.0, "FCC": (0.05, 0.6)},
+        {"R": 0.02, "FCR": (0.2, 0.7), "RHO": (0.3, 0.8), "ALFA": 0.5, "FCC": (0.9,)},
+        {"R": 0.9, "FCR": (0.9, 0.1), "RHO": (0.9, 0.1), "ALFA": 1.0, "FCC": (0.01,)},
+        {"R": 0.0, "FCR": (0.05, 0.9), "RHO": (0.05, 0.9), "ALFA": 1.0},
+        {"R": 0.0, "ALFA": 0.5, **CRACKED_LOSS},
+        {"R": 0.05, "RHO": (0.9, 0.6), **CRACKED_LOSS, "DUCT3": 2.0},
+    ],
     "TAKEDA": [*DEGRADING, *({**sample, "BETA": beta} for sample in DEGRADING for beta in (0.6, 1.0))],
     "TAKEDA_SLIP": [
         {"R": 0.3, "ALFA": 1.0, "SLIP": 0.0, "INNER": 0.3},
         {"R": 0.02, "FCR": (0.2, 0.7), "RHO": (0.3, 0.8), "ALFA": 0.5, "INNER": 0.1},
         {"R": 0.9, "FCR": (0.9, 0.1), "RHO": (0.9, 0.1), "ALFA": 1.0, "SLIP": 10.0},
         {"R": 0.0, "FCR": (0.05, 0.9), "RHO": (0.05, 0.9), "ALFA": 1.0, "INNER": 0.01},
+        {"R": 0.0, "ALFA": 0.5, **CRACKED_LOSS},
+        {"R": 0.05, "RHO": (0.9, 0.6), **CRACKED_LOSS, "DUCT3": 2.0},
     ],
     "TRILINEAR": [
         {"R": 0.5, "F2": (1.3,)},
@@ -258,8 +285,8 @@ def envelope(law: Law, d: float) -> float:
 
 def corner(law: Law, sample: dict[str, Any], fy: float, which: int) -> float:
     """Deformation of a side where the last yield line of the virgin rule begins."""
-    if law.rule is takeda_slip.RULE:  # its lines to the yield point lie above the cracked backbone
-        return fy / (law.p[7:9][which] * K)
+    if law.rule is slipping.RULE:  # its lines to the yield point lie above the cracked backbone
+        return fy / (law.p[cracking.RHO : cracking.RHO + 2][which] * K)
     ratio = (sample["F2"][which] - 1.0) / sample["R"] if "F2" in sample else 0.0
     slack = sample.get("SLACK", (0.0,))
     gap = slack[which] if len(slack) == 2 else slack[0] * np.sign(fy)

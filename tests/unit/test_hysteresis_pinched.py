@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from paths import Walk
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law
+from pound_solve.laws.refusal import ItemError
 
 RULES = catalog().family("hysteresis")
 
@@ -101,6 +102,93 @@ def test_takeda_slip_without_slip_is_a_straight_line_between_peaks() -> None:
     law = rule("TAKEDA_SLIP", **SLIP, SLIP=0.0)
     expected = [22.0 * (x + zero) / (8.0 + zero) for x in (0.0, 4.0, 8.0)]
     assert forces(law, [8.0, -8.0, 0.0, 4.0, 8.0])[2:] == pytest.approx(expected, rel=1e-12)
+
+
+def test_sina_closes_its_cracks_on_the_unloading_line() -> None:
+    """From the opposite peak: slips to 0.3 Fy on the line of unloading, with 6 (4/8)^0.4 from (8, 22)."""
+    ku = 6.0 * 0.5**0.4
+    law = rule("SINA", FCC=(0.3,), R=0.1, ALFA=0.4)
+    zero, closed = 8.0 - 22.0 / ku, 8.0 - 16.0 / ku
+    expected = [6.0 * (0.0 + zero) / (closed + zero), 6.0, 6.0 + ku * (7.0 - closed), 22.0]
+    assert forces(law, [8.0, -8.0, 0.0, closed, 7.0, 8.0])[2:] == pytest.approx(expected, rel=1e-12)
+
+
+def test_sina_goes_straight_to_its_peak_from_beyond_the_closing_point() -> None:
+    # zero force at 4 and, after a small excursion to the other side, again at 3.5: the closing point of
+    # FCC=0.01, 0.2 on the unloading line, lies at 8 - 23.8 / 6 = 4.0333, that of FCC=0.9 at 7
+    path = [8.0, -8.0, 8.0, 3.9, 3.6]
+    for fcc in (0.01, 0.9):
+        walk = Walk(rule("SINA", FCC=(fcc,), R=0.2)).move(*path)
+        zero = walk.d - walk.force / 6.0
+        closed = 8.0 - (24.0 - 20.0 * fcc) / 6.0
+        walk.move(zero + 1e-9)
+        straight = 24.0 / (8.0 - zero)
+        slip = min(20.0 * fcc / (closed - zero), straight)
+        assert walk.move(zero + 0.1).force == pytest.approx(0.1 * slip, rel=1e-6)
+
+
+def strengths(name: str, fall: float, **values: Any) -> list[float]:
+    """Forces of a rule with a loss from ductility 2 to 6, of yield deformation `fall`, at 1, 2, 4, 6, 9."""
+    loss = {"ILOS": "EACH", "DUCT1": 2.0, "DUCT2": 6.0, "RDUCT": 0.5}
+    law = rule(name, **loss, **values)
+    return forces(law, [fall * x for x in (1.0, 2.0, 4.0, 6.0, 9.0)])
+
+
+@pytest.mark.parametrize("name", ["SCHOETTLER_RESTREPO", "SINA", "TAKEDA_SLIP"])
+@pytest.mark.parametrize("r", [0.0, 0.1])
+def test_rules_with_a_crack_point_lose_strength(name: str, r: float) -> None:
+    factors = (1.0, 1.0, 0.75, 0.5, 0.5)
+    expected = [20.0 * ((1.0 - r) * y + r * x) for x, y in zip((1.0, 2.0, 4.0, 6.0, 9.0), factors)]
+    assert strengths(name, 4.0, R=r) == pytest.approx(expected, rel=1e-13)
+
+
+def test_slack_that_grows_loses_strength_on_the_side_that_yields() -> None:
+    loss = {"ILOS": "EACH", "DUCT1": 2.0, "DUCT2": 6.0, "RDUCT": 0.5, "DUCT3": 10.0}
+    law = rule("BILINEAR_SLACK", SLACK=(1.0,), GROW="YES", R=0.1, **loss)
+    # 18 phi + 2 x with phi = 0.75 at 4, 0.5 at 6, 0.01 at 10
+    path = {9.0: 21.5, 13.0: 21.0, 21.0: 20.18, 25.0: 24.18}
+    assert forces(law, list(path)) == pytest.approx(list(path.values()), rel=1e-13)
+    assert Walk(law).move(21.0, -3.0).force == pytest.approx(-20.0, rel=1e-13)
+
+
+@pytest.mark.parametrize("growing", ["YES", "NO"])
+def test_a_loss_without_growing_slack_is_refused(growing: str) -> None:
+    loss = {"ILOS": "EACH", "DUCT1": 2.0, "DUCT2": 6.0, "RDUCT": 0.5}
+    if growing == "YES":
+        with pytest.raises(ValueError, match="yield force other than zero"):
+            rule("BILINEAR_SLACK", 0.0, GROW="YES", **loss)
+    else:
+        with pytest.raises(ItemError, match="GROW=YES"):
+            rule("BILINEAR_SLACK", GROW="NO", **loss)
+
+
+# ---------------------------------------------------------------------- ring spring
+
+
+@pytest.mark.parametrize(("r", "lower", "d"), [(0.0, 0.3, 5.0), (0.1, 0.5, 30.0), (0.4, 0.9, 8.0)])
+def test_a_ring_spring_returns_with_a_fraction_of_its_force(r: float, lower: float, d: float) -> None:
+    back = Walk(rule("RING_SPRING", R=r, LOWER=lower)).move(d)
+    for x in (0.5 * (d + 2.0), 2.0):
+        out = 20.0 + 10.0 * r * (x - 2.0)
+        assert back.move(x).force == pytest.approx(lower * out, rel=1e-12)
+    assert back.move(0.0).force == pytest.approx(0.0, abs=1e-12)
+
+
+@given(
+    st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=20),
+    st.sampled_from([0.0, 0.2]),
+    st.floats(0.05, 0.95),
+)
+def test_a_ring_spring_centres_itself(path: list[float], r: float, lower: float) -> None:
+    """Between its two lines, and never a force against the deformation."""
+    walk = Walk(rule("RING_SPRING", R=r, LOWER=lower)).move(*path)
+    for state, a, b in walk.visits:
+        for d in (a, b):
+            f, x = walk.law.force(state, d)[0], abs(d)
+            line = 20.0 + 10.0 * r * (x - 2.0)
+            bottom, top = min(10.0 * x, lower * line), min(10.0 * x, line)
+            assert bottom - 1e-9 <= (f if d > 0.0 else -f) <= top + 1e-9
+    assert walk.move(0.0).force == pytest.approx(0.0, abs=1e-12)
 
 
 # ---------------------------------------------------------------------- flag-shaped

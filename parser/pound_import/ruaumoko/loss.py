@@ -43,9 +43,13 @@ def read(code: int, rule: Spec, rows: DataLines, item: DataItem, draft: Draft, n
     begin, end, left, gone, cycle = row.reals(NAMES, 3)
     if code not in _WORDS:
         raise item.mistake("L604", "ILOS", f"is {code}, which is not known", "0 to 7")
-    if rule.field("ILOS") is None:
+    forms = rule.field("ILOS")
+    if forms is None:
         what = f"is {code}, and {rule.name} has no loss of strength"
         raise item.mistake("L604", "ILOS", what, "write 0, or take rule 1, 2, 4, 7, 10, 11 or 12")
+    if _WORDS[code] not in forms.words:
+        what = f"is {code}, and {rule.name} loses strength by the ductility of each direction only"
+        raise item.mistake("L604", "ILOS", what, "write 0 or 1")
     notes.append(draft.doubt(row.span, "the line of the loss of strength stands before those of the rule"))
     if code in _SUDDEN and not gone:  # the loss never occurs
         code -= 1

@@ -43,7 +43,7 @@ def _ramberg_osgood(v: Values) -> str:
     return f"N={number(v['R-exponent'])}"
 
 
-def _takeda(v: Values) -> str:
+def _alfa_beta(v: Values) -> str:
     return f"{_alfa(v)} BETA={number(v['BETA'])}"
 
 
@@ -72,7 +72,7 @@ LAYOUTS: Final = {
     1: RuleLayout((), _nothing),
     2: RuleLayout((), _ratio),
     3: RuleLayout((("R-exponent",),), _ramberg_osgood),
-    4: RuleLayout((("ALFA", "BETA", "NF", "KKK"),), _takeda, (("NF", 1.0), ("KKK", 1.0))),
+    4: RuleLayout((("ALFA", "BETA", "NF", "KKK"),), _alfa_beta, (("NF", 1.0), ("KKK", 1.0))),
     5: RuleLayout((("GAP+", "GAP-", "IMODE"),), _slack),
     7: RuleLayout((), _ratio),
     9: RuleLayout(
@@ -81,6 +81,7 @@ LAYOUTS: Final = {
     10: RuleLayout((("ALFA",),), _alfa),
     11: RuleLayout((("ALFA",),), _alfa),
     12: RuleLayout((("ALFA",),), _alfa),
+    28: RuleLayout((("ALFA", "BETA"),), _alfa_beta),
     52: RuleLayout(
         (
             ("Kneg", "Rbeg", "Fcr+", "Fcr-", "Rho+", "Rho-", "Dult+", "Dult-", "IOP"),

@@ -40,6 +40,7 @@ Engng, Univ. of Tokyo 36(2): 407-441 (unloading stiffness as a power of the duct
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from pound_deck.schema import Field, Kind
@@ -55,6 +56,7 @@ REMAINING_STRENGTH = 0.01  #: fraction of the yield force that finally remains
 # parameters of a law after K, FY, FY_MINUS: r, alpha; of the loss D1, D2, phi_R, its form, D3 (0: none) and
 # the loss by a cycle
 R, ALPHA, D1, D2, PHI_R, FORM, D3, BY_CYCLE = range(3, 11)
+NO_LOSS = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)  #: parameters D1 to BY_CYCLE without a strength loss
 PARAMETERS = 11  #: number of these parameters; a rule's own parameters follow
 # internal variables: largest ductilities of both sides; the point (d, f); changes of the yielding side,
 # with the sign of the last one
@@ -117,6 +119,19 @@ LOSS = (
         doc="loss of yield force per inelastic cycle, per cent; for the forms RCYC and SUDDEN",
     ),
 )
+#: names of the lines of a backbone whose loss depends on the largest deformation of the side alone
+LINES = ("yielding", "yielding weaker", "yielding weakened", "yielding without strength")
+#: the items of such a loss
+LOSS_OF_SIDE = (
+    replace(
+        LOSS[0],
+        words=("NONE", "EACH"),
+        codes={word: FORMS[word] for word in ("NONE", "EACH")},
+        doc="strength falls with the ductility of each direction",
+    ),
+    replace(LOSS[1], doc="ductility at which strength loss begins"),
+    *LOSS[2:5],
+)
 _ITEMS = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 
 
@@ -133,7 +148,7 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     r, alpha = values.get("R", 0.0), values.get("ALFA", 0.0)
     if not 0.0 <= r < 1.0:
         raise ItemError("R of a degrading rule lies from 0 to below 1", "R")
-    return (k, fy_plus, fy_minus, r, alpha, *_loss(values))
+    return (k, fy_plus, fy_minus, r, alpha, *loss(values))
 
 
 def loses_strength(values: Mapping[str, Any]) -> bool:
@@ -144,17 +159,18 @@ def loses_strength(values: Mapping[str, Any]) -> bool:
     ValueError
         The card has items of a strength loss, but requests none.
     """
-    if values["ILOS"] == "NONE" and any(values[name] is not None for name in _ITEMS):
+    if values["ILOS"] == "NONE" and any(values.get(name) is not None for name in _ITEMS):
         raise ValueError(f"{', '.join(_ITEMS)} have no effect without ILOS=EACH or the like")
     return bool(values["ILOS"] != "NONE")
 
 
-def _loss(values: Mapping[str, Any]) -> Numbers:
+def loss(values: Mapping[str, Any]) -> Numbers:
     """Return the parameters of the strength loss; see `parameters`."""
     if not loses_strength(values):
-        return 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
+        return NO_LOSS
     form = FORMS[values["ILOS"]]
-    d1, d2, phi_r, d3, by_cycle = (values[name] for name in _ITEMS)
+    items: list[Any] = [values.get(name) for name in _ITEMS]
+    d1, d2, phi_r, d3, by_cycle = items
     if None in (d1, d2, phi_r):
         raise ItemError("ILOS needs DUCT1, DUCT2 and RDUCT", "ILOS")
     if d1 >= d2:
@@ -250,6 +266,24 @@ def strength_line(p: Numbers, mu: float, x: float) -> tuple[float, float, float]
         return slope, 1.0 - slope * d1, d2
     slope = -(phi_r - REMAINING_STRENGTH) / (d3 - d2)
     return slope, phi_r - slope * d2, d3
+
+
+def line_at(p: Numbers, x: float, dy: float) -> int:
+    """Return the number of the line of a backbone at a deformation `x` beyond the yield deformation, where
+    the loss depends on this side alone: 0 up to the ductility D1, then up to D2, up to D3, and beyond.
+    """
+    if p[FORM] == 0.0:
+        return 0
+    return int(x >= p[D1] * dy) + int(x >= p[D2] * dy) + int(x >= p[D3] * dy > 0.0)
+
+
+def line_of_side(p: Numbers, n: int, fy: float, k: float) -> tuple[float, float, float]:
+    """Return the slope and the force at zero deformation of line `n` of such a backbone, and the
+    deformation at which it ends (0: no end), for a side that yields at `fy` with the secant stiffness `k`.
+    """
+    begin = BEFORE if n == 0 else p[D1] if n == 1 else p[D2] if n == 2 else p[D3]
+    fall, value, end = strength_line(p, BEFORE, begin)
+    return (p[R] + (1.0 - p[R]) * fall) * k, (1.0 - p[R]) * value * fy, end * fy / k
 
 
 def backbone(p: Numbers, m: Numbers, s: float, x: float) -> float:

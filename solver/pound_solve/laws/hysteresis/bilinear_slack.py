@@ -1,14 +1,13 @@
 r"""Bilinear with slackness: no force inside a gap, bilinear outside it.
 
-The spring engages at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the positive side
+The spring engages at :math:`d = g^+` (and at :math:`g^- \le 0`).  With GROW=YES (braces) the slack grows
+by the plastic deformation of each side, see `slack_growing`.  With GROW=NO the whole slack zone moves by
+a common plastic deformation :math:`p`, and the hardening is kinematic: on the positive side
 
-.. math:: f = k (d - g^+ - p^+), \qquad f \le F_y^+ + H p^+, \qquad H = \frac{k r}{1 - r}
+.. math:: f = k (d - g^+ - p), \qquad f \le F_y^+ + H p, \qquad H = \frac{k r}{1 - r}
 
-where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.  With GROW=YES
-(braces: the slack grows by the plastic deformation) each side has a separate :math:`p`.  With GROW=NO the
-whole slack zone moves by a common :math:`p`, and the hardening is kinematic: after a large :math:`p` the
-yield force of the other side, :math:`F_y^- + H p`, is above zero, and the spring yields back before it
-becomes slack.
+After a large :math:`p` the yield force of the other side, :math:`F_y^- + H p`, is above zero, and the
+spring yields back before it becomes slack.
 
 References
 ----------
@@ -36,12 +35,14 @@ from pound_solve.laws.automaton import (
     below,
     linear,
 )
-from pound_solve.laws.hysteresis.backbone import R_FIELD
+from pound_solve.laws.hysteresis.backbone import LOSS_OF_SIDE, R_FIELD, loses_strength, loss
+from pound_solve.laws.hysteresis.slack_growing import growing
+from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
 SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
-GAP_PLUS, GAP_MINUS, R, GROW = range(3, 7)  #: parameters of a law after K, FY, FY_MINUS
-P_PLUS, P_MINUS = 0, 1  #: internal variables: plastic deformations of both sides; with GROW=NO the same
+GAP_PLUS, GAP_MINUS, R = range(3, 6)  #: parameters of a law after K, FY, FY_MINUS
+PLASTIC = 0  #: internal variable: plastic deformation
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -49,8 +50,8 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     slack).
     """
     if p[GAP_PLUS] <= 0.0:
-        return ELASTIC_PLUS, (0.0, 0.0)
-    return (ELASTIC_MINUS if p[GAP_MINUS] >= 0.0 else SLACK), (0.0, 0.0)
+        return ELASTIC_PLUS, (0.0,)
+    return (ELASTIC_MINUS if p[GAP_MINUS] >= 0.0 else SLACK), (0.0,)
 
 
 def first_yield(p: Numbers) -> tuple[float, float]:
@@ -75,25 +76,23 @@ def force_at_yield_back(p: Numbers, at: int, m: Numbers) -> float:
     first.
     """
     k, plus, minus, r = p[K], p[FY], p[FY_MINUS], p[R]
-    if p[GROW] != 0.0:
-        return 0.0
-    shift = k * r / (1.0 - r) * m[P_PLUS]
+    shift = k * r / (1.0 - r) * m[PLASTIC]
     return minus + shift if at == ELASTIC_PLUS else plus + shift
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Return the branch: slack, elastic on one side, or along a yield line."""
-    k, plus, minus, gap_plus, gap_minus, r = p[:GROW]
+    k, plus, minus, gap_plus, gap_minus, r = p
     h = k * r / (1.0 - r)
-    start_plus, start_minus = gap_plus + m[P_PLUS], gap_minus + m[P_MINUS]
+    start_plus, start_minus = gap_plus + m[PLASTIC], gap_minus + m[PLASTIC]
     if at == SLACK:
         return linear(0.0, 0.0, above(start_plus), below(start_minus))
     if at == ELASTIC_PLUS:
         goes_slack = (-k, 0.0, k * start_plus + max(force_at_yield_back(p, at, m), 0.0))
-        return linear(k, -k * start_plus, (k, 0.0, -k * start_plus - plus - h * m[P_PLUS]), goes_slack)
+        return linear(k, -k * start_plus, (k, 0.0, -k * start_plus - plus - h * m[PLASTIC]), goes_slack)
     if at == ELASTIC_MINUS:
         goes_slack = (k, 0.0, -k * start_minus - min(force_at_yield_back(p, at, m), 0.0))
-        return linear(k, -k * start_minus, (-k, 0.0, k * start_minus + minus + h * m[P_MINUS]), goes_slack)
+        return linear(k, -k * start_minus, (-k, 0.0, k * start_minus + minus + h * m[PLASTIC]), goes_slack)
     gap, fy, side = yield_line(p, at)
     slope = r * k
     f0 = (1.0 - r) * fy - slope * gap
@@ -107,7 +106,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Return the state after an engagement, a yield, a reversal, or becoming slack."""
-    k, r, grow = p[K], p[R], p[GROW]
+    k, r = p[K], p[R]
     if at == SLACK:
         return (ELASTIC_PLUS if event == 0 else ELASTIC_MINUS), m
     if at == ELASTIC_PLUS:
@@ -120,13 +119,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return (BACK_MINUS if force_at_yield_back(p, at, m) < 0.0 else SLACK), m
     gap, fy, side = yield_line(p, at)
     slope = r * k
-    plastic = d - gap - ((1.0 - r) * fy + slope * (d - gap)) / k
-    if grow == 0.0:
-        m = (plastic, plastic)
-    elif side > 0.0:
-        m = (plastic, m[P_MINUS])
-    else:
-        m = (m[P_PLUS], plastic)
+    m = (d - gap - ((1.0 - r) * fy + slope * (d - gap)) / k,)
     if event == 1:
         return SLACK, m
     return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m
@@ -142,8 +135,8 @@ RULE = Rule(
     branch,
     transition,
     first_yield=first_yield,
-    parameters=7,
-    variables=2,
+    parameters=6,
+    variables=1,
 )
 
 
@@ -153,8 +146,14 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     gap_minus = gap[1] if len(gap) == 2 else -gap[0]
     if gap[0] < 0 or gap_minus > 0:
         raise ItemError("SLACK needs a positive value, then a negative one", "SLACK")
-    grow = float(values["GROW"] == "YES")
-    return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], grow))
+    weakens = loses_strength(values)
+    if weakens:
+        need_both_sides(fy_plus, fy_minus)
+    if values["GROW"] == "YES":
+        return growing(k, (fy_plus, fy_minus), (gap[0], gap_minus), values["R"], loss(values))
+    if weakens:
+        raise ItemError("a strength loss needs a slack that grows: GROW=YES", "ILOS")
+    return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"]))
 
 
 SPEC = Spec(
@@ -180,6 +179,7 @@ SPEC = Spec(
             codes={"YES": 0, "NO": 1},
             doc="slack grows with yield",
         ),
+        *LOSS_OF_SIDE,
     ),
     code=5,
     reference="Ruaumoko rule 5",

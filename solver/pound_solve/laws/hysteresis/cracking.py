@@ -1,8 +1,13 @@
-r"""The backbone with a crack point that SCHOETTLER_RESTREPO and TAKEDA_SLIP share.
+r"""The backbone with a crack point that SCHOETTLER_RESTREPO, SINA and TAKEDA_SLIP share.
 
 The formulas are for one side (`mirror`), with the yield force :math:`F_y > 0` and the initial stiffness
 :math:`k`.  The backbone rises with :math:`k` to the crack point at the force :math:`F_{cr} F_y`, continues
 straight to the yield point at :math:`d_y = F_y / (\rho k)`, and has the slope :math:`r \rho k` beyond it.
+With a strength loss it is there
+
+.. math:: F(x) = F_y \left[(1 - r)\,\varphi(x) + r x\right], \qquad x = d / d_y
+
+with the factor :math:`\varphi` of `backbone`.
 
 The first internal variables of each rule are the largest deformations of both sides, initially those of the
 crack points.
@@ -15,24 +20,30 @@ from dataclasses import replace
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import FY, FY_MINUS, K, Numbers, above, below, linear, passes
-from pound_solve.laws.hysteresis.backbone import R_FIELD as RATIO_TO_INITIAL
-from pound_solve.laws.hysteresis.backbone import R
-from pound_solve.laws.mirror import need_both_sides, on_side, outward, side, turns_inward
+from pound_solve.laws.automaton import FY, FY_MINUS, BranchKind, K, Numbers, above, below, linear, passes
+from pound_solve.laws.hysteresis import backbone as bilinear_backbone
+from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, LINES, LOSS_OF_SIDE, line_at, line_of_side
+from pound_solve.laws.mirror import both_sides, on_side, outward, side, turns_inward
 
-# branches of the positive side; add one for the negative side
-ELASTIC, CRACKED, YIELDING = 0, 1, 3
+# branches of the positive side; add one for the negative side.  Four lines follow the yield point: up to
+# the ductilities D1, D2 and D3, and beyond them
+ELASTIC, CRACKED, YIELDING, UNLOADING = 0, 1, 3, 11
+BRANCHES = (
+    *BranchKind.ELASTIC.named("elastic"),
+    *BranchKind.ELASTIC.named(*both_sides("cracked")),
+    *BranchKind.YIELDING.named(*both_sides(*LINES)),
+)
 
-# parameters of a law after K, FY, FY_MINUS, R, ALPHA: ratios of both sides, of the crack force to the yield
+# parameters of a law after those of `backbone`: ratios of both sides, of the crack force to the yield
 # force, and of the secant stiffness at the yield point to K
-FCR, FCR_MINUS, RHO, RHO_MINUS = range(5, 9)
-PARAMETERS = 9  #: number of these parameters; a rule's own parameters follow
+FCR, FCR_MINUS, RHO, RHO_MINUS = range(bilinear_backbone.PARAMETERS, bilinear_backbone.PARAMETERS + 4)
+PARAMETERS = bilinear_backbone.PARAMETERS + 4  #: number of these parameters; a rule's own parameters follow
 MOST, MOST_MINUS = 0, 1  #: internal variables: largest deformations of both sides, mirrored
 
 Point = tuple[float, float]  #: deformation and force, mirrored
 
 R_FIELD = replace(
-    RATIO_TO_INITIAL, doc="ratio of post-yield stiffness to secant stiffness at the yield point"
+    bilinear_backbone.R_FIELD, doc="ratio of post-yield stiffness to secant stiffness at the yield point"
 )
 FCR_FIELD = Field(
     "FCR",
@@ -54,20 +65,21 @@ RHO_FIELD = Field(
     count=(1, 2),
     doc="secant stiffness at the yield point / initial stiffness",
 )
+FIELDS = (R_FIELD, ALFA_FIELD, FCR_FIELD, RHO_FIELD, *LOSS_OF_SIDE)
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """Return the first parameters of all rules on this backbone: k, both yield forces, r, alpha, then the
-    ratios of the crack forces and of the secant stiffnesses, each for both sides.
+    """Return the first parameters of all rules on this backbone: those of `backbone`, then the ratios of
+    the crack forces and of the secant stiffnesses, each for both sides.
 
     Raises
     ------
     ValueError
-        A side has no yield force.
+        A side has no yield force, or the strength loss is incomplete.
     """
-    need_both_sides(fy_plus, fy_minus)
     fcr, rho = values["FCR"], values["RHO"]
-    return k, fy_plus, fy_minus, values["R"], values["ALFA"], fcr[0], fcr[-1], rho[0], rho[-1]
+    first = bilinear_backbone.parameters(values, k, fy_plus, fy_minus)
+    return (*first, fcr[0], fcr[-1], rho[0], rho[-1])
 
 
 def crack_point(p: Numbers, s: float) -> Point:
@@ -91,8 +103,8 @@ def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
     """Return the slope and force of the backbone at a deformation beyond the crack."""
     (xc, fc), (xy, fy) = crack_point(p, s), yield_point(p, s)
     if x >= xy:
-        slope = p[R] * fy / xy
-        return slope, fy + slope * (x - xy)
+        slope, f0, _ = line_of_side(p, line_at(p, x, xy), fy, fy / xy)
+        return slope, f0 + slope * x
     slope = (fy - fc) / (xy - xc)
     return slope, fc + slope * (x - xc)
 
@@ -121,19 +133,29 @@ def peak(p: Numbers, s: float, m: Numbers) -> Point:
 
 def backbone_branch(p: Numbers, at: int) -> Numbers:
     """Return the branch: elastic up to a crack point (event 0: positive side), or along the backbone until
-    the motion reverses (event 0) or the side yields (event 1).
+    the motion reverses (event 0) or the line ends (event 1).
     """
     if at == ELASTIC:
         return linear(p[K], 0.0, above(crack_point(p, 1.0)[0]), below(-crack_point(p, -1.0)[0]))
     s = side(at)
-    xc, xy = crack_point(p, s)[0], yield_point(p, s)[0]
+    xy, fy = yield_point(p, s)
     if at < YIELDING:
+        xc, _ = crack_point(p, s)
         slope, f = backbone(p, s, xc)
         return linear(slope, s * (f - slope * xc), turns_inward(s), outward(s, xy))
-    slope, f = backbone(p, s, xy)
-    return linear(slope, s * (f - slope * xy), turns_inward(s))
+    slope, f0, end = line_of_side(p, (at - YIELDING) // 2, fy, fy / xy)
+    if end == 0.0:
+        return linear(slope, s * f0, turns_inward(s))
+    return linear(slope, s * f0, turns_inward(s), outward(s, end))
+
+
+def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
+    """Return the state after the end of a line of the backbone."""
+    s = side(at)
+    return enter_backbone(p, m, s, yield_point(p, s)[0]) if at < YIELDING else (at + 2, m)
 
 
 def enter_backbone(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
-    """Return the state on the backbone of a side."""
-    return on_side(YIELDING if x >= yield_point(p, s)[0] else CRACKED, s), m
+    """Return the state on the backbone of a side at a deformation beyond the crack."""
+    xy, _ = yield_point(p, s)
+    return on_side(CRACKED if x < xy else YIELDING + 2 * line_at(p, x, xy), s), m

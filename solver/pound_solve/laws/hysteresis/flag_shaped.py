@@ -25,12 +25,21 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import FY, FY_MINUS, BranchKind, K, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.hysteresis.backbone import R_FIELD
 from pound_solve.laws.mirror import inward, need_both_sides, outward, side, turns_inward, turns_outward
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BACK_MINUS = range(7)
+#: parameters of a law after K, FY, FY_MINUS: slope of the upper line; of the lower line, its slope and the
+#: force at which it meets the elastic line, a fraction of the yield force; slopes are multiples of K
+R, R_LOW, LOW = range(3, 6)
 FOOT = 0  #: internal variable: foot of the elastic line, mirrored
+
+
+def ends(p: Numbers, s: float) -> tuple[float, float]:
+    """Return the forces at which the elastic line meets the two lines of a side, positive."""
+    fy = p[FY] if s > 0.0 else -p[FY_MINUS]
+    return fy, p[LOW] * fy
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -40,48 +49,46 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Return the branch: elastic through the origin, along one of the two lines, or between them."""
-    k, plus, minus, r, beta = p[:5]
+    k, r, r_low = p[K], p[R], p[R_LOW]
     if at == ELASTIC:
-        return linear(k, 0.0, above(plus / k), below(minus / k))
+        return linear(k, 0.0, above(p[FY] / k), below(p[FY_MINUS] / k))
     s = side(at)
-    fy = s * (plus if s > 0.0 else minus)
-    low = (1.0 - beta) * fy
+    fy, low = ends(p, s)
     if at <= YIELDING_MINUS:
         return linear(r * k, s * (1.0 - r) * fy, turns_inward(s))
     if at <= INSIDE_MINUS:
-        shift = m[FOOT] / (1.0 - r)
-        return linear(k, -s * k * m[FOOT], outward(s, shift + fy / k), inward(s, shift + low / k))
-    return linear(r * k, s * (1.0 - r) * low, turns_outward(s), inward(s, low / k))
+        outer, inner = m[FOOT] / (1.0 - r) + fy / k, m[FOOT] / (1.0 - r_low) + low / k
+        return linear(k, -s * k * m[FOOT], outward(s, outer), inward(s, inner))
+    return linear(r_low * k, s * (1.0 - r_low) * low, turns_outward(s), inward(s, low / k))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Return the state after a yield, a reversal, reaching a line, or returning to the elastic line."""
-    k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), (0.0,)
     s = side(at)
-    fy = s * (plus if s > 0.0 else minus)
+    fy, low = ends(p, s)
     if at <= YIELDING_MINUS:
-        return at + 2, ((1.0 - r) * (s * d - fy / k),)
+        return at + 2, ((1.0 - p[R]) * (s * d - fy / p[K]),)
     if at <= INSIDE_MINUS:
         return (at - 2 if event == 0 else at + 2), m
     if event == 1:
         return ELASTIC, (0.0,)
-    return at - 2, ((1.0 - r) * (s * d - (1.0 - beta) * fy / k),)
+    return at - 2, ((1.0 - p[R_LOW]) * (s * d - low / p[K]),)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Return the energy recovered along the elastic line, the lower line and the elastic line to the
     origin.
     """
-    k, plus, minus, r, beta = p[:5]
+    k, r_low = p[K], p[R_LOW]
     s = 1.0 if d >= 0.0 else -1.0
     foot = s * d - s * f / k
     if at == ELASTIC or foot <= 0.0:
         return 0.5 * f * f / k
-    end = (1.0 - beta) * s * (plus if s > 0.0 else minus)
-    low = end + r * k * foot / (1.0 - r)
-    run = foot / (1.0 - r)
+    _, end = ends(p, s)
+    run = foot / (1.0 - r_low)
+    low = end + r_low * k * run
     return 0.5 * (f * f - low * low + end * end) / k + 0.5 * (low + end) * run
 
 
@@ -96,7 +103,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=5,
+    parameters=6,
     variables=1,
 )
 
@@ -104,7 +111,8 @@ RULE = Rule(
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
     """Build the rule from a card's values, a stiffness and the two yield forces."""
     need_both_sides(fy_plus, fy_minus)
-    return Law(RULE, (k, fy_plus, fy_minus, values["R"], values["BETA"]))
+    r = values["R"]
+    return Law(RULE, (k, fy_plus, fy_minus, r, r, 1.0 - values["BETA"]))
 
 
 SPEC = Spec(

@@ -39,14 +39,13 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import BranchKind, K, Law, Numbers, Rule, linear
-from pound_solve.laws.hysteresis.backbone import ALFA_FIELD, ALPHA
+from pound_solve.laws.hysteresis.backbone import ALPHA
 from pound_solve.laws.hysteresis.cracking import (
+    BRANCHES,
     ELASTIC,
-    FCR_FIELD,
+    FIELDS,
     PARAMETERS,
-    R_FIELD,
-    RHO_FIELD,
-    YIELDING,
+    UNLOADING,
     Point,
     backbone,
     backbone_branch,
@@ -56,6 +55,7 @@ from pound_solve.laws.hysteresis.cracking import (
     first_yield,
     has_yielded,
     largest_deformation,
+    next_branch,
     parameters,
     peak,
     yield_point,
@@ -63,7 +63,7 @@ from pound_solve.laws.hysteresis.cracking import (
 from pound_solve.laws.mirror import both_sides, inward, on_side, outward, side, turns_inward
 
 # branches of the positive side, after those of the backbone; add one for the negative side
-UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 5, 7, 9, 11
+TO_CORNER, TO_PINCH, TO_PEAK = 13, 15, 17
 PINCH = PARAMETERS  #: parameter of a law, after those of the backbone
 # internal variables after the largest deformations: whether an inner loop is on; as mirrored points the
 # corners of both sides, where the present line began, and the last reversal; the branch that this left
@@ -197,8 +197,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     k, _, f0 = branch(p, at, m)[:3]
     if event == 0:
         return on_side(UNLOADING, s), reversed_at(p, at, m, s * d, s * (k * d + f0))
-    if at < YIELDING:
-        return on_side(YIELDING, s), m
+    if at < UNLOADING:
+        return next_branch(p, at, m)
     x, f = loading_end(p, m, at)
     if x >= peak(p, s, m)[0]:
         return enter_backbone(p, m, s, x)
@@ -218,9 +218,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        *BranchKind.ELASTIC.named("elastic"),
-        *BranchKind.ELASTIC.named(*both_sides("cracked")),
-        *BranchKind.YIELDING.named(*both_sides("yielding")),
+        *BRANCHES,
         *BranchKind.ELASTIC.named(
             *both_sides(
                 "unloading",
@@ -250,10 +248,7 @@ SPEC = Spec(
     "SCHOETTLER_RESTREPO",
     "pinched, with cracking: reinforced concrete",
     (
-        R_FIELD,
-        ALFA_FIELD,
-        FCR_FIELD,
-        RHO_FIELD,
+        *FIELDS,
         Field(
             "PINCH",
             Kind.REAL,
