@@ -20,6 +20,7 @@ from pound_deck.values import Values
 _SPECS: Final = {spec.name: spec for spec in (*SECTIONS, *CARDS)}
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
 _ALIKE: Final = 0.01  #: relative difference up to which two values of gravity count as equal
+_DIRECTIONS: Final = "XYR"  #: letters of FIX and SLAVED, in the order of a node
 _QUANTITIES: Final = ("force", "length", "time")  #: whose units UNITS names
 _TIMES: Final = ("S", "SEC")
 _FORCES: Final = ("N", "KN", "MN", "KIP", "KIPS", "LB", "LBF", "KGF", "TF")
@@ -158,8 +159,24 @@ def _node(card: Card, report: list[Diagnostic]) -> Node:
         message = f"node {v['NODE']} has {there}, but no {needed}"
         hint = "write SLAVED=XYR MASTER=node, or leave both out"
         report.append(Diagnostic("P308", message, card.place(there), hint))
-    slaved = dict.fromkeys(v["SLAVED"], v["MASTER"]) if v["MASTER"] is not None else {}
-    return Node(v["NODE"], v["X"], v["Y"], v["FIX"], card.span, slaved)
+    fixed = "".join(letter for letter in _DIRECTIONS if letter in v["FIX"])
+    return Node(v["NODE"], v["X"], v["Y"], fixed, card.span, _masters(card, report))
+
+
+def _masters(card: Card, report: list[Diagnostic]) -> dict[str, int]:
+    """Masters of the slaved directions of a node, in the order X, Y, R."""
+    letters, nodes = card["SLAVED"], card["MASTER"] or ()
+    if len(nodes) == 1:
+        nodes *= len(letters)
+    if letters and nodes and len(nodes) != len(letters):
+        message = (
+            f"MASTER of node {card['NODE']} names {len(nodes)} nodes, SLAVED={letters} {len(letters)} "
+        )
+        message += "directions" if len(letters) > 1 else "direction"
+        each = f", or {len(letters)}, for {', '.join(letters)} in this order" if len(letters) > 1 else ""
+        report.append(Diagnostic("P308", message, card.place("MASTER"), f"name one node{each}"))
+    masters = dict(zip(letters, nodes))
+    return {letter: masters[letter] for letter in _DIRECTIONS if letter in masters}
 
 
 def _elements(cards: Iterable[Card], report: list[Diagnostic]) -> dict[int, Element]:

@@ -88,7 +88,11 @@ def _slaving(model: Model) -> Found:
             if master and letter in master.slaved and master.slaved[letter] != number:
                 last = master.slaved[letter]
                 message = f"the master {number} of node {node.id} follows node {last} in {letter} itself"
-                yield Diagnostic("P310", message, node.span, f"name the master {last}")
+                hint = f"name the master {last}"
+                if last == node.id:
+                    message = f"nodes {node.id} and {number} follow each other in {letter}"
+                    hint = f"take {letter} out of SLAVED of one of them"
+                yield Diagnostic("P310", message, node.span, hint)
 
 
 def _zero_length(model: Model) -> Found:

@@ -29,7 +29,7 @@ class Kind(Enum):
     INT = "int"  #: a whole number or an expression with a whole value
     WORD = "word"  #: one of ``Field.words``; its old numeric code is accepted too
     TEXT = "text"  #: a name or quoted text, free
-    FLAGS = "flags"  #: letters out of ``Field.words[0]``, e.g. ``XYR``
+    FLAGS = "flags"  #: letters out of ``Field.words[0]``, e.g. ``XYR``, in the order written
     NODE = "node"  #: one node number; bound as int
     NODES = "nodes"  #: node numbers: list and ranges; bound as tuple[int, ...]
     ELEMENTS = "elements"  #: element numbers: list and ranges; bound as tuple[int, ...]

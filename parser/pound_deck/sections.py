@@ -32,7 +32,9 @@ SECTIONS: Final = (
                 "MASTER",
                 Kind.NODE,
                 default=None,
-                doc="node that the SLAVED directions follow, with a rigid arm",
+                count=(1, 3),
+                doc="node that the SLAVED directions follow, with a rigid arm; or one for each letter of "
+                "SLAVED, in the order written",
             ),
         ),
     ),

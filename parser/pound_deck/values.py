@@ -156,7 +156,7 @@ class Values:
             raise mistake(
                 "P210", message, part.span, hints(f"for example {letters[:2]}; NONE for none", f.doc)
             )
-        return "".join(letter for letter in letters if letter in text)
+        return text
 
     def label(self, part: Part, name: str) -> str:
         """Label of a property set, upper case; a whole number is a label too."""

@@ -124,3 +124,67 @@ ops.rayleigh(0.1 * w[0] * w[1] / (w[0] + w[1]), 0.0, 0.1 / (w[0] + w[1]), 0.0)
 opsvis.plot_model()
 print('not a command')
 """
+#: two storeys, two bays, beams and bases with hinges of zero length; each floor moves along x as one
+HINGED = """\
+# the hinges stand at joints that follow the first joint of their floor
+model BasicBuilder -ndm 2 -ndf 3
+for {set k 0} {$k < 3} {incr k} {
+    for {set i 1} {$i < 4} {incr i} {
+        node [expr {10*$k + $i}] [expr {6.0*($i - 1)}] [expr {3.5*$k}]
+    }
+}
+geomTransf Linear 1
+uniaxialMaterial Steel01 1 250.0 6.0e4 0.02
+proc hinge {tag joint inside x y} {
+    node $inside $x $y
+    equalDOF $joint $inside 1 2
+    element zeroLength $tag $joint $inside -mat 1 -dir 6
+}
+foreach {k i} {0 1 0 2 0 3} {
+    fix $i 1 1 1
+    hinge [expr {200 + $i}] $i [expr {100 + $i}] [expr {6.0*($i - 1)}] 0.0
+    element elasticBeamColumn $i [expr {100 + $i}] [expr {10 + $i}] 0.01 2.0e8 1.2e-4 1
+    element elasticBeamColumn [expr {10 + $i}] [expr {10 + $i}] [expr {20 + $i}] 0.01 2.0e8 1.0e-4 1
+}
+foreach k {1 2} {
+    foreach i {1 2} {
+        set joint [expr {10*$k + $i}]
+        set left [expr {1000 + $joint}]
+        set right [expr {2000 + $joint}]
+        hinge [expr {300 + $joint}] $joint $left [expr {6.0*($i - 1)}] [expr {3.5*$k}]
+        hinge [expr {400 + $joint}] [expr {$joint + 1}] $right [expr {6.0*$i}] [expr {3.5*$k}]
+        element elasticBeamColumn [expr {500 + $joint}] $left $right 0.008 2.0e8 1.5e-4 1
+    }
+    equalDOF [expr {10*$k + 1}] [expr {10*$k + 2}] 1
+    equalDOF [expr {10*$k + 2}] [expr {10*$k + 3}] 1
+    mass [expr {10*$k + 1}] 20.0 1.0 0.0
+    mass [expr {10*$k + 2}] 20.0 1.0 0.0
+    mass [expr {10*$k + 3}] 15.0 1.0 0.0
+}
+pattern Plain 1 Linear {
+    load 13 30.0 0.0 0.0
+    load 1021 0.0 -100.0 0.0
+    load 23 40.0 -50.0 10.0
+}
+eigen 3
+integrator LoadControl 1.0
+analysis Static
+analyze 1
+"""
+#: a truss without rotations, one node of which follows a lower one
+TRUSS = """\
+model BasicBuilder -ndm 2 -ndf 2
+foreach {n x y} {1 0 0  2 4 0  3 0 3  4 4 3  5 4 4} { node $n $x $y }
+fix 1 1 1
+fix 2 1 1
+uniaxialMaterial Elastic 1 2e8
+foreach {e i j} {1 1 3  2 1 4  3 3 4  4 2 4  5 2 5  6 3 5} { element truss $e $i $j 0.01 1 }
+equalDOF 3 5 1
+mass 3 10 10
+mass 5 10 10
+pattern Plain 1 Linear { load 5 10 -5 }
+eigen 2
+integrator LoadControl 1.0
+analysis Static
+analyze 1
+"""

@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from imports.opensees_models import FIBRES, FRAME, IN_PYTHON, POUNDING
+from imports.opensees_models import FIBRES, FRAME, HINGED, IN_PYTHON, POUNDING, TRUSS
 from pound_deck.diagnostics import has_errors
 from pound_deck.messages import MESSAGES
 from pound_deck.reader import read_text
@@ -427,6 +427,59 @@ def test_nodes_that_follow_others(tmp_path):
     ]
 
 
+@pytest.mark.parametrize(
+    ("text", "masters"),
+    {
+        # a hinge at a joint that follows its floor
+        "node 3 4 3\nequalDOF 2 3 1\nnode 4 4 3\nequalDOF 3 4 1 2": {3: {"X": 2}, 4: {"X": 2, "Y": 3}},
+        # the floor after the hinge, and a third node for the rotation
+        "node 3 4 3\nnode 4 4 3\nequalDOF 3 4 2 1\nequalDOF 2 3 1\nequalDOF 2 4 3": {
+            4: {"X": 2, "Y": 3, "R": 2},
+            3: {"X": 2},
+        },
+        # a hinge at the end of an arm, which turns with the node where the arm begins
+        "node 3 1 4\nrigidLink beam 2 3\nnode 4 1 4\nequalDOF 3 4 1 2": {
+            3: {"X": 2, "Y": 2, "R": 2},
+            4: {"X": 2, "Y": 2},
+        },
+        # two arms in a row
+        "node 3 1 4\nnode 4 3 7\nrigidLink beam 2 3\nrigidLink beam 3 4": {
+            3: {"X": 2, "Y": 2, "R": 2},
+            4: {"X": 2, "Y": 2, "R": 2},
+        },
+        # a node beside the axis of one that does not turn
+        "fix 2 0 0 1\nnode 3 4 4\nequalDOF 2 3 1": {3: {"X": 2}},
+    }.items(),
+)
+def test_each_direction_follows_the_last_node_of_its_chain(tmp_path, text, masters):
+    nodes = model(tmp_path, HEAD + BEAM + text + "\n").nodes.values()
+    assert {n.id: dict(n.slaved) for n in nodes if n.slaved} == masters
+
+
+def test_a_frame_with_hinges_at_joints_of_a_floor_moves_as_in_opensees(tmp_path):
+    """OpenSees 3.7.1 with constraints Plain, which follows chains: -fullGenLapack, one static step."""
+    assert "   2011 6 3.5 SLAVED=XY MASTER=11,12\n" in read(tmp_path, HINGED, units=KN).text
+    with solved(tmp_path, HINGED) as file:
+        periods = file["tables/modes"]["period"]
+        static = file["tables/static_displacement"][:]
+    expected = [0.9003737549006045, 0.2625549076818379, 0.013448892833351468]
+    assert periods == pytest.approx(expected, rel=1e-11)
+    (hinge,) = static[static["node"] == 2022]
+    assert [hinge["x"], hinge["y"], hinge["r"]] == pytest.approx(
+        [0.01596957274164487, -0.0002170656664311835, -0.0006488425938291889], rel=1e-11
+    )
+
+
+def test_nodes_of_a_truss_that_follow_others_have_no_arm(tmp_path):
+    """OpenSees 3.7.1: a model without rotations, whose node 5 follows a lower one along x."""
+    with solved(tmp_path, TRUSS) as file:
+        periods = file["tables/modes"]["period"]
+        static = file["tables/static_displacement"][:]
+    assert periods == pytest.approx([0.073004016167525, 0.027453882557715914], rel=1e-11)
+    (top,) = static[static["node"] == 5]
+    assert [top["x"], top["y"]] == pytest.approx([6.749999999999999e-05, -9.481144772734373e-06], rel=1e-11)
+
+
 def test_loads_follow_their_members_and_series(tmp_path):
     text = (
         HEAD
@@ -571,7 +624,10 @@ REFUSED = {
         "axis",
     ),
     "node 5 4 4\nequalDOF 2 5 1": ("L622", "beside the axis"),
-    "node 5 4 3\nequalDOF 1 5 2\nequalDOF 2 5 1": ("L622", "follows two nodes"),
+    "node 5 4 3\nnode 6 9 3\nequalDOF 2 6 1\nequalDOF 5 6 2 1": ("L622", "follows two nodes in X: 2 and 5"),
+    "node 5 4 3\nequalDOF 2 5 1\nequalDOF 5 2 1": ("L620", "follows itself through others"),
+    "node 5 4 3\nnode 6 4 4\nequalDOF 2 5 1\nrigidLink beam 5 6": ("L622", "2 6 (through node 5)"),
+    "node 5 4 4\nnode 6 4 3\nequalDOF 2 6 1\nequalDOF 6 5 1": ("L622", "node 5 lies beside the axis"),
     "equalDOF 2 2 1": ("L620", "follows itself"),
     "model basic -ndm 3 -ndf 6": ("L622", "3 dimensions"),
     "rigidDiaphragm 2 1 2": ("L622", "rigidDiaphragm"),

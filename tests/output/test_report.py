@@ -102,7 +102,7 @@ def test_missing_and_empty_tables_are_left_out(only: Callable[..., str]) -> None
 
 def test_empty_columns_are_left_out(only: Callable[..., str]) -> None:
     nan = float("nan")
-    text = only(nodes=[(1, 0.0, 0.0, "XYR", "", 0)], drift_envelope=[("d", 0.1, 1.0, -0.1, 2.0, nan, nan)])
+    text = only(nodes=[(1, 0.0, 0.0, "XYR", "", "")], drift_envelope=[("d", 0.1, 1.0, -0.1, 2.0, nan, nan)])
     assert "fixed" in text
     for head in ("slaved  ", "master", "height", "ratio"):
         assert head not in text

@@ -95,15 +95,18 @@ class NewDeck:
             self.masses[tag][0] += mass
             self.masses[tag][1] += mass
 
-    def write_nodes(self, followers: Mapping[int, tuple[str, int]]) -> None:
-        """Write nodes and weights; `followers` has a node's letters that follow another, and that one."""
+    def write_nodes(self, followers: Mapping[int, Mapping[str, int]]) -> None:
+        """Write nodes and weights; `followers` has a node's directions that follow others, and these."""
         for tag, point in self.model.points.items():
             fixed = point.fixed + "".join(d for d in _missing(self.model) if d not in point.fixed)
-            letters, master = followers.get(tag, ("", 0))
+            masters = followers.get(tag, {})
             words = [str(self._nodes[tag]), number(point.x), number(point.y)]
-            kept = "".join(d for d in DIRECTIONS if d in fixed and d not in letters)
+            kept = "".join(d for d in DIRECTIONS if d in fixed and d not in masters)
             words += [f"FIX={kept}"] if kept else []
-            words += [f"SLAVED={letters} MASTER={self._nodes[master]}"] if letters else []
+            if masters:
+                nodes = list(masters.values())
+                named = nodes if len(set(nodes)) > 1 else nodes[:1]
+                words += [f"SLAVED={''.join(masters)}", f"MASTER={self.nodes(named)}"]
             notes = [f"node {tag} of the model"] if self._nodes[tag] != tag else []
             self.draft.add("NODES", " ".join(words), point.command.span, notes)
         for tag, mass in self.masses.items():
@@ -125,7 +128,7 @@ class NewDeck:
 
 def _missing(model: ScriptModel) -> str:
     """Directions that no node of the model has."""
-    return "".join(d for d in "XY" if d not in model.letters)
+    return "".join(d for d in DIRECTIONS if d not in model.letters)
 
 
 def _numbers(tags: Iterable[int]) -> dict[int, int]:

@@ -225,7 +225,9 @@ class DrawnStructure:
         numbers = sorted(self.place)
         at = {n: k for k, n in enumerate(numbers)}
         pairs = self.lines()
-        pairs += [(int(n["node"]), int(n["master"])) for n in self.nodes if n["master"]]
+        masters = {int(n["node"]): str(n["master"]).split(",") for n in self.nodes}
+        none = ("", "0")  # the second in files of format 1
+        pairs += [(node, int(m)) for node, several in masters.items() for m in several if m not in none]
         groups = [np.array([at[i], at[j]]) for i, j in pairs]
         joined = components(len(numbers), groups=groups)
         return dict(zip(numbers, joined.tolist()))
