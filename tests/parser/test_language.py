@@ -173,6 +173,49 @@ def test_slaving(read):
     assert read(HEAD.replace(" 3 1 3", " 3 1 3 SLAVED=RX MASTER=2")).nodes[3].slaved == {"X": 2, "R": 2}
 
 
+@pytest.mark.parametrize(
+    ("items", "masters"),
+    [
+        ("SLAVED=XYR MASTER=2,2,1", {"X": 2, "Y": 2, "R": 1}),
+        ("SLAVED=RX MASTER=2,1", {"X": 1, "R": 2}),  # in the order of the letters as written
+        ("MASTER=2,joint SLAVED=ways", {"X": 1, "Y": 2}),
+        ("SLAVED=ryx MASTER=2,1,1", {"X": 1, "Y": 1, "R": 2}),
+    ],
+)
+def test_each_direction_may_have_a_master_of_its_own(read, items, masters):
+    slaved = read('PARAM joint=1 ways="YX"\n' + HEAD.replace(" 3 1 3", f" 3 1 3 {items}")).nodes[3].slaved
+    assert list(slaved.items()) == list(masters.items())
+
+
+@pytest.mark.parametrize(
+    ("items", "message", "hint"),
+    [
+        (
+            "SLAVED=RX MASTER=1,2,2",
+            "MASTER of node 3 names 3 nodes, SLAVED=RX 2 directions",
+            "name one node, or 2, for R, X in this order",
+        ),
+        ("SLAVED=X MASTER=1,2", "MASTER of node 3 names 2 nodes, SLAVED=X 1 direction", "name one node"),
+        ("SLAVED=X MASTER=1,1,2,2", "MASTER takes 1 to 3 values, not 4", "MASTER: node that the SLAVED"),
+    ],
+)
+def test_a_wrong_number_of_masters(catalog, items, message, hint):
+    _, (mistake,), _ = read_text(HEAD.replace(" 3 1 3", f" 3 1 3 {items}"), catalog)
+    assert mistake.message == message and mistake.hint.startswith(hint)
+    assert (mistake.span.line, mistake.span.column) == (4, len(" 3 1 3 ") + items.index("MASTER=") + 8)
+
+
+def test_nodes_that_follow_each_other(catalog):
+    deck = HEAD.replace(" 2 0 3", " 2 0 3 SLAVED=X MASTER=3").replace(
+        " 3 1 3", " 3 1 3 SLAVED=YX MASTER=1,2"
+    )
+    _, mistakes, _ = read_text(deck, catalog)
+    assert [(d.code, d.message) for d in mistakes] == [
+        ("P310", "nodes 2 and 3 follow each other in X"),
+        ("P310", "nodes 3 and 2 follow each other in X"),
+    ]
+
+
 def test_comments_continuations_and_quotes(read):
     deck = (
         HEAD.replace("KX=1", "KX = 1 & ! here\n\n ! a line between\n  KY=2") + 'DRIFT\n "a ! b" 1 2 ! c\n'

@@ -6,11 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from decks import model_of, solved, structure_of
 from pound_deck.model import Node, Span
+from pound_solve.numerics.matrices import dense
 from pound_solve.results.tables.reduced_system import size
 from pound_solve.structure.dofs import number
 
@@ -66,6 +68,18 @@ def test_the_arm_turns_with_a_master_that_follows_another_in_rotation(order):
     assert dict(f.terms[3, 0]) == {column[2, 0]: 1.0, column[1, 2]: -2.0}
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 2, 1, 0), (2, 0, 3, 1)])
+def test_each_arm_turns_with_the_master_of_its_direction(order):
+    """X follows node 1 with an arm of 2, Y follows node 2 with an arm of 3, R follows node 4."""
+    nodes = (node(1, 0, 0), node(2, 1, 0), node(3, 4, 2, X=1, Y=2, R=4), node(4, 9, 9))
+    f = numbered(*(nodes[i] for i in order))
+    column = {free: i for i, free in enumerate(f.free)}
+    assert len(column) == 9
+    assert dict(f.terms[3, 0]) == {column[1, 0]: 1.0, column[1, 2]: -2.0}
+    assert dict(f.terms[3, 1]) == {column[2, 1]: 1.0, column[2, 2]: 3.0}
+    assert dict(f.terms[3, 2]) == {column[4, 2]: 1.0}
+
+
 def test_a_slave_of_a_fixed_master_is_fixed():
     f = numbered(node(1, 0, 0, "XYR"), node(2, 1, 1, X=1, Y=1, R=1))
     assert f.free == () and all(f.terms[2, d] == () for d in range(3))
@@ -101,6 +115,58 @@ WEIGHTS
     for n, (x, y) in places.items():
         assert s.u[n] == pytest.approx([u[0] - u[2] * y, u[1] + u[2] * x, u[2]], rel=1e-12)
     assert s.structure.mass == pytest.approx(m, rel=1e-13)
+
+
+#: two columns, a floor that moves along x as one, and a beam with a hinge at its right end, above the joint
+HINGED = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 6 0 FIX=XYR
+ 3 0 3
+ 4 6 3 {floor}
+ 5 6 3.2 {hinge}
+ELEMENTS
+ 1 COLUMN 1 3
+ 2 COLUMN 2 4
+ 3 BEAM 3 5
+ 4 HINGE 4 5
+PROPS
+ COLUMN FRAME E=2E8 A=0.01 I=1E-4
+ BEAM FRAME E=2E8 A=0.008 I=1.5E-4
+ HINGE SPRING KR=6E3
+WEIGHTS
+ 3,4 98.1 98.1 9.81
+ 5 49.05 49.05 4.905
+LOADS
+ 3 10 -20 5
+ 4 0 -3 0
+ 5 7 -50 3
+"""
+
+
+def test_a_hinge_at_a_joint_that_follows_its_floor():
+    """Node 5 follows node 3 along x, node 4 along y; against the same frame with its ties done by hand."""
+    tied = solved(HINGED.format(floor="SLAVED=X MASTER=3", hinge="SLAVED=YX MASTER=4,3"))
+    loose = structure_of(HINGED.format(floor="", hinge=""))
+    at = {dof: i for i, dof in enumerate(loose.dofs.free)}
+    t = np.zeros((9, 6))  # all unknowns from ux, uy, rz of node 3, uy and rz of node 4, rz of node 5
+    kept = [(3, 0), (3, 1), (3, 2), (4, 1), (4, 2), (5, 2)]
+    for column, dof in enumerate(kept):
+        t[at[dof], column] = 1.0
+    t[at[4, 0], 0] = 1.0
+    t[at[5, 0], 0], t[at[5, 0], 2] = 1.0, -0.2  # the arm turns with node 3, the master along x
+    t[at[5, 1], 3] = 1.0
+    k, m = (t.T @ dense(matrix) @ t for matrix in (loose.initial_stiffness, loose.mass))
+    p = np.zeros(9)
+    for n, *forces in ((3, 10, -20, 5), (4, 0, -3, 0), (5, 7, -50, 3)):
+        p[[at[n, d] for d in range(3)]] = forces
+    u = t @ np.linalg.solve(k, t.T @ p)
+    for n in (3, 4, 5):
+        assert tied.u[n] == pytest.approx([u[at[n, d]] for d in range(3)], rel=1e-12)
+    assert tied.structure.dofs.free == tuple(kept)
+    assert dense(tied.structure.mass) == pytest.approx(m, rel=1e-13)
+    squares = scipy.linalg.eigh(k, m, eigvals_only=True)
+    assert tied.structure.free_vibration.omega == pytest.approx(np.sqrt(squares), rel=1e-12)
 
 
 def test_the_deck_fills_nodes():

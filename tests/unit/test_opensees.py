@@ -373,6 +373,31 @@ def test_names_of_a_user_do_no_harm(tmp_path: Path) -> None:
     compile(exported(tmp_path, text).text, "script", "exec")
 
 
+#: the node at the end of the arm becomes a hinge: it follows the floor along x, the joint along y
+HINGED = (
+    DECK.replace("   3  5 3\n", "   3  5 3  SLAVED=X  MASTER=2\n")
+    .replace("5 3.5  SLAVED=XYR  MASTER=3", "5 3  SLAVED=YX  MASTER=3,2")
+    .replace("3  BEAM    2 3\n", "3  BEAM    2 5\n   8  HINGE   3 5\n")
+    .replace("PROPS\n", "PROPS\n   HINGE  SPRING KR=3E4\n")
+    .replace("   6  LINK    2 3\n", "   6  LINK    1 3\n")
+    .replace("   3  VX=0.1\n", "   2  VX=0.1\n")
+)
+
+
+def test_a_node_that_follows_several_is_tied_to_each(tmp_path: Path) -> None:
+    text = HINGED.format(law=LAW, rule=RULE)
+    lines = exported(tmp_path, text).text.splitlines()
+    ties = [line.strip() for line in lines if "equalDOF" in line or "rigidLink" in line]
+    assert ties == ["ops.equalDOF(2, 3, 1)", "ops.equalDOF(2, 5, 1)", "ops.equalDOF(3, 5, 2)"]
+    assert any(line.startswith('CONSTRAINTS = "Plain"') for line in lines)
+    beside = text.replace("NODES\n", "NODES\n   9  0 4  SLAVED=XYR  MASTER=2\n", 1)
+    (told,) = refusals(tmp_path, beside)
+    assert told.message.endswith(
+        "node 5 follows one that follows a third, and other nodes follow by rigid arms"
+    )
+    assert told.span is not None and beside.splitlines()[told.span.line - 1].startswith("   5  5 3")
+
+
 def test_consistent_masses_are_refused(tmp_path: Path) -> None:
     (told,) = refusals(tmp_path, "MASS CONSISTENT\n" + DECK.format(law=LAW, rule=RULE))
     assert "CONSISTENT" in told.message and told.span is not None
@@ -411,10 +436,13 @@ def _interpreter(folder: Path, code: str) -> str:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not PEER.exists(), reason="needs the environment of benchmarks/peer_env.py")
-@pytest.mark.parametrize("law", [LAW, "LAW=LINEAR K=1E5", "LAW=JANKOWSKI K=1E6 XI=0.3"])
-def test_opensees_finds_our_peaks(tmp_path: Path, law: str) -> None:
+@pytest.mark.parametrize(
+    ("deck", "law"),
+    [(DECK, LAW), (DECK, "LAW=LINEAR K=1E5"), (DECK, "LAW=JANKOWSKI K=1E6 XI=0.3"), (HINGED, LAW)],
+)
+def test_opensees_finds_our_peaks(tmp_path: Path, deck: str, law: str) -> None:
     path = tmp_path / "frame.inp"
-    path.write_text(DECK.format(law=law, rule=RULE), "utf-8")
+    path.write_text(deck.format(law=law, rule=RULE), "utf-8")
     comparison, _, _ = verify(Request(str(path)), str(PEER), 1e-4, lambda _: None)
     assert len(comparison.rows) == 5
     assert all(x.outcome == AGREES for x in comparison.rows), page(comparison)

@@ -187,7 +187,7 @@ def _text(script: Script, compared: ComparedItems, end: float, step: float, deck
         "END": literal(end),
         "STEP": literal(step),
         "TOLERANCE": f"{1e-10 * (weight or 1.0):.3g}",
-        "CONSTRAINTS": literal("Transformation" if script.constrained else "Plain"),
+        "CONSTRAINTS": literal("Transformation" if script.arms else "Plain"),
         "LOADED": repr(bool(script.structure.loads.any())),
         "SETTLED": repr(script.settled and not script.structure.released.any()),
         "FIRST_SWAY": literal(script.tag()),

@@ -12,6 +12,7 @@ from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import GroundMotion
 from pound_solve.loading.piecewise import Piecewise
 from pound_solve.opensees.script import Script, literal
+from pound_solve.structure.dofs import DIRECTIONS
 
 
 def motions(script: Script, shaken: tuple[GroundMotion, ...], stem: str) -> None:
@@ -75,7 +76,12 @@ def corners(history: Piecewise) -> tuple[np.ndarray, np.ndarray]:
 
 
 def velocities(script: Script) -> None:
-    """Write the initial velocities; displacements are refused."""
+    """Write the initial velocities; displacements are refused.
+
+    The constraint handler Plain takes the velocity of the last of several nodes that move as one, so each
+    of them is given it.  Transformation takes that of the master.
+    """
+    nodes = script.model.nodes.values()
     for card in script.model.initial:
         for item in ("UX", "UY", "UR"):
             if card[item]:
@@ -84,7 +90,10 @@ def velocities(script: Script) -> None:
             for direction, item in enumerate(("VX", "VY", "VR"), 1):
                 if card[item]:
                     script.settled = False
-                    script.call("motion", "setNodeVel", node, direction, card[item], "-commit")
+                    letter = DIRECTIONS[direction - 1]
+                    tied = [n.id for n in nodes if n.slaved.get(letter) == node and not script.arms]
+                    for each in (node, *tied):
+                        script.call("motion", "setNodeVel", each, direction, card[item], "-commit")
 
 
 def forces(script: Script, acting: tuple[Force, ...], stem: str) -> None:

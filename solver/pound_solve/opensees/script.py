@@ -49,8 +49,8 @@ class Script:
     refusals : list of Diagnostic
     sway : list of str
         Rows of the table of members whose axial force has a side force (PDELTA).
-    constrained : bool
-        Whether nodes follow others.
+    arms : bool
+        Whether nodes follow others by rigid arms that turn.
     settled : bool
         Whether the history starts with accelerations.
     """
@@ -61,7 +61,7 @@ class Script:
     files: dict[str, str] = field(default_factory=dict)
     refusals: list[Diagnostic] = field(default_factory=list)
     sway: list[str] = field(default_factory=list)
-    constrained: bool = False
+    arms: bool = False
     settled: bool = True
 
     def __post_init__(self) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
+
 import numpy as np
 
 from pound_deck.model import Node
@@ -19,12 +21,10 @@ def nodes(script: Script) -> None:
         if any(fixed):
             script.call("nodes", "fix", node.id, *fixed)
     for node in script.model.nodes.values():
-        if node.slaved:
-            _slave(
-                script,
-                node,
-                [d for d in range(3) if DIRECTIONS[d] in node.slaved and (node.id, d) in moves],
-            )
+        for master in dict.fromkeys(node.slaved.values()):
+            _tie(script, node, script.model.nodes[master], moves)
+    if script.arms:
+        _refuse_chains(script, moves)
     _masses(script)
 
 
@@ -36,31 +36,36 @@ def _moving(script: Script) -> set[tuple[int, int]]:
     return {dof for dof, terms in structure.dofs.terms.items() if any(used[i] for i, _ in terms)}
 
 
-def _slave(script: Script, node: Node, directions: list[int]) -> None:
-    """Write the directions in which a node follows its master."""
-    masters = set(node.slaved.values())
+def _tie(script: Script, node: Node, master: Node, moves: Set[tuple[int, int]]) -> None:
+    """Write the directions in which a node follows a master."""
+    following = [d for d in range(3) if node.slaved.get(DIRECTIONS[d]) == master.id]
+    directions = [d for d in following if (node.id, d) in moves]
     if not directions:
         return
-    script.constrained = True
-    model = script.model
-    (first, *others) = sorted(masters)
-    master = model.nodes[first]
-    if others:
-        script.refuse(f"node {node.id} follows two nodes", node.span)
-        return
-    if master.slaved:
-        script.refuse(f"node {node.id} follows node {first}, which follows another", node.span)
-        return
     arms = {0: master.y - node.y, 1: node.x - master.x, 2: 0.0}
-    turns = bool(script.structure.dofs.terms[first, 2])
-    if turns and any(arms[d] for d in directions):
-        if len(node.slaved) == 3:
-            script.call("nodes", "rigidLink", "beam", first, node.id)
-        else:
-            message = f"node {node.id} follows node {first} by an arm in some directions only"
-            script.refuse(message, node.span)
-        return
-    script.call("nodes", "equalDOF", first, node.id, *(d + 1 for d in directions))
+    turns = bool(script.structure.dofs.terms[master.id, 2])
+    if not turns or not any(arms[d] for d in directions):
+        script.call("nodes", "equalDOF", master.id, node.id, *(d + 1 for d in directions))
+    elif len(following) == 3:
+        script.arms = True
+        script.call("nodes", "rigidLink", "beam", master.id, node.id)
+    else:
+        message = f"node {node.id} follows node {master.id} by an arm in some directions only"
+        script.refuse(message, node.span)
+
+
+def _refuse_chains(script: Script, moves: Set[tuple[int, int]]) -> None:
+    """Refuse nodes that follow several others, or one that follows a third, beside rigid arms.
+
+    OpenSees has arms with its constraint handler Transformation only, and such nodes with Plain only.
+    """
+    for node in script.model.nodes.values():
+        masters = {m for d, m in node.slaved.items() if (node.id, DIRECTIONS.index(d)) in moves}
+        chained = any(script.model.nodes[master].slaved for master in masters)
+        if chained or len(masters) > 1:
+            which = "one that follows a third" if chained else "several nodes"
+            message = f"node {node.id} follows {which}, and other nodes follow by rigid arms"
+            script.refuse(message, node.span, "constraint handlers of OpenSees do one or the other")
 
 
 def _masses(script: Script) -> None:
