@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from decks import results_of
+from pound_solve.report.plot.geometry import DrawnStructure
 from pound_solve.report.plot.neighbours import Contact, moves, reach
 
 RIGHT, LEFT, UP = np.array([1.0, 0.0]), np.array([-1.0, 0.0]), np.array([0.0, 1.0])
@@ -75,3 +77,37 @@ def test_buildings_around_each_other_end():
     _, place, building = row([(0.1, 0.1)], [0.0])
     both = [Contact("a", 2, 11, RIGHT, 0.1), Contact("b", 14, 3, RIGHT, 0.1)]
     assert np.isfinite(list(moves(both, place, building, {"a": 1.0, "b": 1.0}).values())).all()
+
+
+#: two columns that only node 5 joins, with a master at each; node 6 follows one of them
+JOINED = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 4 0 FIX=XYR
+ 3 0 3
+ 4 4 3
+ 5 4 3 SLAVED=RX MASTER=4,3
+ 6 5 3 SLAVED=XYR MASTER=4
+ 7 9 0 FIX=XYR
+ 8 9 3
+ELEMENTS
+ 1 COLUMN 1 3
+ 2 COLUMN 2 4
+ 3 COLUMN 7 8
+PROPS
+ COLUMN SPRING KX=1 KY=1 KR=1
+WEIGHTS
+ 5,6 1
+ANALYSIS
+ STATIC
+"""
+
+
+def test_a_node_that_follows_several_joins_their_buildings(tmp_path):
+    deck = tmp_path / "joined.inp"
+    deck.write_text(JOINED)
+    with results_of(deck, out=tmp_path) as results:
+        rows = results.table("nodes")[["node", "slaved", "master"]].tolist()
+        of = DrawnStructure(results).buildings()
+    assert rows[4:6] == [(5, "XR", "3,4"), (6, "XYR", "4")] and all(row[1:] == ("", "") for row in rows[:4])
+    assert {of[n] for n in range(1, 7)} == {of[1]} != {of[7]} == {of[8]}

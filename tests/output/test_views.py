@@ -136,7 +136,7 @@ def test_equal_values_stand_once(only: Callable[..., str]) -> None:
 
 
 def test_nodes_and_elements_in_ranges(only: Callable[..., str]) -> None:
-    nodes = [(n, 6.0 * n, 0.0, "XYR", "", 0) for n in (1, 2, 3)] + [(9, 1.0, 2.0, "", "", 0)]
+    nodes = [(n, 6.0 * n, 0.0, "XYR", "", "") for n in (1, 2, 3)] + [(9, 1.0, 2.0, "", "", "")]
     nan = math.nan
     elements = [(n, "", "C", "FRAME", n, n + 100, 3.5) for n in (11, 12)] + [
         (20, "", "W", "CONTACT", 9, 0, nan)
