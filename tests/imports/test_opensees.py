@@ -470,6 +470,11 @@ def test_a_frame_with_hinges_at_joints_of_a_floor_moves_as_in_opensees(tmp_path)
     )
 
 
+def test_each_node_has_the_freedoms_of_the_model_that_defines_it(tmp_path):
+    text = HEAD + BEAM + "model basic -ndm 2 -ndf 2\nnode 3 4 3\nfix 3 0 1\n"
+    assert [n.fixed for n in model(tmp_path, text).nodes.values()] == ["XYR", "", "YR"]
+
+
 def test_nodes_of_a_truss_that_follow_others_have_no_arm(tmp_path):
     """OpenSees 3.7.1: a model without rotations, whose node 5 follows a lower one along x."""
     with solved(tmp_path, TRUSS) as file:

@@ -103,7 +103,7 @@ def _master(slave: int, letter: str, model: ScriptModel, ties: Mapping[_Freedom,
     turned: dict[int, float] = {}  # sum of the arms that one rotation turns
     for node, arm in arms:
         pivot = _chain(node, "R", ties)[-1]
-        if "R" in model.letters and "R" not in model.points[pivot].fixed:
+        if "R" in model.points[pivot].letters and "R" not in model.points[pivot].fixed:
             turned[pivot] = turned.get(pivot, 0.0) + arm
     if any(abs(arm) > _ALIKE * max(abs(a) for _, a in arms) for arm in turned.values()):
         through = f" (through node {chain[1]})" if len(chain) > 2 else ""

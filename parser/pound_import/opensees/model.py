@@ -20,11 +20,12 @@ _FREEDOMS: Final[Mapping[tuple[int, int], str]] = {(1, 1): "X", (2, 1): "X", (2,
 
 @dataclass(slots=True)
 class Point:
-    """A node: coordinates [L], letters of its fixed directions, its mass in each direction."""
+    """A node: coordinates [L], letters of its directions and of the fixed ones, mass in each."""
 
     command: Command
     x: float
     y: float
+    letters: str
     fixed: str = ""
     mass: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
 
@@ -218,7 +219,7 @@ class _Script:
         choice = options(command, 2 + self.model.dimension)
         choice.only(("-mass", "-ndf"))
         _once(self.model.points, tag, command)
-        self.model.points[tag] = Point(command, x, y)
+        self.model.points[tag] = Point(command, x, y, self.model.letters)
         self._set_mass(tag, choice.reals("-mass"))
 
     def _set_mass(self, tag: int, values: list[float]) -> None:

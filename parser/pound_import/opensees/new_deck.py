@@ -98,10 +98,10 @@ class NewDeck:
     def write_nodes(self, followers: Mapping[int, Mapping[str, int]]) -> None:
         """Write nodes and weights; `followers` has a node's directions that follow others, and these."""
         for tag, point in self.model.points.items():
-            fixed = point.fixed + "".join(d for d in _missing(self.model) if d not in point.fixed)
             masters = followers.get(tag, {})
+            fixed = [d for d in DIRECTIONS if d in point.fixed or d not in point.letters]
+            kept = "".join(d for d in fixed if d not in masters)
             words = [str(self._nodes[tag]), number(point.x), number(point.y)]
-            kept = "".join(d for d in DIRECTIONS if d in fixed and d not in masters)
             words += [f"FIX={kept}"] if kept else []
             if masters:
                 nodes = list(masters.values())
@@ -124,11 +124,6 @@ class NewDeck:
         self.draft.add(
             "WEIGHTS", f"{self._nodes[tag]} {x} {y}" + (f" {r}" if mass[2] else ""), command.span
         )
-
-
-def _missing(model: ScriptModel) -> str:
-    """Directions that no node of the model has."""
-    return "".join(d for d in DIRECTIONS if d not in model.letters)
 
 
 def _numbers(tags: Iterable[int]) -> dict[int, int]:
