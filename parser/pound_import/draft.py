@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Final
 
-from pound_deck.diagnostics import Diagnostic
+from pound_deck.diagnostics import Diagnostic, Mistake
 from pound_deck.model import Span
 
 #: of the new deck, in order; lines of the first belong to no section
@@ -70,6 +71,14 @@ class Draft:
         """Warn that something is not carried over; return the comment that marks it."""
         self.report.append(Diagnostic("L609", f"not carried over: {what}", span, remedy, "warning"))
         return f"NOT CARRIED OVER: {what}"
+
+    @contextmanager
+    def keeping(self) -> Iterator[None]:
+        """Add the Mistake that ends the block to the report."""
+        try:
+            yield
+        except Mistake as mistake:
+            mistake.keep(self.report)
 
     def rest(self, reading: str) -> None:
         """Record that decks of others confirm a reading."""

@@ -238,6 +238,17 @@ def test_losses_that_are_refused():
         assert "L604" in found, rule
 
 
+def test_a_node_follows_a_node_of_its_own_in_each_direction():
+    assert "2 3.0 0.0 0 1 1 0" in STICK
+    two = STICK.replace("2 3.0 0.0 0 1 1 0", "2 3.0 0.0 2 2 1 1 3")
+    assert dict(model(two).nodes[2].slaved) == {"X": 1, "Y": 3}
+    told = [d.message for d in read(two).report if "follows" in d.message]
+    assert [m.split("node 2 ")[1] for m in told] == [
+        "follows 1 along X with a rigid arm",
+        "follows 3 along Y with a rigid arm",
+    ]
+
+
 def test_generated_nodes_lie_evenly():
     text = STICK.replace("2 3.0 0.0 0 1 1 0 0 0 0\n", "").replace("1 0.0 0.0 1 1 1", "1 0.0 0.0 0 1 1")
     m = model(text.replace("3 6.0 0.0 0 1 1 2 0", "3 6.0 1.0 0 1 1 0 0"))

@@ -496,10 +496,6 @@ def test_without_a_choice_none_of_several_patterns_is_taken():
     assert not model(text).loads
 
 
-def test_run_at_once_nothing_may_rest_on_convention():
-    assert has_errors(read(EVERYTHING, run=True).report) and not has_errors(read(PORTAL, run=True).report)
-
-
 def test_a_mistake_of_the_new_deck_is_moved_to_the_row(tmp_path):
     text = PORTAL.replace("Area=9.12", "Area=-9.12")
     new = read(text)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from pound_deck.diagnostics import Mistake
 from pound_import.draft import Draft
 from pound_import.opensees.commands import Command
 from pound_import.opensees.model import DIRECTIONS, ScriptModel
@@ -37,17 +36,13 @@ def followers(model: ScriptModel, draft: Draft) -> Followers:
     """Nodes that follow others, chains resolved; mistakes go to the draft's report."""
     ties: dict[_Freedom, Tie] = {}
     for command in model.ties:
-        try:
+        with draft.keeping():
             _take(command, model, ties)
-        except Mistake as mistake:
-            mistake.keep(draft.report)
     ends: Followers = {}
     for slave in dict.fromkeys(node for node, _ in ties):
-        try:
+        with draft.keeping():
             letters = [letter for letter in DIRECTIONS if (slave, letter) in ties]
             ends[slave] = {letter: _master(slave, letter, model, ties) for letter in letters}
-        except Mistake as mistake:
-            mistake.keep(draft.report)
     return ends
 
 

@@ -42,10 +42,8 @@ class Factors:
         self._modal: Command | None = None
         self._place: Span | None = None
         for damping in model.damping:
-            try:
+            with draft.keeping():
                 self._take(damping)
-            except Mistake as mistake:
-                mistake.keep(draft.report)
 
     def _take(self, damping: Damping) -> None:
         command = damping.command

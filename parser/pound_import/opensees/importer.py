@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import PurePath
 from typing import Final
 
-from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
+from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Span
 from pound_import.draft import Draft, quoted
 from pound_import.opensees.beams import Beams
@@ -175,14 +175,12 @@ def _elements(
         "twoNodeLink": links.two_nodes,
     }
     for tag, command in model.elements.items():
-        try:
+        with draft.keeping():
             kind = command.word(1, "its type")
             if kind not in kinds:
                 hint = "elements that are read: " + ", ".join(sorted(kinds))
                 raise command.mistake(f"element {kind[:40]} has no counterpart here", hint)
             kinds[kind](tag, command)
-        except Mistake as mistake:
-            mistake.keep(draft.report)
 
 
 def _shaken_twice(model: ScriptModel, draft: Draft) -> None:
@@ -224,7 +222,7 @@ _GRAVITIES: Final = {"m": "9.81", "mm": "9810", "cm": "981", "ft": "32.174", "in
 def _drifts(model: ScriptModel, deck: NewDeck, draft: Draft) -> None:
     """Write the drifts that the model records."""
     for command in model.drifts:
-        try:
+        with draft.keeping():
             choice = options(command, 2)
             lower, upper = choice.wholes("-iNode"), choice.wholes("-jNode")
             axis = {1: "X", 2: "Y"}.get((*choice.wholes("-dof"), 1)[0])
@@ -238,14 +236,12 @@ def _drifts(model: ScriptModel, deck: NewDeck, draft: Draft) -> None:
                 line = f"{name} {deck.node(i)} {deck.node(j)}{direction}"
                 if all(old.text != line for old in draft.sections["DRIFT"]):
                     draft.add("DRIFT", line, command.span)
-        except Mistake as mistake:
-            mistake.keep(draft.report)
 
 
 def _velocities(model: ScriptModel, deck: NewDeck, draft: Draft) -> None:
     """Write velocities at the start."""
     for command in model.velocities:
-        try:
+        with draft.keeping():
             node, direction = command.whole(1, "the node"), command.whole(2, "the direction")
             model.point(node, command)
             value = command.real(3, "the velocity")
@@ -254,5 +250,3 @@ def _velocities(model: ScriptModel, deck: NewDeck, draft: Draft) -> None:
                     f"setNodeVel: direction {direction} lies outside of the plane", code="L620"
                 )
             draft.add("INITIAL", f"{deck.node(node)} V{'XYR'[direction - 1]}={value!r}", command.span)
-        except Mistake as mistake:
-            mistake.keep(draft.report)

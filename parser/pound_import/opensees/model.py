@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Final
 
-from pound_deck.diagnostics import Mistake
 from pound_import.draft import Draft
 from pound_import.opensees.commands import Command, options, whole
 from pound_import.opensees.names import LEFT_OUT, READ, REFUSED
@@ -161,7 +160,7 @@ class _Script:
     def take(self, command: Command) -> None:
         name = command.name
         before, moved = self._timeline.time, sum(self._timeline.moved.values())
-        try:
+        with self._draft.keeping():
             if name in _TAKEN:
                 _TAKEN[name](self, command)
             elif name == "source":
@@ -180,8 +179,6 @@ class _Script:
                 near = get_close_matches(name, READ, 1) if name not in REFUSED else []
                 hint = f"did you mean {near[0]}?" if near else "delete the line, or what needs it"
                 raise command.mistake(what, hint)
-        except Mistake as mistake:
-            mistake.keep(self._draft.report)
         self._timeline.take(command.words)
         if name == "analyze":
             self._analyzed(command, before, moved)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from pound_deck.diagnostics import Mistake
 from pound_import.draft import Draft, number, numbers
 from pound_import.opensees.commands import Command, options
 from pound_import.opensees.model import AnalyzeCall, ScriptModel, ScriptPattern
@@ -46,10 +45,8 @@ class Stages:
         static, pushes, shaken = _sorted(self.model.stages)
         pushing = {tag for stage in pushes for tag in stage.patterns}
         for tag, pattern in self.model.patterns.items():
-            try:
+            with self.draft.keeping():
                 self._pattern(tag, pattern, static, tag in pushing, bool(shaken))
-            except Mistake as mistake:
-                mistake.keep(self.draft.report)
         self._analyses(static, pushes, shaken)
 
     # ------------------------------------------------------------------ loads
@@ -95,7 +92,7 @@ class Stages:
     def _static(self, pattern: ScriptPattern, factor: float) -> None:
         released = " HELD=NO" if pattern.removed else ""
         for load in pattern.loads:
-            try:
+            with self.draft.keeping():
                 if load.name == "load":
                     node, values = self._nodal(load)
                     if any(values) and factor:
@@ -108,8 +105,6 @@ class Stages:
                         raise load.mistake("a load of members that is removed", "load the nodes instead")
                 else:
                     raise load.mistake(f"{load.name} in a pattern has no counterpart", "apply forces")
-            except Mistake as mistake:
-                mistake.keep(self.draft.report)
 
     def _nodal(self, load: Command) -> tuple[int, list[float]]:
         """Node and force of a `load`."""
@@ -191,10 +186,8 @@ class Stages:
             place = first.command.span if first else next(iter(self.model.elements.values())).span
             self.draft.add("ANALYSIS", "STATIC SELF_WEIGHT=NO", place)
         if pushes:
-            try:
+            with self.draft.keeping():
                 self._pushover(pushes)
-            except Mistake as mistake:
-                mistake.keep(self.draft.report)
         if pushes and shaken:
             self.draft.lose(
                 shaken[0].command.span, "the push before the history, which starts from the static state"

@@ -132,10 +132,8 @@ def _translate(
     """Fill the draft, section by section."""
 
     def attempt(step: Callable[[], object]) -> None:
-        try:
+        with draft.keeping():
             step()
-        except Mistake as error:
-            error.keep(draft.report)
 
     attempt(lambda: header.write(control, draft))
     points = {}

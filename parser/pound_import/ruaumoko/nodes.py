@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.diagnostics import Diagnostic, Mistake
 from pound_deck.model import Span
 from pound_import.draft import Draft, number
 from pound_import.ruaumoko.lines import DataLine, DataLines
@@ -105,11 +105,7 @@ def _between(before: LegacyNode, after: LegacyNode, draft: Draft) -> list[Legacy
 def write(nodes: dict[int, LegacyNode], draft: Draft) -> None:
     """Add the lines of NODES."""
     for node in nodes.values():
-        try:
-            items, notes = _slaved(node, nodes, draft)
-        except Mistake as error:
-            error.keep(draft.report)
-            continue
+        items, notes = _slaved(node, nodes, draft)
         fixed = "".join(c for c, code in zip(_LETTERS, node.codes) if code == _FIXED)
         text = f"{node.id:6} {number(node.x):>12} {number(node.y):>12}"
         text += (f"  FIX={fixed}" if fixed else "") + items
@@ -123,21 +119,19 @@ def _slaved(node: LegacyNode, nodes: dict[int, LegacyNode], draft: Draft) -> tup
     ways = [k for k in range(3) if node.codes[k] == _SLAVED]
     if not ways:
         return "", []
-    masters = {node.masters[k] for k in ways}
     place = node.row.item(3 + ways[0]).span
-    if len(masters) > 1:
-        text = f"node {node.id} follows several nodes: {', '.join(map(str, sorted(masters)))}"
-        raise mistake("L604", text, place, "a node of the new deck has one MASTER")
-    (master,) = masters
+    masters = [node.masters[k] for k in ways]
     letters = "".join(_LETTERS[k] for k in ways)
-    level = master in nodes and nodes[master].y == node.y
     notes = []
-    if letters == "X" and level:
+    if letters == "X" and masters[0] in nodes and nodes[masters[0]].y == node.y:
         draft.rest("NF 2: slaved to the node KUP")
     else:
-        reading = f"node {node.id} follows {master} along {letters} with a rigid arm"
-        notes.append(draft.doubt(place, reading))
-    return f"  SLAVED={letters} MASTER={master}", notes
+        for master in dict.fromkeys(masters):
+            along = "".join(letter for letter, m in zip(letters, masters) if m == master)
+            reading = f"node {node.id} follows {master} along {along} with a rigid arm"
+            notes.append(draft.doubt(place, reading))
+    named = masters if len(set(masters)) > 1 else masters[:1]
+    return f"  SLAVED={letters} MASTER={','.join(map(str, named))}", notes
 
 
 def drifts(rows: DataLines, levels: int, place: Span, nodes: dict[int, LegacyNode], draft: Draft) -> None:

@@ -10,7 +10,7 @@ from pound_import.draft import Draft, number
 from pound_import.sap2000.numbering import computed
 from pound_import.sap2000.patterns import StaticLoad
 from pound_import.sap2000.planes import SapPlane
-from pound_import.sap2000.tables import MOST, SapRow, SapTables, kept
+from pound_import.sap2000.tables import MOST, SapRow, SapTables
 
 _MODAL: Final = "LINMODAL"
 #: types of cases with a history, and the names of their tables
@@ -59,10 +59,10 @@ def write(
         draft.add("ANALYSIS", "STATIC SELF_WEIGHT=NO", static.span)
     _geometry(tables, [static.case, *histories[:1]], draft)
     for name in [x for x in dynamic if x not in histories][:1]:
-        with kept(draft.report):
+        with draft.keeping():
             _modes(tables, name, run[name], draft)
     for name in histories[:1]:
-        with kept(draft.report):
+        with draft.keeping():
             _history(tables, run[name], static, plane, draft)
     for name in histories[1:]:
         note = draft.lose(run[name].span, f"a further history, the case {name[:40]}", "make a deck for it")

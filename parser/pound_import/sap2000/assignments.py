@@ -12,7 +12,7 @@ from pound_import.draft import Draft
 from pound_import.sap2000.frames import SapFrame, known
 from pound_import.sap2000.planes import SapPlane
 from pound_import.sap2000.sections import SapSection
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 from pound_import.sap2000.vectors import difference, local_axes
 
 _MOST_NAMED: Final = 10  #: frames that a message names
@@ -32,7 +32,7 @@ def in_plane(
 
     def each(table: str, change: Callable[[SapRow, SapFrame], SapFrame]) -> None:
         for row in tables[table]:
-            with kept(draft.report):
+            with draft.keeping():
                 frame = inside.pop(known(frames, row).name, None)
                 if frame:  # with a mistake it stays out: no others follow from it
                     inside[frame.name] = change(row, frame)

@@ -12,7 +12,7 @@ from pound_import.draft import Draft
 from pound_import.sap2000 import joints as points
 from pound_import.sap2000.joints import SapJoint
 from pound_import.sap2000.planes import SapPlane
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 
 KINDS: Final = ("DIAPHRAGM", "BODY", "EQUAL")
 #: whose joints move in another way
@@ -46,11 +46,11 @@ def read(
     definitions: dict[str, tuple[str, SapRow]] = {}
     for kind in (*KINDS, *OTHERS):
         for row in tables[f"CONSTRAINT DEFINITIONS - {kind}"]:
-            with kept(draft.report):
+            with draft.keeping():
                 definitions[row.text("Name")] = kind, row
     members: dict[str, list[SapJoint]] = {}
     for row in tables["JOINT CONSTRAINT ASSIGNMENTS"]:
-        with kept(draft.report):
+        with draft.keeping():
             joint, name = points.known(joints, row), row.text("Constraint")
             if name not in definitions:
                 what = f"there is no constraint {name[:40]}"
@@ -67,7 +67,7 @@ def read(
 
 def _levels(row: SapRow, joints: list[SapJoint], plane: SapPlane, draft: Draft) -> list[list[SapJoint]]:
     """Joints of a constraint by their level, where it acts on each level alone."""
-    with kept(draft.report):
+    with draft.keeping():
         axis = "XYZ".find(row.word("Axis", "Z")[:1])
         if row.yes("MultiLevel") and axis >= 0:
             levels: dict[int, list[SapJoint]] = {}
@@ -128,7 +128,7 @@ def fixed_letters(joint: SapJoint, active: tuple[bool, ...], plane: SapPlane) ->
 def _letters(group: SapConstraint, active: tuple[bool, ...], plane: SapPlane, draft: Draft) -> str:
     """Directions of XYR that a constraint joins."""
     row, letters = group.row, ""
-    with kept(draft.report):
+    with draft.keeping():
         if group.kind == "DIAPHRAGM":
             letters = _of_diaphragm(group, plane)
         elif group.kind in ("BODY", "EQUAL"):

@@ -11,7 +11,7 @@ from pound_import.draft import Draft
 from pound_import.sap2000 import joints as points
 from pound_import.sap2000.joints import SapJoint
 from pound_import.sap2000.sections import SapSection
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 from pound_import.sap2000.vectors import Vector, difference, length, local_axes
 
 
@@ -61,7 +61,7 @@ def connected(tables: SapTables, joints: dict[str, SapJoint], draft: Draft) -> d
     """Frames by name, of the whole model."""
     frames: dict[str, SapFrame] = {}
     for row in tables["CONNECTIVITY - FRAME"]:
-        with kept(draft.report):
+        with draft.keeping():
             name = row.text("Frame")
             if name in frames:
                 what = f"frame {name[:40]} is given twice"

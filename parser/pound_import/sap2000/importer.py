@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors, mistake
@@ -36,18 +37,13 @@ from pound_import.sap2000.links import SapLink
 from pound_import.sap2000.planes import SapPlane
 from pound_import.sap2000.recognise import is_sap2000
 from pound_import.sap2000.sections import SapMaterial
-from pound_import.sap2000.tables import SapTables, kept
+from pound_import.sap2000.tables import SapTables
 from pound_import.translation import Translation, written
 
 _CHECK: Final = "compare it with the manual of SAP2000 or its results"
-_RUN: Final = (
-    "pound-solve import MODEL -o model.inp marks it in a deck of this program; check it there, and run that"
-)
 
 
-def translate(
-    name: str, text: str, catalog: Catalog, plane: str = "", load: str = "", run: bool = False
-) -> Translation:
+def translate(name: str, text: str, catalog: Catalog, plane: str = "", load: str = "") -> Translation:
     """Read a model.
 
     Parameters
@@ -62,24 +58,15 @@ def translate(
     load : str
         Static case, combination or load patterns, separated by commas, to be applied as static loads;
         empty: the only one, or none where there are several.
-    run : bool
-        The new deck is run at once: readings by convention and losses are errors.
 
     Returns
     -------
     Translation
     """
     draft = Draft(_CHECK)
-    try:
+    with draft.keeping():
         model = _read(name, text, draft)
         _write(model, _Choice(catalog, plane, load), draft)
-    except Mistake as error:
-        error.keep(draft.report)
-    if run:
-        draft.report[:] = [
-            replace(d, severity="error", hint=_RUN) if d.code in ("L605", "L609") else d
-            for d in draft.report
-        ]
     draft.report.sort(key=lambda d: (d.span.line, d.span.column) if d.span else (0, 0))
     if has_errors(draft.report):
         return Translation("", (), tuple(draft.report))
@@ -126,7 +113,7 @@ def _read(name: str, text: str, draft: Draft) -> _SapModel:
         raise mistake("L640", what, here, "File, Export, SAP2000 .s2k Text File")
     read = tables.read(name, text, effects.READ, draft.report)
     gravity = 0.0
-    with kept(draft.report):
+    with draft.keeping():
         gravity = units.gravity(read, draft)
     points = joints.read(read, draft)
     bars = frames.connected(read, points, draft)
@@ -164,7 +151,7 @@ def _write(model: _SapModel, choice: _Choice, draft: Draft) -> None:
     links.write(read, model.joints, linked, ids, elements, plane, choice.catalog, draft)
     static = patterns.StaticLoad("", {}, here)
     multipliers, run = patterns.patterns(read, draft), patterns.cases(read, draft)
-    with kept(draft.report):
+    with draft.keeping():
         static = patterns.choose(read, multipliers, run, choice.load, draft)
     on_joints = spread.on_joints(read, model.joints, draft)
     weights = _weights(inside, model.materials)
@@ -213,7 +200,7 @@ def _weights(inside: Mapping[str, SapFrame], materials: Mapping[str, SapMaterial
     """Weights per length of the frames [F/L]; those without a section are reported elsewhere."""
     out = {}
     for name, frame in inside.items():
-        with kept([]):
+        with suppress(Mistake):
             out[name] = members.weight(frame, materials)
     return out
 

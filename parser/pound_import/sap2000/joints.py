@@ -9,7 +9,7 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_import.draft import Draft
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 from pound_import.sap2000.vectors import Vector
 
 _RESTRAINTS: Final = ("U1", "U2", "U3", "R1", "R2", "R3")
@@ -42,19 +42,19 @@ def read(tables: SapTables, draft: Draft) -> dict[str, SapJoint]:
     """Joints by name, with their restraints."""
     joints: dict[str, SapJoint] = {}
     for row in tables["JOINT COORDINATES"]:
-        with kept(draft.report):
+        with draft.keeping():
             name = row.text("Joint")
             if name in joints:
                 what = f"joint {name[:40]} is given twice"
                 raise mistake("L645", what, row.place("Joint"), "give it another name")
             joints[name] = SapJoint(name, _coordinates(row), row.span)
     for row in tables["JOINT LOCAL AXES ASSIGNMENTS 1 - TYPICAL"]:
-        with kept(draft.report):
+        with draft.keeping():
             joint = known(joints, row)
             angles = any(row.real(key, 0.0) for key in ("AngleA", "AngleB", "AngleC"))
             joints[joint.name] = replace(joint, turned=angles or row.yes("AdvanceAxes"))
     for row in tables["JOINT RESTRAINT ASSIGNMENTS"]:
-        with kept(draft.report):
+        with draft.keeping():
             joint = known(joints, row)
             fixed = tuple(row.yes(key) for key in _RESTRAINTS)
             if joint.turned and len(set(fixed[:3])) + len(set(fixed[3:])) > 2:
@@ -81,7 +81,7 @@ def known(joints: dict[str, SapJoint], row: SapRow, key: str = "Joint") -> SapJo
 
 def active(tables: SapTables, draft: Draft) -> tuple[bool, ...]:
     """Whether displacements along and rotations about X, Y, Z are active, shape (6,)."""
-    with kept(draft.report):
+    with draft.keeping():
         for row in tables["ACTIVE DEGREES OF FREEDOM"]:
             return tuple(row.yes(key, True) for key in _ACTIVE)
     return ALL_ACTIVE

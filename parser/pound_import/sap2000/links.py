@@ -23,7 +23,7 @@ from pound_import.sap2000.link_elements import ElementWriter, LinkDof
 from pound_import.sap2000.masses import NodalWeights
 from pound_import.sap2000.numbering import computed
 from pound_import.sap2000.planes import SapPlane
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 from pound_import.sap2000.vectors import Vector, difference, dot, length, local_axes
 
 _DEFINITIONS: Final = "LINK PROPERTY DEFINITIONS "
@@ -62,7 +62,7 @@ def connected(tables: SapTables, joints: dict[str, SapJoint], draft: Draft) -> d
     """Links by name, of the whole model, with their properties."""
     links: dict[str, SapLink] = {}
     for row in tables["CONNECTIVITY - LINK"]:
-        with kept(draft.report):
+        with draft.keeping():
             name = row.text("Link")
             if name in links:
                 what = f"link {name[:40]} is given twice"
@@ -71,11 +71,11 @@ def connected(tables: SapTables, joints: dict[str, SapJoint], draft: Draft) -> d
             j = points.known(joints, row, "JointJ") if row.has("JointJ") else i
             links[name] = SapLink(name, i, j, row.span, local_axes(difference(j.at, i.at), 0.0))
     for row in tables["LINK PROPERTY ASSIGNMENTS"]:
-        with kept(draft.report):
+        with draft.keeping():
             link = _known(links, row)
             links[link.name] = replace(link, prop=row.text("LinkProp"))
     for row in tables["LINK LOCAL AXES ASSIGNMENTS 1 - TYPICAL"]:
-        with kept(draft.report):
+        with draft.keeping():
             link = _known(links, row)
             axes = local_axes(difference(link.j.at, link.i.at), row.real("Angle", 0.0))
             links[link.name] = replace(link, axes=axes)
@@ -128,7 +128,7 @@ def write(
     writer = ElementWriter(max(used.values(), default=0), catalog, draft)
     definitions = _definitions(tables, draft)
     for name, link in links.items():
-        with kept(draft.report):
+        with draft.keeping():
             if link.prop not in definitions:
                 what = f"link {name[:40]} has no property that is defined"
                 raise mistake("L646", what, link.span, "LINK PROPERTY ASSIGNMENTS names it")
@@ -142,14 +142,14 @@ def _definitions(tables: SapTables, draft: Draft) -> dict[str, dict[str, list[Sa
     out: dict[str, dict[str, list[SapRow]]] = {}
     for table in springs.READERS:
         for row in tables[_DEFINITIONS + table]:
-            with kept(draft.report):
+            with draft.keeping():
                 dof = row.word("DOF")
                 if dof not in _DOFS:
                     what = f"DOF is {dof[:40] or 'missing'}"
                     raise mistake("L643", what, row.place("DOF"), ", ".join(_DOFS))
                 out.setdefault(row.text("Link"), {}).setdefault(dof, []).append(row)
     for row in tables[_DEFINITIONS + "01 - GENERAL"]:
-        with kept(draft.report):
+        with draft.keeping():
             out.setdefault(row.text("Link"), {}).setdefault("", []).append(row)
     return out
 
@@ -188,7 +188,7 @@ def masses(
     """Add half of the mass of each link to either of its joints."""
     rows = {row.get("Link"): row for row in tables[_DEFINITIONS + "01 - GENERAL"]}
     for link in links.values():
-        with kept(draft.report):
+        with draft.keeping():
             row = rows.get(link.prop)
             half = gravity * row.real("Mass", 0.0) / 2.0 if row else 0.0
             if half and row:
@@ -211,7 +211,7 @@ def _of_joints(
     """Add the springs of joints to the ground."""
     keys = (f"U{plane.across + 1}", f"U{plane.up + 1}", f"R{plane.normal + 1}")
     for row in tables["JOINT SPRING ASSIGNMENTS 1 - UNCOUPLED"]:
-        with kept(writer.draft.report):
+        with writer.draft.keeping():
             stiff = [row.real(key, 0.0) for key in keys]
             items = "".join(f" {name}={number(k)}" for name, k in zip(("KX", "KY", "KR"), stiff) if k)
             name = row.text("Joint")

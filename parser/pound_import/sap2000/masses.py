@@ -12,7 +12,7 @@ from pound_import.sap2000.joints import SapJoint
 from pound_import.sap2000.numbering import computed
 from pound_import.sap2000.planes import SapPlane
 from pound_import.sap2000.spread import FrameForce, JointForce
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 
 
 @dataclass(slots=True)
@@ -26,7 +26,7 @@ class MassSource:
 
 def source(tables: SapTables, draft: Draft) -> MassSource:
     """Mass source that is marked as the default one, or the first."""
-    with kept(draft.report):
+    with draft.keeping():
         rows = tables["MASS SOURCE"]
         if not rows:
             return _older(tables)
@@ -108,7 +108,7 @@ def added(
     """Add the mass of joints of the plane to `out`; that of others is lost, with its sum."""
     outside, first = 0.0, tables.here
     for row in tables["JOINT ADDED MASS ASSIGNMENTS"]:
-        with kept(draft.report):
+        with draft.keeping():
             joint = points.known(joints, row)
             mass = [row.real(f"Mass{k}", 0.0) for k in (1, 2, 3)]
             inertia = [row.real(f"MMI{k}", 0.0) for k in (1, 2, 3)]

@@ -11,7 +11,6 @@ from pound_import.sap2000.frames import SapFrame
 from pound_import.sap2000.numbering import computed, numbered
 from pound_import.sap2000.planes import SapPlane
 from pound_import.sap2000.sections import SapMaterial, SapSection
-from pound_import.sap2000.tables import kept
 
 _EQUAL: Final = 1e-9  #: relative difference of equal stiffnesses
 
@@ -42,7 +41,7 @@ def write(
     elements = numbered(frames)
     sets: dict[str, str] = {}
     for name, frame in frames.items():
-        with kept(draft.report):
+        with draft.keeping():
             section, material = _properties(frame, materials)
             items = _items(frame, section, material, plane, weighty, draft)
             if items not in sets:

@@ -13,7 +13,7 @@ from pound_import.draft import Draft
 from pound_import.sap2000.frames import SapFrame, known
 from pound_import.sap2000.joints import SapJoint
 from pound_import.sap2000.planes import SapPlane
-from pound_import.sap2000.tables import SapTables, kept
+from pound_import.sap2000.tables import SapTables
 from pound_import.sap2000.vectors import cross, difference, dot, length
 
 _TABLE: Final = "FRAME AUTO MESH ASSIGNMENTS"
@@ -52,7 +52,7 @@ def divided(
             bisect_right(places, ends[1] + plane.width),
         )
         on_it = _between(frame, ordered[first:last], plane.width) if name in meshed else []
-        with kept(draft.report):
+        with draft.keeping():
             out |= {part.name: part for part in _parts(frame, on_it)}
     return out
 
@@ -61,7 +61,7 @@ def _meshed(tables: SapTables, frames: Mapping[str, SapFrame], draft: Draft) -> 
     """Names of the frames that are divided at joints."""
     out: set[str] = set()
     for row in tables[_TABLE]:
-        with kept(draft.report):
+        with draft.keeping():
             name = known(frames, row).name
             if row.yes("AutoMesh") and row.yes("AtJoints"):
                 out.add(name)

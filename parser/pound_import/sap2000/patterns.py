@@ -9,7 +9,7 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_import.draft import Draft
-from pound_import.sap2000.tables import MOST, SapRow, SapTables, kept
+from pound_import.sap2000.tables import MOST, SapRow, SapTables
 
 STATIC: Final = ("LINSTATIC", "NONSTATIC")  #: types of cases
 _DEEPEST: Final = 8  #: combinations of combinations
@@ -39,7 +39,7 @@ def patterns(tables: SapTables, draft: Draft) -> dict[str, float]:
     """Factors of the weight of members in each load pattern."""
     out: dict[str, float] = {}
     for row in tables["LOAD PATTERN DEFINITIONS"]:
-        with kept(draft.report):
+        with draft.keeping():
             out[row.text("LoadPat")] = row.real("SelfWtMult", 0.0)
     return out
 
@@ -48,7 +48,7 @@ def cases(tables: SapTables, draft: Draft) -> dict[str, SapRow]:
     """Cases that are run, by name."""
     out: dict[str, SapRow] = {}
     for row in tables["LOAD CASE DEFINITIONS"]:
-        with kept(draft.report):
+        with draft.keeping():
             if row.yes("RunCase", True):
                 out[row.text("Case")] = row
     return out

@@ -9,7 +9,7 @@ from typing import Final
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
 from pound_import.draft import Draft
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 
 _NO_SECTION: Final = ("AUTO SELECT", "NONPRISMATIC")  #: shapes without properties
 
@@ -77,7 +77,7 @@ def materials(tables: SapTables, gravity: float, draft: Draft) -> dict[str, SapM
     """
     out: dict[str, SapMaterial] = {}
     for row in tables["MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES"]:
-        with kept(draft.report):
+        with draft.keeping():
             name = _new(row, "Material", out)
             e = row.real("E1")
             g = row.real("G12", 0.0) or e / (2.0 * (1.0 + abs(row.real("U12", 0.0))))
@@ -92,7 +92,7 @@ def sections(tables: SapTables, known: Mapping[str, SapMaterial], draft: Draft) 
     for row in tables["FRAME SECTION PROPERTIES 01 - GENERAL"]:
         if row.word("Shape") in _NO_SECTION:
             continue
-        with kept(draft.report):
+        with draft.keeping():
             name = _new(row, "SectionName", out)
             material = row.text("Material")
             if material not in known:

@@ -13,7 +13,7 @@ from pound_import.sap2000 import joints as points
 from pound_import.sap2000.frames import SapFrame, known
 from pound_import.sap2000.joints import SapJoint
 from pound_import.sap2000.mesh import wholes
-from pound_import.sap2000.tables import SapRow, SapTables, kept
+from pound_import.sap2000.tables import SapRow, SapTables
 from pound_import.sap2000.vectors import Vector, scaled
 
 _AXES: Final = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
@@ -61,7 +61,7 @@ def on_joints(tables: SapTables, joints: dict[str, SapJoint], draft: Draft) -> l
     """Loads on joints."""
     out: list[JointForce] = []
     for row in tables["JOINT LOADS - FORCE"]:
-        with kept(draft.report):
+        with draft.keeping():
             joint = points.known(joints, row)
             pattern = row.text(row.key("LoadPat", "LoadCase"))
             force, moment = (tuple(row.real(f"{c}{k}", 0.0) for k in (1, 2, 3)) for c in "FM")
@@ -82,7 +82,7 @@ def on_frames(
     parts, out = wholes(inside), list[FrameForce]()
     for table, reader in readers.items():
         for row in tables[table]:
-            with kept(draft.report):
+            with draft.keeping():
                 name = known(frames, row).name
                 if name not in parts:
                     continue
@@ -120,7 +120,7 @@ def by_weight(
                 yield FrameForce(pattern, frame, scaled(_DOWN, factor * weights[name]), (), frame.span)
     parts = wholes(frames)
     for row in tables["FRAME LOADS - GRAVITY"]:
-        with kept(draft.report):
+        with draft.keeping():
             pattern = row.text(row.key("LoadPat", "LoadCase"))
             factors = _vector(tuple(row.real(f"Multiplier{axis}", 0.0) for axis in "XYZ"))
             for frame in parts.get(row.text("Frame"), []):

@@ -5,12 +5,11 @@ that goes on in the next one.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.diagnostics import Diagnostic, mistake
 from pound_deck.model import Span
 
 _HEAD: Final = re.compile(r'\s*TABLE\s*:\s*"?([^"]*?)"?\s*', re.I)
@@ -141,15 +140,6 @@ class SapTables:
     def here(self) -> Span:
         """Place of messages about the whole file."""
         return Span(self.file, 1, 1, 2)
-
-
-@contextmanager
-def kept(report: list[Diagnostic]) -> Iterator[None]:
-    """Add the Mistake that ends the block to a report."""
-    try:
-        yield
-    except Mistake as error:
-        error.keep(report)
 
 
 def read(file: str, text: str, wanted: Collection[str], report: list[Diagnostic]) -> SapTables:
