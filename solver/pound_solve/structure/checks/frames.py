@@ -37,6 +37,8 @@ def framing_mistakes(structure: Structure) -> list[Diagnostic]:
     lines = Lines(model)
     for b in buildings(structure):
         if stands(model, b.nodes):
+            inside = set(b.nodes)
+            lines.joint |= {n: [m for m in lines.group[lines.at[n]] if m in inside] for n in b.nodes}
             problems += [*_without_column(lines, b), *_without_beam(lines, b), *_passing_a_floor(lines, b)]
     return [*problems, *_sloping_beams(model), *_short_columns(structure), *_inclined_dashpots(model)]
 
@@ -74,6 +76,9 @@ class Lines:
         Nodes on elements that end at the ground.
     group, at : list of list of int, mapping of int to int
         Nodes at every place, and the place of every node.
+    joint : mapping of int to list of int
+        Nodes of a building at the place of each of its nodes: a column ends at a joint where it ends at a
+        node of its hinge.
     """
 
     def __init__(self, model: Model) -> None:
@@ -82,6 +87,7 @@ class Lines:
         self.joined = {frozenset(pair) for pair in joints(model)}
         self.grounded = {e.i for e in model.elements.values() if e.j is None}
         self.group, self.at = places(model)
+        self.joint: dict[int, list[int]] = {}
         for e in model.elements.values():
             if e.j is None or model.props[e.prop].spec.name == "CONTACT":
                 continue
@@ -93,6 +99,14 @@ class Lines:
                 low, high = (e.i, e.j) if i.y < j.y else (e.j, e.i)
                 self.up[low].append(e)
                 self.down[high].append(e)
+
+    def rises(self, n: int) -> bool:
+        """Whether an element leads upwards from the joint of a node."""
+        return any(self.up[m] for m in self.joint[n])
+
+    def falls(self, n: int) -> bool:
+        """Whether an element leads downwards from the joint of a node."""
+        return any(self.down[m] for m in self.joint[n])
 
     def beamed(self, n: int) -> bool:
         """Whether a beam ends at a node or at one that coincides with it."""
@@ -106,10 +120,10 @@ class Lines:
         return "Y" in node.fixed or "Y" in node.slaved or n in self.grounded
 
     def end(self, n: int) -> bool:
-        """Whether beams lead from a node to one side only, and nothing leads down from it."""
-        x = self.model.nodes[n].x
-        ways = {self.model.nodes[m].x > x for e in self.beams[n] for m in (e.i, e.j) if m not in (n, None)}
-        return len(ways) == 1 and not self.down[n]
+        """Whether beams lead from the joint of a node to one side only, and nothing leads down from it."""
+        nodes, x = self.model.nodes, self.model.nodes[n].x
+        ends = [m for at in self.joint[n] for e in self.beams[at] for m in (e.i, e.j) if m is not None]
+        return len({nodes[m].x > x for m in ends if nodes[m].x != x}) == 1 and not self.falls(n)
 
 
 def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
@@ -120,7 +134,7 @@ def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
         upright[nodes[n].x].append(n)
     for line in upright.values():
         for below, n in pairwise(line):
-            ends = (lines.down[below] or "Y" in nodes[below].fixed) and not lines.up[below]
+            ends = (lines.falls(below) or "Y" in nodes[below].fixed) and not lines.rises(below)
             ends = ends and nodes[below].y < nodes[n].y  # excludes zero-length joints
             if ends and lines.end(n) and not lines.held(n):
                 message = (
@@ -150,7 +164,7 @@ def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
 def _passing_a_floor(lines: Lines, b: Building) -> Iterator[Diagnostic]:
     """Yield warnings for elements that pass through the place of a node at which a lower element ends."""
     nodes = lines.model.nodes
-    ends = [n for n in b.nodes if lines.down[n] and not lines.up[n] and n not in lines.grounded]
+    ends = [n for n in b.nodes if lines.down[n] and not lines.rises(n) and n not in lines.grounded]
     for n in ends:
         for other in (m for m in b.nodes if nodes[m].x == nodes[n].x and nodes[m].y > nodes[n].y):
             for e in lines.down[other]:
