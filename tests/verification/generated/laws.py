@@ -41,9 +41,11 @@ def hysteresis(
     # columns on hinges with slack are a mechanism, which gravity overturns
     spec = rng.choice([s for s in specs if not (carries and "SLACK" in s.sample)])
     words = [f"RULE={spec.name}", *items(rng, spec, force, deformation)]
-    if spec.field(WHOLE_LOSS) and rng.random() < 0.3:
+    loss = spec.field(WHOLE_LOSS)
+    if loss and "GROW=NO" not in words and rng.random() < 0.3:
         begin = rng.uniform(1.5, 4.0)
-        words += [f"ILOS={rng.choice(('EACH', 'LARGEST'))} DUCT1={begin:.3g}"]
+        forms = [word for word in ("EACH", "LARGEST") if word in loss.words]
+        words += [f"ILOS={rng.choice(forms)} DUCT1={begin:.3g}"]
         words += [f"DUCT2={begin * rng.uniform(1.5, 4.0):.3g} RDUCT={rng.uniform(0.5, 0.9):.3g}"]
     return " ".join(words)
 
