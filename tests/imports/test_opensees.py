@@ -28,6 +28,7 @@ geomTransf Linear 1
 mass 2 1 1 0
 """
 BEAM = "element elasticBeamColumn 1 1 2 0.1 2e7 1e-3 1\n"
+LINK = "element zeroLength 8 1 2 -mat 5 -dir 1\n"
 
 
 def read(folder, text, name="model.tcl", **choices):
@@ -673,6 +674,22 @@ def test_each_mistake_has_its_place(tmp_path, text):
     told = errors(translation)
     assert any(c == code and message in m for c, _, m in told), told
     assert all(line > 6 or "negative mass" in m for _, line, m in told) and not translation.text
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("element elasticbeamcolumn 1 1 2 0.1 2e7 1e-3 1\n", "did you mean elasticBeamColumn?"),
+        (
+            "uniaxialMaterial Steel1 5 10 100 0.1\nelement zeroLength 8 1 2 -mat 5 -dir 1",
+            "did you mean Steel01?",
+        ),
+        (f"uniaxialMaterial Pinching4 5 1\n{LINK}", "use one of BoucWen"),
+    ],
+)
+def test_a_misspelt_type_has_the_right_one_in_the_hint(tmp_path, text, hint):
+    (told,) = (d for d in read(tmp_path, HEAD + text).report if "no counterpart here" in d.message)
+    assert told.hint.startswith(hint)
 
 
 def test_all_mistakes_are_told_in_one_pass(tmp_path):

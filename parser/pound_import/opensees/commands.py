@@ -7,10 +7,11 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from pound_deck.diagnostics import Mistake, mistake
+from pound_deck.diagnostics import Mistake, closest, mistake
 from pound_deck.model import Span
 
 MOST: Final = 1e30  #: magnitude of a number
+_SLIP: Final = 0.9  #: similarity of a misspelt type: OpenSees has many others with similar names
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,12 @@ class Command:
     def mistake(self, what: str, hint: str = "", code: str = "L622") -> Mistake:
         """Make a Mistake at the place of the command."""
         return mistake(code, what, self.span, hint)
+
+    def no_counterpart(self, name: str, known: Iterable[str], hint: str) -> Mistake:
+        """Make a Mistake about a type that is not read; the hint is a known one that it resembles."""
+        near = closest(name, known, _SLIP)
+        what = f"{self.name} {name[:40]} has no counterpart here"
+        return self.mistake(what, f"did you mean {near}?" if near else hint)
 
     def word(self, k: int, name: str) -> str:
         """Word by position.

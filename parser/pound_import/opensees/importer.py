@@ -179,7 +179,7 @@ def _elements(
             kind = command.word(1, "its type")
             if kind not in kinds:
                 hint = "elements that are read: " + ", ".join(sorted(kinds))
-                raise command.mistake(f"element {kind[:40]} has no counterpart here", hint)
+                raise command.no_counterpart(kind, kinds, hint)
             kinds[kind](tag, command)
 
 

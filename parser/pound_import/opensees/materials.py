@@ -83,7 +83,7 @@ class Materials:
         name = command.word(1, "the type")
         if name not in MATERIALS:
             hint = "use one of " + ", ".join(sorted(MATERIALS))
-            raise command.mistake(f"uniaxialMaterial {name[:40]} has no counterpart here", hint)
+            raise command.no_counterpart(name, MATERIALS, hint)
         return MATERIALS[name](self, command)
 
 

@@ -99,7 +99,7 @@ class Sections:
             laws = {AXIAL: SpringPart(stiffness.axial), BENDING: SpringPart(stiffness.bending)}
             return SectionLaws(laws, fibres=made, area=sum(fibre.area for fibre in made.fibres))
         hint = "give the section its moments and curvatures: Uniaxial, Aggregator or Elastic"
-        raise command.mistake(f"section {name[:40]} has no counterpart", hint)
+        raise command.no_counterpart(name, ("Elastic", "Uniaxial", "Aggregator", *FIBRES), hint)
 
     def _elastic(self, command: Command) -> SectionLaws:
         count = len(command.words) - 3
