@@ -6,6 +6,7 @@ other deck.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -139,7 +140,8 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
 
 
 def protocol(spring: LawSpring) -> list[float]:
-    """Deformations of cycles to growing ductilities; closures and openings of a contact.
+    """Deformations of cycles to growing ductilities; closures and openings of a contact.  A side that never
+    yields is deformed as far as the other.
 
     Raises
     ------
@@ -151,7 +153,8 @@ def protocol(spring: LawSpring) -> list[float]:
     plus, minus = spring.yields or (0.0, 0.0)
     if plus == 0.0 or minus == 0.0:
         raise LawTestError("without a yield deformation on both sides the path must be given: --path")
-    return [mu * d for mu in DUCTILITIES for d in (plus, minus)] + [0.0]
+    sides = -minus if math.isnan(plus) else plus, -plus if math.isnan(minus) else minus
+    return [mu * d for mu in DUCTILITIES for d in sides] + [0.0]
 
 
 def usual_rate(spring: LawSpring) -> float:

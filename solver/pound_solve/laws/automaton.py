@@ -177,8 +177,8 @@ class Rule:
     steepest : callable
         ``steepest(p) -> stiffness``, an upper bound of the stiffness of all straight branches.
     first_yield : callable or None
-        ``first_yield(p) -> (positive, negative)`` deformations at which a virgin spring yields.  None: the
-        yield forces divided by the initial stiffness.
+        ``first_yield(p) -> (positive, negative)`` deformations at which a virgin spring yields; NaN for a
+        side that never does.  None: the yield forces divided by the initial stiffness.
     parameters, variables : int
         Numbers of values in ``p`` and ``m``.
     """

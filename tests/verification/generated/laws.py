@@ -38,8 +38,9 @@ def hysteresis(
     is for columns.
     """
     specs = choices("hysteresis", straight)
-    # columns on hinges with slack are a mechanism, which gravity overturns
-    spec = rng.choice([s for s in specs if not (carries and "SLACK" in s.sample)])
+    # columns on hinges with slack, or on hinges of one side, are a mechanism, which gravity overturns
+    loose = [s for s in specs if "SLACK" in s.sample or s.name == "MASONRY_STRUT"]
+    spec = rng.choice([s for s in specs if not (carries and s in loose)])
     words = [f"RULE={spec.name}", *items(rng, spec, force, deformation)]
     loss = spec.field(WHOLE_LOSS)
     if loss and "GROW=NO" not in words and rng.random() < 0.3:
