@@ -115,7 +115,7 @@ SAMPLES: dict[str, list[dict[str, Any]]] = {
     "Q_HYST": DEGRADING,
     "RAMBERG_OSGOOD": [{"N": 5.0}, {"N": 1.7, "ALPHA": 0.4}, {"N": 15.0, "ALPHA": 2.0}],
     "RING_SPRING": [
-        {"R": r, "LOWER": lower} for r, lower in ((0.0, 0.3), (0.1, 0.9), (0.4, 0.01), (0.9, 0.5))
+        {"R": r, "LOWER": lower} for r, lower in ((0.0, 0.3), (0.1, 0.9), (0.4, 0.1), (0.9, 0.5))
     ],
     "SCHOETTLER_RESTREPO": [
         {"R": 0.0, "ALFA": 0.5, "PINCH": 0.3, **CRACKED_LOSS},
