@@ -61,16 +61,20 @@ class Stages:
             raise command.mistake(
                 f"pattern {kind[:40]} has no counterpart", "use Plain or UniformExcitation"
             )
-        choice = options(command, 3)
-        choice.only(("-fact", "-factor"))
-        acting = series(self.model, " ".join(choice.plain), command)
-        scale = choice.real("-fact", choice.real("-factor", 1.0))
+        options(command, 3).only(("-fact", "-factor"))
+        acting, scale = self._series(command)
         if acting.kind in ("Path", "Trig"):
             self._forces(pattern, acting, scale)
         elif pushes and pattern.factor is None:
             return  # `_pushover` writes it
         else:
             self._static(pattern, scale * self._held(tag, pattern, acting, static, shakes))
+
+    def _series(self, command: Command) -> tuple[TimeSeries, float]:
+        """Series of a pattern Plain, and the factor on it."""
+        choice = options(command, 3)
+        acting = series(self.model, " ".join(choice.plain), command)
+        return acting, choice.real("-fact", choice.real("-factor", 1.0))
 
     def _held(
         self, tag: int, pattern: ScriptPattern, acting: TimeSeries, static: Calls, shakes: bool
@@ -240,9 +244,7 @@ class Stages:
             pattern = self.model.patterns[tag]
             if pattern.factor is not None or pattern.command.words[1] != "Plain":
                 continue
-            choice = options(pattern.command, 3)
-            acting = series(self.model, " ".join(choice.plain), pattern.command)
-            scale = choice.real("-fact", choice.real("-factor", 1.0))
+            acting, scale = self._series(pattern.command)
             for load in pattern.loads:
                 if load.name != "load":
                     raise load.mistake(
