@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from itertools import pairwise
 from statistics import median
@@ -34,12 +34,10 @@ def framing_mistakes(structure: Structure) -> list[Diagnostic]:
     if not shaken(model):
         return []
     problems = list(_coincident_frames(model))
-    lines = Lines(model)
-    for b in buildings(structure):
-        if stands(model, b.nodes):
-            inside = set(b.nodes)
-            lines.joint |= {n: [m for m in lines.group[lines.at[n]] if m in inside] for n in b.nodes}
-            problems += [*_without_column(lines, b), *_without_beam(lines, b), *_passing_a_floor(lines, b)]
+    standing = [b for b in buildings(structure) if stands(model, b.nodes)]
+    lines = Lines(model, standing)
+    for b in standing:
+        problems += [*_without_column(lines, b), *_without_beam(lines, b), *_passing_a_floor(lines, b)]
     return [*problems, *_sloping_beams(model), *_short_columns(structure), *_inclined_dashpots(model)]
 
 
@@ -77,17 +75,20 @@ class Lines:
     group, at : list of list of int, mapping of int to int
         Nodes at every place, and the place of every node.
     joint : mapping of int to list of int
-        Nodes of a building at the place of each of its nodes: a column ends at a joint where it ends at a
-        node of its hinge.
+        Nodes of a building at the place of each of its nodes: a column that ends at its hinge ends at the
+        joint.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, standing: Iterable[Building]) -> None:
         self.model = model
         self.beams, self.up, self.down = (defaultdict[int, list[Element]](list) for _ in range(3))
         self.joined = {frozenset(pair) for pair in joints(model)}
         self.grounded = {e.i for e in model.elements.values() if e.j is None}
         self.group, self.at = places(model)
         self.joint: dict[int, list[int]] = {}
+        for b in standing:
+            inside = set(b.nodes)
+            self.joint |= {n: [m for m in self.group[self.at[n]] if m in inside] for n in b.nodes}
         for e in model.elements.values():
             if e.j is None or model.props[e.prop].spec.name == "CONTACT":
                 continue
