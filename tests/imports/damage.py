@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable
 
 
-def damaged(text: str, rng: random.Random, choices: Sequence[str]) -> str:
-    """Text with one to six changes of lines, words, which may become one of the choices, or characters."""
+def damaged(text: str, rng: random.Random, another: Callable[[str], str], gap: str = " ") -> str:
+    """Text with one to six changes of lines, words, which stand `gap` apart, or characters.
+
+    `another` makes a word that replaces the given one or stands beside it.
+    """
     lines = text.split("\n")
     for _ in range(rng.choice((1, 1, 2, 3, 6))):
         k = rng.randrange(len(lines))
-        words = lines[k].split(" ")
-        match rng.randrange(8):
+        words = lines[k].split(gap)
+        at = rng.randrange(len(words))
+        match rng.randrange(9):
             case 0:
                 lines.insert(k, lines[rng.randrange(len(lines))])
             case 1:
-                words[rng.randrange(len(words))] = rng.choice(choices)
-                lines[k] = " ".join(words)
+                words[at] = another(words[at])
+                lines[k] = gap.join(words)
             case 2:
-                del words[rng.randrange(len(words))]
-                lines[k] = " ".join(words)
+                del words[at]
+                lines[k] = gap.join(words)
             case 3:
-                words.insert(rng.randrange(len(words) + 1), rng.choice(choices))
-                lines[k] = " ".join(words)
+                words.insert(at, another(words[at]))
+                lines[k] = gap.join(words)
             case 4:
                 lines[k] = lines[k][: rng.randrange(len(lines[k]) + 1)]
             case 5:
@@ -32,6 +36,9 @@ def damaged(text: str, rng: random.Random, choices: Sequence[str]) -> str:
             case 6:
                 other = rng.randrange(len(lines))
                 lines[k], lines[other] = lines[other], lines[k]
+            case 7:
+                del lines[k]
             case _:
                 lines = lines[: k + 1]
+        lines = lines or [""]
     return "\n".join(lines)

@@ -82,7 +82,7 @@ def recorded(folder, text: str) -> Replayed:
 
 def check(folder, rng: random.Random) -> bool:
     """Translate a damaged model; return whether it was read."""
-    text = damaged(rng.choice(MODELS), rng, WORDS)
+    text = damaged(rng.choice(MODELS), rng, lambda word: rng.choice(WORDS))
     replayed = recorded(folder, text)
     done = translate("model.tcl", replayed, lambda deck: {}, ("kN", "m", "s") if rng.random() < 0.5 else ())
     assert bool(done.text) != has_errors(done.report)

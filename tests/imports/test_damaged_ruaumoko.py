@@ -28,7 +28,8 @@ def test_a_damaged_deck_is_read_or_told(seed):
     rng = random.Random(seed)
     ends = set()
     for _ in range(60):
-        text = damaged(rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE)), rng, ITEMS)
+        deck = rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE))
+        text = damaged(deck, rng, lambda word: rng.choice(ITEMS))
         is_legacy(text)
         records = [RECORD] if rng.random() < 0.7 else []
         old = translate("old.dat", text, CATALOG, records, run=rng.random() < 0.3)

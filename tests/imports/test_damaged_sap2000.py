@@ -6,6 +6,7 @@ import random
 
 import pytest
 
+from imports.damage import damaged
 from imports.sap2000_models import EVERYTHING, PORTAL, SEVEN_STOREYS
 from pound_deck.diagnostics import has_errors
 from pound_deck.reader import read_text
@@ -56,41 +57,10 @@ PLANES = ("XZ", "YZ", "XY", "XZ@Y=0", "Y=7", "Z=3", "Q", "XZ@Y=1e400", "@")
 LOADS = ("GRAVITY", "ULS", "TWICE", "dead,live", "LIVE", "nothing", ",", "LATERAL")
 
 
-def damaged(text: str, rng: random.Random) -> str:
-    """A model with one to six changes of lines, values or characters."""
-    lines = text.split("\n")
-    for _ in range(rng.choice((1, 1, 2, 3, 6))):
-        k = rng.randrange(len(lines))
-        items = lines[k].split("   ")
-        at = rng.randrange(len(items))
-        match rng.randrange(9):
-            case 0:
-                lines.insert(k, lines[rng.randrange(len(lines))])
-            case 1 | 2:
-                items[at] = f"{items[at].partition('=')[0]}={rng.choice(VALUES)}"
-                lines[k] = "   ".join(items)
-            case 3:
-                del items[at]
-                lines[k] = "   ".join(items)
-            case 4:
-                lines[k] = lines[k][: rng.randrange(len(lines[k]) + 1)]
-            case 5:
-                at = rng.randrange(len(lines[k]) + 1)
-                lines[k] = lines[k][:at] + chr(rng.randrange(1, 256)) + lines[k][at + 1 :]
-            case 6:
-                other = rng.randrange(len(lines))
-                lines[k], lines[other] = lines[other], lines[k]
-            case 7:
-                del lines[k]
-                lines = lines or [""]
-            case _:
-                lines = lines[: k + 1] if rng.random() < 0.2 else lines
-    return "\n".join(lines)
-
-
 def check(rng: random.Random) -> bool:
     """Read one damaged model; return whether it becomes a deck."""
-    text = damaged(rng.choice((PORTAL, SEVEN_STOREYS, EVERYTHING, EVERYTHING)), rng)
+    model = rng.choice((PORTAL, SEVEN_STOREYS, EVERYTHING, EVERYTHING))
+    text = damaged(model, rng, lambda item: f"{item.partition('=')[0]}={rng.choice(VALUES)}", gap="   ")
     is_sap2000(text)
     plane, load = (rng.choice(some) if rng.random() < 0.2 else "" for some in (PLANES, LOADS))
     new = translate("frame.s2k", text, CATALOG, plane, load)
