@@ -12,7 +12,7 @@ from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
 from pound_solve.laws.automaton import BranchKind, Law, drive
 from pound_solve.laws.contact import kelvin_voigt
 from pound_solve.laws.hysteresis import bilinear, bilinear_slack
-from pound_solve.laws.hysteresis.slack_growing import growing
+from pound_solve.laws.hysteresis.slack_growing import growing_slack
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 
@@ -29,7 +29,7 @@ def rules(draw: st.DrawFn) -> Law:
         return Law(bilinear.RULE, (k, plus, minus, draw(ratios)))
     gap = draw(st.floats(0.0, 2.0)), -draw(st.floats(0.0, 2.0))
     if draw(st.booleans()):
-        return growing(k, (plus, minus), gap, draw(hardening))
+        return growing_slack(k, (plus, minus), gap, draw(hardening))
     return Law(bilinear_slack.RULE, (k, plus, minus, *gap, draw(hardening)))
 
 

@@ -686,7 +686,7 @@ def test_steps_converge_to_the_exact_method_with_order_two(stiffness):
 # ---------------------------------------------------------------- laws that know their secant stiffness
 
 BILINEAR = (bilinear.RULE, (100.0, 5.0, -5.0, 0.1))
-SLACK = (slack_growing.RULE, slack_growing.growing(100.0, (5.0, -5.0), (0.01, -0.02), 0.05).p)
+SLACK = (slack_growing.RULE, slack_growing.growing_slack(100.0, (5.0, -5.0), (0.01, -0.02), 0.05).p)
 
 
 def spring(law, **factors):

@@ -36,7 +36,7 @@ from pound_solve.laws.automaton import (
     linear,
 )
 from pound_solve.laws.hysteresis.backbone import LOSS_OF_SIDE, R_FIELD, loses_strength, loss
-from pound_solve.laws.hysteresis.slack_growing import growing
+from pound_solve.laws.hysteresis.slack_growing import growing_slack
 from pound_solve.laws.mirror import need_both_sides
 from pound_solve.laws.refusal import ItemError
 
@@ -150,7 +150,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     if weakens:
         need_both_sides(fy_plus, fy_minus)
     if values["GROW"] == "YES":
-        return growing(k, (fy_plus, fy_minus), (gap[0], gap_minus), values["R"], loss(values))
+        return growing_slack(k, (fy_plus, fy_minus), (gap[0], gap_minus), values["R"], loss(values))
     if weakens:
         raise ItemError("a strength loss needs a slack that grows: GROW=YES", "ILOS")
     return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"]))

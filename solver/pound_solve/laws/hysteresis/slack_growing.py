@@ -112,7 +112,7 @@ RULE = Rule(
 )
 
 
-def growing(
+def growing_slack(
     k: float,
     strengths: tuple[float, float],
     slack: tuple[float, float],

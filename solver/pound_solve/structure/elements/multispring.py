@@ -26,7 +26,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.hysteresis.slack_growing import growing
+from pound_solve.laws.hysteresis.slack_growing import growing_slack
 from pound_solve.numerics.types import Array
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (
@@ -58,7 +58,7 @@ def no_tension(
     """A spring that opens in tension and crushes at its `strength`; elastic if that is None."""
     far = UNREACHED_WIDTHS * width
     limit = k * far if strength is None else strength
-    law = growing(k, (limit, -limit), (far, 0.0))
+    law = growing_slack(k, (limit, -limit), (far, 0.0))
     dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
     crushed = (None, None) if strength is None else ((math.nan, -strength / k), (math.nan, -strength))
     return LawSpring(element, component, "BILINEAR_SLACK", dofs, factors, law, k, *crushed)

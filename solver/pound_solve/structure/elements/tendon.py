@@ -15,7 +15,7 @@ import math
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.hysteresis.backbone import R_FIELD
-from pound_solve.laws.hysteresis.slack_growing import growing
+from pound_solve.laws.hysteresis.slack_growing import growing_slack
 from pound_solve.structure.elements.base import (
     ElementContext,
     ElementError,
@@ -53,7 +53,7 @@ def build(context: ElementContext) -> ElementParts:
         "BILINEAR_SLACK",
         tuple(f for f, _ in row),
         tuple(x for _, x in row),
-        growing(k, (strength, -strength), (slack, -far), p["R"]),
+        growing_slack(k, (strength, -strength), (slack, -far), p["R"]),
         k if p["N0"] else 0.0,
         *((None, None) if p["PY"] is None else ((slack + strength / k, math.nan), (strength, math.nan))),
     )
